@@ -164,13 +164,13 @@
   (in-studio (robot)
     (let ((name (make-string 40 :initial-element #\y)))
       (world:make-new-thing (make-symbol name) (list (robot:robot-world robot) 8 8) '())
-      (is (mentions-p (display::legend-text (cast-of robot) '(:legend) t)
+      (is (mentions-p (display::film-legend (cast-of robot) '(:legend) t)
                       (format nil "<li title=\"~A\">" name))))))
 
 (defun cast-of (robot)
   "Return what is to be seen now around ROBOT, as films have it."
-  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-cast snapshot)))
-    (display::add-to-cast snapshot '(:legend) cast)
+  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-film-contents snapshot)))
+    (display::add-film-contents snapshot '(:legend) cast)
     cast))
 
 (test film.tells-of-broken-graphics-though-that-was-told-before

@@ -47,8 +47,8 @@
          (is (not (find "#ffffff" above :test #'equal)))))
      (let ((picture (run-picture :layers '())))
        (is (ways-seen-p picture))
-       (is (null (intersection (starts-in picture (display:turn-ink 0))
-                               (starts-in picture (display:turn-ink 1)))))))))
+       (is (null (intersection (starts-in picture (display:nth-ink 0))
+                               (starts-in picture (display:nth-ink 1)))))))))
 
 (test ways.that-are-given-are-all-seen-where-they-overlap
   (call-with-two-walkers
@@ -85,7 +85,7 @@
      (let ((picture (display:svg-picture first :layers '(:planned-way))))
        (is (ways-seen-p picture))
        (dolist (robot '(0 1))
-         (is (mentions-p picture (web (display:turn-ink robot)))))))))
+         (is (mentions-p picture (web (display:nth-ink robot)))))))))
 
 (test jumps.hide-no-way
   "Dots where a robot was put back along its way are below that, and the legend has none of them."
@@ -97,7 +97,7 @@
      (let ((picture (run-picture :layers '())))
        (is (ways-seen-p picture))
        (is (< (search "stroke-dasharray=\"1,6\"" picture)
-              (search (web (display:turn-ink 0)) picture))))
+              (search (web (display:nth-ink 0)) picture))))
      (is (not (mentions-p (run-picture) "put elsewhere")))
      (robot:place-robot second 5 4.5 0)
      (run:run-ticks 2)

@@ -86,23 +86,23 @@ VISIONS."
 (defun robot-look (position)
   "Return how a robot is drawn without colours: the dashes of its ring, and how its head is."
   (let ((canvas:in-color* nil))
-    (list (display::turn-dashes position) (display::hollow-head-p position))))
+    (list (display::nth-dashes position) (display::hollow-head-p position))))
 
 (defun way-look (position)
   "Return what is drawn of a way without colours, but for where its dashes are."
   (drawing (canvas)
     (let ((canvas:in-color* nil))
-      (display:draw-way-sample canvas '(0 0 100 0) (display:turn-ink position) position))))
+      (display:draw-way-sample canvas '(0 0 100 0) (display:nth-ink position) position))))
 
 (test palette.many-robots-and-ways-are-told-apart-by-all-eyes
   "The first forty by colour and dashes; ten robots and ways without colours as well."
-  (is (<= 20 (least-difference display::+turn-inks+ (remove :grey *visions* :key #'first))))
+  (is (<= 20 (least-difference display::+line-inks+ (remove :grey *visions* :key #'first))))
   (flet ((distinct-p (count function)
            (= count (length (remove-duplicates (loop for position below count
                                                      collect (funcall function position))
                                                :test #'equal)))))
     (is (distinct-p 40 (lambda (position)
-                         (list (display:turn-ink position) (display::turn-dashes position)))))
+                         (list (display:nth-ink position) (display::nth-dashes position)))))
     (is (distinct-p 10 #'robot-look))
     (is (distinct-p 10 #'way-look))))
 
@@ -206,7 +206,7 @@ VISIONS."
 
 (defun layer-inks ()
   "Return the colours of the lines of layers, of robots and of their cameras."
-  (append (mapcar #'display::layer-ink (display:picture-layers)) display::+turn-inks+))
+  (append (mapcar #'display::layer-ink (display:picture-layers)) display::+line-inks+))
 
 (test contrast.lines-of-layers-and-robots-are-seen-on-everything
   "They have a halo; without it they are seen on the floor and on all marks."
@@ -249,7 +249,7 @@ VISIONS."
     (is (apply #'seen-p ink canvas:white* *place-tints*)))
   (is (seen-p display::+grid-ink+ canvas:white*))
   (is (seen-p display::+frame-ink+ canvas:white*))
-  (dolist (ink display::+turn-inks+)
+  (dolist (ink display::+line-inks+)
     (is (apply #'seen-p ink canvas:white* *place-tints*))))
 
 (test contrast.tints-of-walls-leave-them-as-light-as-they-are

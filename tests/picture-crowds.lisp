@@ -44,10 +44,10 @@ of the lines that lead to names, x y x y each."
      (let* ((robots (display:snapshot-robots snapshot))
             (spots (loop for robot in robots collect (display::robot-spot robot robots)))
             (spot (first spots))
-            (rivals (display::rivals spot spots 200)) (taken (display::index-boxes '())))
+            (rivals (display::confusable-spots spot spots 200)) (taken (display::index-boxes '())))
        (destructuring-bind (x y) (display::pixels-of '(5 5))
-         (is-true (display::own-box-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5)) rivals))
-         (is (not (display::own-box-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)) rivals)))
+         (is-true (display::unambiguous-p spot (list (- x 60) (- y 5) (- x 20) (+ y 5)) rivals))
+         (is (not (display::unambiguous-p spot (list (+ x 34) (- y 5) (+ x 80) (+ y 5)) rivals)))
          (flet ((clear-p (box) (display::leader-clear-p spot box taken rivals)))
            (is (not (clear-p (list (+ x 70) y (+ x 99) (+ y 11)))))
            (is-true (clear-p (list (- x 99) y (- x 70) (+ y 11))))))))
@@ -73,7 +73,7 @@ of the lines that lead to names, x y x y each."
     (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 20)
            (spot (first (display::named-spots snapshot)))
            (thing (display::make-spot "pen" 135 130 8)))
-      (flet ((own-p (box) (display::own-box-p spot box (list thing))))
+      (flet ((own-p (box) (display::unambiguous-p spot box (list thing))))
         (is-true (own-p '(50 125 90 136)))
         (is (not (own-p '(146 125 190 136))))))))
 
@@ -94,7 +94,7 @@ of the lines that lead to names, x y x y each."
       (dolist (robot (run:simulation-robots)) (robot:place-robot robot 20.5 20.5 0))
       (robot:place-robot gofer 60.5 38.5 0)
       (is-true (drawn-with :ellipse (plain-picture gofer :part '(50 30 70 45))
-                           :stroke (web (display:turn-ink 1)))))))
+                           :stroke (web (display:nth-ink 1)))))))
 
 (test robots.are-whole-on-a-map-of-one-cell
   (with-own-definitions
@@ -104,7 +104,7 @@ of the lines that lead to names, x y x y each."
      (lambda ()
        (let ((ring (first (drawn-with :ellipse (display:svg-picture (robot:find-robot 'lodger)
                                                                     :layers '(:title))
-                                      :stroke (web (display:turn-ink 0))))))
+                                      :stroke (web (display:nth-ink 0))))))
          (is (= 20 (of-element ring :rx)))
          (is (< (* 2 (of-element ring :rx)) (+ 40 (* 2 display::+beyond+))))))
      '(lodger))))
@@ -163,7 +163,7 @@ of the lines that lead to names, x y x y each."
         (dolist (position '(0 1))
           (is (<= 2 (length (drawn-with :polygon picture
                                         :fill (web (if color-p
-                                                       (display:turn-ink position)
+                                                       (display:nth-ink position)
                                                        canvas:black*)))))))))))
 
 ;;; Titles.

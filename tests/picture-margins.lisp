@@ -161,7 +161,7 @@ room."
       (is (equal (second boxes)
                  (display::best-box snapshot '() boxes
                                     (display::index-boxes
-                                     (list (display::widened '(-26 20 15 31) 6))))))
+                                     (list (display::widen-box '(-26 20 15 31) 6))))))
       (flet ((best (layers &rest boxes)
                (display::best-box snapshot layers boxes (display::index-boxes '()))))
         (is (equal '(40 40 80 51) (best '(:places) '(8 8 20 19) '(40 40 80 51))))

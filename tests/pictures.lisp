@@ -97,7 +97,7 @@
   "Draw METRES that a sensor of ROBOT reads, as a line to the right."
   (declare (ignore snapshot))
   (let ((x (display:robot-image-x robot)) (y (display:robot-image-y robot)))
-    (display:inked ((display::layer-ink :ranges) :dashes (display::layer-dashes :ranges))
+    (display:with-halo ((display::layer-ink :ranges) :dashes (display::layer-dashes :ranges))
       (canvas:draw-segments canvas canvas:draw-gcontext*
                             (display:pixels-of (list x y (+ x metres) y))))))
 
@@ -293,7 +293,7 @@
            (canvas:graphics-scale* 10))
       (flet ((spared-p (layer x y)
                (some (lambda (box) (display::overlap-p box (display::box-around x y 1)))
-                     (display::marked-spots snapshot (list layer)))))
+                     (display::marked-boxes snapshot (list layer)))))
         (is-true (spared-p :planned-way 80 30))
         (is-true (spared-p :tracks 70 50))
         (is (null (spared-p :tracks 80 30)))))))

@@ -101,11 +101,11 @@
 
 (test words.longer-than-a-line-are-broken-behind-dashes
   (is (equal '("the-way-" "round-the-" "table")
-             (plots::wrapped "the-way-round-the-table" (canvas:text-width "round-the--" 12))))
+             (plots::wrap-text "the-way-round-the-table" (canvas:text-width "round-the--" 12))))
   (is (equal '("a" "word-and-" "another")
-             (plots::wrapped "a word-and-another" (canvas:text-width "word-and-a" 12))))
+             (plots::wrap-text "a word-and-another" (canvas:text-width "word-and-a" 12))))
   (is (equal '("supercalif" "ragilistic")
-             (plots::wrapped "supercalifragilistic" (canvas:text-width "supercalif" 12)))))
+             (plots::wrap-text "supercalifragilistic" (canvas:text-width "supercalif" 12)))))
 
 (test axes.of-logarithms-have-marks-at-powers-of-ten
   (let ((texts (chart-texts (plots:line-chart '((nil (0.001 1) (1000 1))) :log-x t))))
@@ -158,8 +158,8 @@
   "The first 210 series have no colour, marker and dashes in common."
   (let ((looks (loop for index below 210
                      collect (list (plots::look-color index)
-                                   (plots::look index plots::*shapes*)
-                                   (plots::look index plots::*dashes*)))))
+                                   (plots::nth-cyclic index plots::*shapes*)
+                                   (plots::nth-cyclic index plots::*dashes*)))))
     (is (= 210 (length (remove-duplicates looks :test #'equal))))
     (is (= 30 (length (remove-duplicates (subseq (mapcar #'rest looks) 0 30) :test #'equal))))))
 

@@ -64,7 +64,7 @@
   "Without code, and why only once."
   (let* ((why "failed: Plan failure :WILL-NOT-DO :COMMAND (SEQ (SETF TARGET 1))")
          (texts (mapcar #'display:moment-text
-                        (trails::in-brief
+                        (trails::abridge-failures
                          (list (display:make-moment 3 :part (format nil "task (fetch) ~A" why))
                                (display:make-moment 5 :plan (format nil "plan (fetch) ~A" why))
                                (display:make-moment 6 :grasp "grasped what failed: A"))))))

@@ -1,22 +1,22 @@
-;;;; film.lisp -- a run as one page for a browser: to be played, stopped, and searched for moments.
+;;;; film.lisp -- a run as a page for a browser, to play, stop and search for moments.
 
 (in-package :ars-magna.display)
 
-;;; The page needs nothing else. Its terrain is drawn once. What moves is drawn for each frame, and
-;;; the lines of that are kept apart, each once: from frame to frame few of them change.
+;;; The page needs no other file. Its terrain is drawn once, what moves for each frame. Each line of
+;;; SVG is stored once: from frame to frame few of them change.
 
-;; Read when this file is loaded, so that a saved program has them with it.
-(defun text-beside (name)
+;; Read when this file is loaded, so that a saved program contains them.
+(defun source-text (name)
   (file-text (asdf:system-relative-pathname "ars-magna" (format nil "src/display/~A" name))))
 
-(defparameter *film-script* (text-beside "film.js") "The program in a film.")
-(defparameter *film-style* (text-beside "film.css") "How a film looks.")
+(defparameter *film-script* (source-text "film.js") "The program in a film.")
+(defparameter *film-style* (source-text "film.css") "How a film looks.")
 
 ;;; Frames.
 
 (defstruct (reel (:constructor make-reel ()) (:copier nil))
-  "The lines that frames are made of, NUMBERS of them by text, and the frames, latest first: each is
-a vector of such numbers."
+  "The lines of SVG in frames, with their NUMBERS by text; and FRAMES, latest first, each a vector
+of such numbers."
   (numbers (make-hash-table :test 'cl:equal) :type hash-table :read-only t)
   (frames '() :type list))
 
@@ -40,16 +40,16 @@ a vector of such numbers."
     lines))
 
 (defun changes-in (frame before)
-  "Return a list place number ... of what FRAME has otherwise than BEFORE, which is as long."
+  "Return a list place number ... of the changes in FRAME since BEFORE, which is as long."
   (loop for number across frame
         for old across before
         for place from 0
         unless (eql number old) append (list place number)))
 
-;;; As text. JSON is JavaScript as well.
+;;; The data of a film, in JSON, which is also JavaScript.
 
 (defun write-array (writer items out)
-  "Write ITEMS, a sequence, as an array, each by WRITER, a function of it and OUT."
+  "Write the sequence ITEMS as an array, each item by WRITER, a function of the item and OUT."
   (write-char #\[ out)
   (let ((first-p t))
     (cl:map nil (lambda (item)
@@ -62,7 +62,7 @@ a vector of such numbers."
   (write-json-string text out :in-page t))
 
 (defun write-frames (frames out)
-  "Write FRAMES, in order: the first whole, others by what changes, if they are as long."
+  "Write FRAMES, in order: the first whole, the others as changes if they are as long."
   (let ((before nil))
     (flet ((write-frame (frame out)
              (cond ((and before (= (length frame) (length before)))
@@ -75,7 +75,7 @@ a vector of such numbers."
       (write-array #'write-frame frames out))))
 
 (defun frame-at (tick ticks)
-  "Return the number of the first frame that shows what was so at TICK; TICKS are those of all."
+  "Return the number of the first frame at or after TICK. TICKS are those of all frames."
   (or (position-if (lambda (shown) (>= shown tick)) ticks)
       (1- (length ticks))))
 
@@ -99,8 +99,8 @@ a vector of such numbers."
   (write-array (lambda (moment out) (write-moment moment ticks several-p out)) moments out)
   (format out "};~%"))
 
-;;; The page: the picture takes what room there is between title and controls, beside it stands what
-;;; can be read and folded.
+;;; The page. The picture fills the room between title and controls. Beside it are two lists, which
+;;; the reader can fold.
 
 (defun write-controls (out)
   (format out "<footer><div id=\"timeline\"><div id=\"marks\"></div>~
@@ -119,7 +119,7 @@ a vector of such numbers."
                 append (list value (if (string= value "1") " selected" "") text))))
 
 (defun write-aside (legend moments several-p out)
-  "Write what stands beside the picture: the moments, and LEGEND, items of a list."
+  "Write the part beside the picture: the moments, and LEGEND, items of a list."
   (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
                <ol id=\"moments\">~%" moments)
   (dolist (moment moments)
@@ -132,9 +132,9 @@ a vector of such numbers."
           (string= "" legend) legend))
 
 (defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
-  "Write to OUT the page of a film called TITLE. PICTURE is an SVG document of its first frame in
-which a group called movers is what frames draw; LAST-PICTURE is one of its last, for those who
-cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS are."
+  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of its first frame; frames
+replace its group movers. LAST-PICTURE, of the last frame, is for browsers that run no scripts.
+LEGEND is a text of list items. If SEVERAL-P, MOMENTS name their robots."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-text title out)
@@ -150,8 +150,8 @@ cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS a
   (write-data reel ticks rate moments several-p out)
   (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))
 
-;;; Making one. Its legend stands beside the picture, so that this can be as large as there is room;
-;;; and has what is to be seen in any of the frames.
+;;; Making a film. Its legend stands beside the picture, so that the picture can be large. It lists
+;;; what any of the frames shows.
 
 (defun movers-text (snapshot layers in-color scale)
   (with-output-to-string (out)
@@ -159,8 +159,8 @@ cannot play; LEGEND the items of a list. SEVERAL-P: say of which robot MOMENTS a
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
 (defun still-text (snapshot movers layers in-color scale)
-  "Return an SVG document of the map of SNAPSHOT and LAYERS, with a group called movers over it, of
-the lines of SVG MOVERS."
+  "Return an SVG document of the map of SNAPSHOT and LAYERS, with the SVG text MOVERS over it in a
+group called movers."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
@@ -175,41 +175,41 @@ the lines of SVG MOVERS."
   (format nil "~A, tick~P ~D~@[ to ~D~]" (title-of-journal journal)
           (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
-(defstruct (cast (:constructor make-cast (opening)) (:copier nil))
-  "What is to be seen in a film that begins as the snapshot OPENING shows: the images of things, by
-these, the images of robots, and the entries of lines, of both the latest first."
+(defstruct (film-contents (:constructor make-film-contents (opening)) (:copier nil))
+  "What a film that begins with the snapshot OPENING shows: the images of THINGS, by thing; those of
+ROBOTS and the entries of LINES, the latest first."
   (opening nil :type snapshot :read-only t)
   (robots '() :type list)
   (things (make-hash-table :test #'eq) :type hash-table :read-only t)
   (lines '() :type list))
 
-(defun add-to-cast (snapshot layers cast)
-  "Let CAST know what is to be seen in SNAPSHOT with LAYERS."
-  (let ((things (cast-things cast)))
+(defun add-film-contents (snapshot layers contents)
+  "Add what SNAPSHOT shows with LAYERS to CONTENTS."
+  (let ((things (film-contents-things contents)))
     (loop for image across (snapshot-things snapshot)
           do (unless (gethash (thing-image-thing image) things)
                (setf (gethash (thing-image-thing image) things) image)))
     (dolist (image (snapshot-robots snapshot))
-      (pushnew image (cast-robots cast) :key #'robot-image-position))
+      (pushnew image (film-contents-robots contents) :key #'robot-image-position))
     (dolist (entry (line-entries snapshot layers))
-      (pushnew entry (cast-lines cast) :key #'entry-text :test #'string=))))
+      (pushnew entry (film-contents-lines contents) :key #'entry-text :test #'string=))))
 
-(defun cast-entries (cast layers)
-  (let ((opening (cast-opening cast)))
+(defun film-entries (contents layers)
+  (let ((opening (film-contents-opening contents))
+        (things (hash-table-values (film-contents-things contents))))
     (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
-                                   :robots (sort (copy-list (cast-robots cast)) #'<
+                                   :robots (sort (copy-list (film-contents-robots contents)) #'<
                                                  :key #'robot-image-position)
-                                   :things (sort (coerce (hash-table-values (cast-things cast))
-                                                         'simple-vector)
+                                   :things (sort (coerce things 'simple-vector)
                                                  #'< :key #'image-serial))
-                    layers :lines (reverse (cast-lines cast)))))
+                    layers :lines (reverse (film-contents-lines contents)))))
 
-(defun legend-text (cast layers in-color)
+(defun film-legend (contents layers in-color)
   "Return the legend of a film as items of a list in HTML."
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas)
-        (dolist (entry (cast-entries cast layers))
+        (dolist (entry (film-entries contents layers))
           (format out "<li")
           (when (entry-whole entry)
             (format out " title=\"")
@@ -221,38 +221,40 @@ these, the images of robots, and the entries of lines, of both the latest first.
           (write-text (entry-text entry) out)
           (format out "</li>~%"))))))
 
-(defun shoot (journal every until watch part layers in-color scale)
-  "Replay JOURNAL. Return the reel of it, the ticks of its frames, stills of the first and the last
-frame, and the cast; WATCH is called with the simulation after each tick."
-  (let ((reel (make-reel)) (ticks '()) (cast nil) (first nil) (last nil)
+(defun record-film (journal every until watch part layers in-color scale)
+  "Replay JOURNAL; call WATCH with the simulation after each tick. Return five values: the reel, the
+ticks of its frames, stills of the first and the last frame, and the contents."
+  (let ((reel (make-reel)) (ticks '()) (contents nil) (first nil) (last nil)
         ;; The legend and the title of a page are HTML.
         (shown (set-difference layers '(:legend :title))))
     (call-with-frames (lambda (snapshot)
-                        (unless cast
+                        (unless contents
                           ;; The page magnifies the picture as far as there is room: a larger
                           ;; scale would only make its text small.
-                          (setf cast (make-cast snapshot)
+                          (setf contents (make-film-contents snapshot)
                                 scale (min (suitable-scale scale snapshot shown)
                                            (fitting-scale snapshot shown))))
-                        (add-to-cast snapshot layers cast)
+                        (add-film-contents snapshot layers contents)
                         (setf last (movers-text snapshot shown in-color scale)
                               first (or first last))
                         (push (snapshot-tick snapshot) ticks)
                         (add-frame last reel))
                       journal (frame-step journal every until) until :part part :watch watch)
-    (flet ((still (movers) (still-text (cast-opening cast) movers shown in-color scale)))
-      (values reel (reverse ticks) (still first) (still last) cast))))
+    (flet ((still (movers)
+             (still-text (film-contents-opening contents) movers shown in-color scale)))
+      (values reel (reverse ticks) (still first) (still last) contents))))
 
 (defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
-  "Return the page of a film of JOURNAL, with MOMENTS besides those that are seen in it."
-  (multiple-value-bind (watch seen) (moments-watcher)
-    (multiple-value-bind (reel ticks first last cast)
-        (shoot journal every until watch part layers in-color scale)
+  "Return the page of a film of JOURNAL, with MOMENTS besides those found in it."
+  (multiple-value-bind (watch seen) (make-moments-watcher)
+    (multiple-value-bind (reel ticks first last contents)
+        (record-film journal every until watch part layers in-color scale)
       (with-output-to-string (out)
         (write-film out (or title (film-title journal ticks)) first last
-                    (if (member :legend layers) (legend-text cast layers in-color) "")
+                    (if (member :legend layers) (film-legend contents layers in-color) "")
                     reel ticks rate
-                    (in-order (append (of-kinds kinds (append (funcall seen)
-                                                              (remarked-moments journal until)))
-                                      moments))
-                    (and (rest (snapshot-robots (cast-opening cast))) t))))))
+                    (sort-moments
+                     (append (moments-of-kinds kinds (append (funcall seen)
+                                                             (moments-in-remarks journal until)))
+                             moments))
+                    (and (rest (snapshot-robots (film-contents-opening contents))) t))))))

@@ -48,7 +48,7 @@ trail, that pictures show, newest first."
              (abs (- y (the double-float (second points)))))
           +trail-step+)))
 
-(defun with-placement-of (robot tick points)
+(defun add-placement (robot tick points)
   "Return POINTS, of a trail; if ROBOT has been put elsewhere since, with where that was, as it may
 have driven on by TICK."
   (if (and points
@@ -57,19 +57,19 @@ have driven on by TICK."
       (list* (robot-put-x robot) (robot-put-y robot) tick (robot-placements robot) points)
       points))
 
-(defun with-place-of (robot tick points)
+(defun add-place (robot tick points)
   "Return POINTS, of a trail, with where ROBOT is at TICK as the newest."
   (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
-         (with-placement-of robot tick points)))
+         (add-placement robot tick points)))
 
 (defun new-points (points before)
   "Return how many POINTS, of a trail, there are to BEFORE, the tail of them that was there."
   (loop for rest on points by #'cddddr until (eq rest before) count t))
 
-(defun longer-trail (trail robot tick)
+(defun extended-trail (trail robot tick)
   "Return what TRAIL, one or NIL, is with where ROBOT is at TICK as the newest point."
   (let* ((before (and trail (trail-points trail)))
-         (points (with-place-of robot tick before))
+         (points (add-place robot tick before))
          (count (+ (if trail (trail-count trail) 0) (new-points points before))))
     (if (> count (* 2 +trail-length+))
         (make-trail (subseq points 0 (* 4 +trail-length+)) +trail-length+)
@@ -81,7 +81,7 @@ have driven on by TICK."
   (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
       (setf (simulation-trails simulation)
-            (acons name (longer-trail trail robot (simulation-tick simulation))
+            (acons name (extended-trail trail robot (simulation-tick simulation))
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
 (defun points-of-trail (robot)
@@ -91,7 +91,7 @@ known; NIL if none of it is. Where a fork has gone nobody notes, but it came to 
          (trail (trail-called (robot-name robot) simulation)))
     (cond ((null trail) '())
           ((moved-p (trail-points trail) (robot-x robot) (robot-y robot))
-           (with-place-of robot (simulation-tick simulation) (trail-points trail)))
+           (add-place robot (simulation-tick simulation) (trail-points trail)))
           (t (trail-points trail)))))
 
 (defun trail-until (tick trail)
@@ -114,7 +114,7 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
                              (map-width map) (map-height map) x y dx dy +no-limit+)
         collect (+ x (* end dx)) collect (+ y (* end dy))))
 
-(defun look-of (camera)
+(defun take-look (camera)
   "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."
   (let* ((robot (camera-robot camera))
          (x (robot-x robot)) (y (robot-y robot))
@@ -132,7 +132,7 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
   (let ((entry (assoc camera (history-looks history) :test #'eq)))
     (unless (or (eq (camera-last-view camera) (and entry (look-view (cdr entry))))
                 (null (robot-cell-index (camera-robot camera))))
-      (let ((look (look-of camera)))
+      (let ((look (take-look camera)))
         (if entry
             (setf (cdr entry) look)
             (push (cons camera look) (history-looks history)))))))

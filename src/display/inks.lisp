@@ -2,46 +2,47 @@
 
 (in-package :ars-magna.display)
 
-(export '(turn-ink to-pixels pixels-of inked around draw-circle box-around overlap-p))
+(export '(nth-cyclic nth-ink to-pixels pixels-of with-halo around draw-circle box-around overlap-p))
 
 ;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
 ;;; on what is between both. So nobody need know what is below.
 
-(defun call-inked (function color width dashes)
+(defun call-with-halo (function color width dashes)
   (with-gcontext (draw-gcontext* :foreground white* :line-width (+ width 2))
     (funcall function))
   (with-color color
     (with-dashes (dashes :width width)
       (funcall function))))
 
-(defmacro inked ((color &key (width 1) dashes) &body body)
+(defmacro with-halo ((color &key (width 1) dashes) &body body)
   "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels
 wide, with DASHES."
-  `(call-inked (lambda () ,@body) ,color ,width ,dashes))
+  `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Where there are several of a sort, such as robots and ways, each has a colour and dashes in its
 ;;; turn. The numbers of both have no common factor: so forty are told apart, and five of them even
 ;;; without colours. The colours are at least 20 apart in CIE Lab for those who see all colours and
 ;;; for those who miss one kind of cones; tests/palette.lisp measures it.
 
-(define-constant +turn-inks+
+(define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
   :test #'cl:equal
   :documentation "The colours of what there are several of, in turn.")
 
-(define-constant +turn-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
+(define-constant +line-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
   :test #'cl:equal
   :documentation "The dashes and gaps of what there are several of, in turn; NIL is a solid line.")
 
-(defun in-turn (position list)
-  (nth (mod position (length list)) list))
+(defun nth-cyclic (position sequence)
+  "Return the element of SEQUENCE at POSITION, counted from the beginning again after the last."
+  (elt sequence (mod position (length sequence))))
 
-(defun turn-ink (position)
+(defun nth-ink (position)
   "Return the colour of what is at POSITION among several of its sort."
-  (in-turn position +turn-inks+))
+  (nth-cyclic position +line-inks+))
 
-(defun turn-dashes (position)
-  (in-turn position +turn-dashes+))
+(defun nth-dashes (position)
+  (nth-cyclic position +line-dashes+))
 
 (defun to-pixels (metres)
   "Return how many pixels METRES are."
@@ -123,7 +124,7 @@ wide, with DASHES."
 
 (defun substance-ink (name)
   (let ((position (substance-position name)))
-    (and position (in-turn position +substance-inks+))))
+    (and position (nth-cyclic position +substance-inks+))))
 
 ;;; Lightness.
 
@@ -156,7 +157,7 @@ wide, with DASHES."
   "Return the texture for the substance called NAME in a map in which others have TAKEN theirs."
   (let* ((first (or (substance-position name) 0))
          (all (loop for position from first repeat (length +wall-textures+)
-                    collect (in-turn position +wall-textures+))))
+                    collect (nth-cyclic position +wall-textures+))))
     (or (find-if-not (lambda (texture) (member texture taken)) all)
         (first all))))
 

@@ -86,7 +86,7 @@
 
 (defun layer-ink (name)
   "Return the colour of lines of the layer NAME; for lines in the colours of robots, the first."
-  (or (%layer-ink (layer-called name)) (turn-ink 0)))
+  (or (%layer-ink (layer-called name)) (nth-ink 0)))
 
 (defun layer-dashes (name) (%layer-dashes (layer-called name)))
 

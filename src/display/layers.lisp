@@ -71,7 +71,7 @@ snapshot or the image of a robot or camera."
 
 (define-layer :wedges "Fields of view"
   "What each camera has in its field of view, as far as walls and things let it see."
-  :depth :cameras :shown 'looking-out :draw 'draw-wedge
+  :depth :cameras :shown 'unobstructed-camera :draw 'draw-wedge
   :ink #x7A1030 :legend "in view"
   :text-name :cones :text 'cone-marks :text-depth :floor)
 

@@ -46,7 +46,7 @@ the name, and how wide the sample is, in pixels."
 
 (defconstant +longest-names+ 32 "About how many characters several names beside one sample have.")
 
-(defun joined (texts)
+(defun join-names (texts)
   "Return TEXTS as one, or as many as there is room for, and how many there are more."
   (loop with joined = (first texts)
         for rest on (rest texts)
@@ -61,7 +61,8 @@ that they are the names of."
   (flet ((texts (function)
            (loop for (name more) in names
                  collect (concatenate 'string (funcall function name) more))))
-    (let ((text (joined (texts #'short-name))) (whole (format nil "~{~A~^, ~}" (texts #'identity))))
+    (let ((text (join-names (texts #'short-name)))
+          (whole (format nil "~{~A~^, ~}" (texts #'identity))))
       (make-entry text sample :whole (and (string/= text whole) whole)))))
 
 ;;; Robots.
@@ -140,7 +141,7 @@ numbers."
   (let ((graphics-scale* 12))
     (draw-place-at canvas type (- x 6) (- y 6))))
 
-(defun mark-of (type)
+(defun place-mark-svg (type)
   "Return what the mark of the place type TYPE looks like here, as a string for comparison."
   (let ((color-p in-color*))
     (with-output-to-string (out)
@@ -151,7 +152,7 @@ numbers."
 
 ;; Without colours, concave places and beaks have the same mark, as the manual wants it.
 (defun place-entries (snapshot)
-  (loop for types in (grouped (place-types-of snapshot) #'mark-of)
+  (loop for types in (grouped (place-types-of snapshot) #'place-mark-svg)
         collect (let ((type (first types)))
                   (names-entry (loop for each in types
                                      collect (list (drawn-name (place-type-name each)) ""))
@@ -219,7 +220,7 @@ pieces, lists x y ... in pixels."
 (defun trail-jump-entries (snapshot)
   (jump-entries (loop for robot in (snapshot-robots snapshot)
                       collect (pieces-of-trail (robot-image-trail robot)))
-                snapshot (turn-ink 0)))
+                snapshot (nth-ink 0)))
 
 (defun reading-entries (snapshot)
   (declare (ignore snapshot))
@@ -232,7 +233,7 @@ pieces, lists x y ... in pixels."
 (defun line-entry (layer)
   (let ((name (%layer-name layer)))
     (sample-of (canvas x y) (%layer-legend layer)
-      (inked ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
+      (with-halo ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
 (defun further-entries (layers snapshot)
@@ -252,7 +253,7 @@ pieces, lists x y ... in pixels."
 
 (defconstant +entry-limit+ 80 "The most entries of a legend.")
 
-(defun paled (entries opacity)
+(defun fade-samples (entries opacity)
   "Return ENTRIES with samples that hide as much of what is below as OPACITY says."
   (loop for entry in entries
         collect (let ((sample (entry-sample entry)))
@@ -272,7 +273,7 @@ OPACITY; LINES are those of lines, and ROBOTS those of robots."
                                                    (layers-at :on-walls layers))
                                            snapshot)))
          (entries (append robots
-                          (if (= 1 opacity) terrain (paled terrain opacity))
+                          (if (= 1 opacity) terrain (fade-samples terrain opacity))
                           lines
                           (shape-entries snapshot) (thing-entries snapshot)))
          (more (- (length entries) +entry-limit+)))

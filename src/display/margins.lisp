@@ -192,7 +192,7 @@ pixels wide for each pixel that its font is high."
 
 (defun title-of (robots map)
   "Return what a title says of ROBOTS, a list of names as they are drawn, in MAP, a name."
-  (format nil "~@[~A in ~]~A" (and robots (joined robots)) (drawn-name map)))
+  (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
 (defun map-title (snapshot)
   "Return what stands above a picture of SNAPSHOT unless somebody says what."

@@ -100,7 +100,7 @@ or :DIAMOND."
 
 (defun draw-reach (canvas images)
   (loop for image in images
-        do (inked ((layer-ink :reach) :dashes (layer-dashes :reach))
+        do (with-halo ((layer-ink :reach) :dashes (layer-dashes :reach))
              (draw-circle canvas (to-pixels (thing-image-x image))
                           (to-pixels (thing-image-y image))
                           (+ (half-width image) (/ graphics-scale* 2) 2) nil))))
@@ -118,7 +118,7 @@ where cells are large, so that the ring fits into a map of one cell."
 
 (defconstant +between-rings+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
-(defun one-spot-p (image other)
+(defun same-spot-p (image other)
   "True if the rings of two robots would be taken for one."
   (> (robot-radius)
      (* 2 (to-pixels (max (abs (- (robot-image-x image) (robot-image-x other)))
@@ -131,7 +131,7 @@ them before it that are on the same spot."
      (* +between-rings+ (count-on-spot image (ldiff robots (member image robots))))))
 
 (defun count-on-spot (image robots)
-  (count-if (lambda (other) (one-spot-p image other)) robots))
+  (count-if (lambda (other) (same-spot-p image other)) robots))
 
 (defun spot-radius (image robots)
   "Return the radius of the widest ring of ROBOTS on the spot of IMAGE, in pixels."
@@ -149,7 +149,7 @@ them before it that are on the same spot."
 
 (defun hollow-head-p (position)
   "True if the arrowhead of the robot at POSITION among its world's is drawn hollow."
-  (and (not in-color*) (oddp (floor position (length +turn-dashes+)))))
+  (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
 (defun camera-lines (image radius)
   "Return the lines, x y x y in pixels, of those cameras that the robot of IMAGE, a ring of RADIUS,
@@ -163,8 +163,8 @@ has with it."
 (defun draw-ring (canvas x y radius angle position)
   "Draw the ring and the arrowhead of the robot at POSITION among its world's, which looks in
 direction ANGLE."
-  (let ((color (turn-ink position)))
-    (inked (color :width 2 :dashes (turn-dashes position)) (draw-circle canvas x y radius nil))
+  (let ((color (nth-ink position)))
+    (with-halo (color :width 2 :dashes (nth-dashes position)) (draw-circle canvas x y radius nil))
     (with-gcontext (draw-gcontext* :foreground white*)
       (draw-arrowhead canvas x y (- radius 1) angle t))
     (with-color color
@@ -175,7 +175,7 @@ direction ANGLE."
     (draw-ring canvas (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image))
                radius (robot-image-angle image) (robot-image-position image))
     (dolist (line (camera-lines image radius))
-      (inked ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
+      (with-halo ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
   "Draw ROBOTS, the images of all there are; wide rings first, so that they hide none."
@@ -202,7 +202,7 @@ direction ANGLE."
     (lambda (index)
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
-(defun looking-out (camera)
+(defun unobstructed-camera (camera)
   "Return CAMERA if it can see the map: if it is in nothing."
   (and (null (camera-image-location camera)) camera))
 
@@ -213,13 +213,13 @@ direction ANGLE."
          (count (max 2 (ceiling width +sight-spacing+))))
     (when (map-index map x y)
       (let ((ends (ray-ends map (opaque-cells snapshot) x y first (/ width count) (1+ count))))
-        (inked ((layer-ink :wedges))
+        (with-halo ((layer-ink :wedges))
           (draw-lines canvas draw-gcontext*
                       (pixels-of (append (list x y) ends (list x y)))))))))
 
 ;;; Rays, coloured by what was read.
 
-(defun ray-class (map reading)
+(defun reading-color-index (map reading)
   "Return the number of the colour of READING, by where it is between the parameters of the walls."
   (let* ((least (map-least-parameter map)) (greatest (map-greatest-parameter map))
          (count (length +ray-inks+)))
@@ -227,7 +227,7 @@ direction ANGLE."
         (clamp (floor (* count (/ (- reading least) (- greatest least)))) 0 (1- count))
         0)))
 
-(defun readings-of (look count)
+(defun readings-for-rays (look count)
   "Return COUNT of the numbers that were read, one for each ray of LOOK."
   (let ((view (coerce (look-view look) 'vector)))
     (loop for ray below count
@@ -236,8 +236,8 @@ direction ANGLE."
 (defun draw-rays (canvas look robot snapshot)
   (declare (ignore robot))
   (let* ((ends (look-ends look)) (map (snapshot-map snapshot))
-         (classes (mapcar (lambda (reading) (ray-class map reading))
-                          (readings-of look (/ (length ends) 2)))))
+         (classes (mapcar (lambda (reading) (reading-color-index map reading))
+                          (readings-for-rays look (/ (length ends) 2)))))
     (loop for ink in +ray-inks+ for number from 0
           for rays = (loop for (x y) on ends by #'cddr
                            for class in classes
@@ -262,11 +262,11 @@ direction ANGLE."
   "Draw a line to where ROBOT believes DESIGNATOR, which a camera tracks, to be."
   (declare (ignore snapshot))
   (let ((target (pixels-of (believed-place robot designator))))
-    (inked ((layer-ink :tracks) :dashes (layer-dashes :tracks))
+    (with-halo ((layer-ink :tracks) :dashes (layer-dashes :tracks))
       (draw-segments canvas draw-gcontext*
                      (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
                             target)))
-    (inked ((layer-ink :tracks))
+    (with-halo ((layer-ink :tracks))
       (draw-circle canvas (first target) (second target) (track-radius) nil))))
 
 (defun track-boxes (designator robot snapshot)
@@ -284,10 +284,10 @@ to what it denotes."
           (number (princ-to-string (designator-image-number designator))))
       (with-subject (canvas designator)
         (when true-x
-          (inked (color :dashes (layer-dashes :designators))
+          (with-halo (color :dashes (layer-dashes :designators))
             (draw-segments canvas draw-gcontext*
                            (list x y (to-pixels true-x) (to-pixels true-y)))))
-        (inked (color :width 2) (draw-cross canvas x y 4))
+        (with-halo (color :width 2) (draw-cross canvas x y 4))
         (wipe canvas (+ x 6) (- y 13) (+ 2 (words-width number)) 13)
         (with-color color (draw-text canvas (+ x 7) (- y 3) number))))))
 
@@ -319,7 +319,7 @@ that the bounds of its heading."
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))
          (half (* 1/2 (odometer-image-spread odometer))))
-    (inked ((layer-ink :odometer) :dashes (layer-dashes :odometer))
+    (with-halo ((layer-ink :odometer) :dashes (layer-dashes :odometer))
       (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
         (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))

@@ -1,24 +1,23 @@
-;;;; name-boxes.lisp -- where a name may stand beside what it is of, and what it would hide there.
+;;;; name-boxes.lisp -- where a name may stand beside its owner, and what it would hide there.
 
 (in-package :ars-magna.display)
 
-;;; Which of many boxes overlap another, without a look at each.
-
-;;; The map is divided into squares. Each lists what has been entered with a box that meets it.
+;;; A box index finds boxes that overlap a given one without a test of each. It divides the map into
+;;; squares, and lists for each square the entries whose box meets it.
 
 (defconstant +square-side+ 32 "The width of a square of a box index, in pixels.")
 (defconstant +most-squares+ 1000 "A box that meets more squares than this is not listed in each.")
 
 (defstruct (box-index (:constructor make-box-index ()) (:copier nil))
-  "Entries (box . item) by the numbers of SQUARES, and those that meet very many of them, LARGE."
+  "Entries (box . item) by the numbers of SQUARES; LARGE lists those that meet very many squares."
   (squares (make-hash-table) :type hash-table :read-only t)
   (large '() :type list))
 
 (defun some-square (function box)
-  "Return what FUNCTION, of the number of a square that BOX meets, returns first that is true."
+  "Call FUNCTION with the numbers of the squares that BOX meets until it returns true; return that."
   (destructuring-bind (first-column first-row last-column last-row)
       (mapcar (lambda (pixels) (values (floor pixels +square-side+))) box)
-    ;; Squares that have a number in common are no harm: overlaps are checked.
+    ;; Two squares may have the same number: callers check for overlaps.
     (loop for row from first-row to last-row
             thereis (loop for column from first-column to last-column
                             thereis (funcall function (+ column (* row 65536)))))))
@@ -57,8 +56,8 @@
 ;;; Names.
 
 (defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
-  "What has the name NAME at X, Y, and reaches HALF pixels from there; if it is a robot, ROBOT is
-its image."
+  "The owner of a name: NAME is at X, Y and reaches HALF pixels from there. ROBOT is the image of a
+robot, or NIL for a thing."
   (name "" :type string :read-only t)
   (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
   (robot nil :read-only t))
@@ -70,8 +69,8 @@ its image."
 (defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
 (defun name-boxes (x y half width)
-  "Return boxes for a name WIDTH pixels wide beside what reaches HALF pixels from X, Y: the best
-first."
+  "Return boxes for a name WIDTH pixels wide beside an owner that reaches HALF pixels from X, Y: the
+best first."
   (let ((gap (+ half 2)) (high +name-height+))
     (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
                                   (list (- x gap width) (- y (/ high 2)))
@@ -93,9 +92,8 @@ first."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes as NAME-BOXES does; if one of the box index MARKS lies there, such as that of the
-ring of a track, also boxes beside such a ring. Elsewhere a name so far away would be taken for
-others'."
+  "Return boxes as NAME-BOXES does. If a box of the index MARKS lies there, such as the ring of a
+track, add boxes beside such a ring. Without a ring, a name so far away would be ambiguous."
   (append (name-boxes x y half width)
           (and (find-overlapping (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
@@ -106,8 +104,7 @@ others'."
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
 (defun cells-below (map box function)
-  "True if FUNCTION, of the index of a cell, is true for one of the cells of MAP that BOX, which is
-on it, meets."
+  "True if FUNCTION, of the index of a cell, is true for a cell of MAP that BOX, within MAP, meets."
   (destructuring-bind (left top right bottom) box
     (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
       (let ((width (map-width map)) (height (map-height map)))
@@ -152,6 +149,6 @@ that SNAPSHOT shows, meet none of the index TAKEN, and for which OWN-P is true; 
                         (box-cost snapshot layers box anywhere-p))
         when (and cost (or (null least) (< cost least)))
           do (setf best box least cost)
-        ;; None hides less. Most of the time that a film takes goes by here.
+        ;; No box hides less. Films spend most of their time here.
         until (eql 0 least)
         finally (return best)))

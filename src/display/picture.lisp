@@ -107,7 +107,7 @@ picture there; then it says that a name has one of ENDINGS."
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it.
 LOOK are options of WRITE-PICTURE."
-  (save-svg (telling-what-breaks
+  (save-svg (reporting-broken-graphics
               (with-output-to-string (stream)
                 (apply #'write-picture stream snapshot robot :display display look)))
             file (picture-kind 'save-snapshot file)))
@@ -143,7 +143,7 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
                                                       (list (mapcan #'in-pixels way)))))
   (draw-way-marks canvas
                   (loop for way in ways for position from 0
-                        for color = (turn-ink position)
+                        for color = (nth-ink position)
                         collect `(draw-start ,@(in-pixels (first way)) ,color)
                         collect `(draw-goal ,@(in-pixels (first (last way))) ,color))))
 
@@ -177,7 +177,7 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
                           (sample-of-name (canvas x y)
                               ((format nil "way~:[~; ~D~]" (rest ways) (1+ position)) "" 38)
                             (draw-way-sample canvas (list (- x 18) y (+ x 18) y)
-                                             (turn-ink position) position))))
+                                             (nth-ink position) position))))
           (and ways (list (sample-of (canvas x y) "start" (draw-start canvas x y black*))
                           (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
 
@@ -208,7 +208,7 @@ WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without the program that PNG needs."
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
     (check-ways-on map ways)
-    (save-svg (telling-what-breaks
+    (save-svg (reporting-broken-graphics
                 (way-picture-text (snapshot-of-map map) ways
                                   :layers layers :in-color in-color :scale scale
                                   :title (or title (drawn-name (map-name map)))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(telling-what-breaks draw-terrain))
+(export '(reporting-broken-graphics draw-terrain))
 
 ;;; Code that fails, or goes on without an end, is reported once and not called again; whoever asked
 ;;; for it draws something else. Code that is defined anew is another function, and called.
@@ -13,7 +13,7 @@
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
   "The functions that have signalled an error, and the names that mean no function.")
 
-(defmacro telling-what-breaks (&body body)
+(defmacro reporting-broken-graphics (&body body)
   "Run BODY, which draws a file: of what is broken it tells once, though it was told before."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 

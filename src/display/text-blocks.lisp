@@ -20,7 +20,7 @@ and TOP."
 
 ;;; Regions.
 
-(defun clipped (least low high most)
+(defun clip-range (least low high most)
   "Return LOW and HIGH as whole numbers between LEAST and MOST, at least one apart."
   (let ((low (max least (min (floor low) (1- most)))))
     (values low (max (1+ low) (min (ceiling high) most)))))
@@ -45,8 +45,8 @@ COLUMNS x ROWS; ROWS may be NIL, if lines do not count."
 COLUMNS characters of a line and ROWS lines at most; ROWS may be NIL."
   (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
-      (multiple-value-bind (left right) (clipped 0 x1 x2 (map-width map))
-        (multiple-value-bind (top bottom) (clipped 0 y1 y2 (map-height map))
+      (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
+        (multiple-value-bind (top bottom) (clip-range 0 y1 y2 (map-height map))
           (multiple-value-bind (wide high)
               (least-block (- right left) (- bottom top) columns rows)
             (make-view :snapshot snapshot :left left :top top :wide wide :high high

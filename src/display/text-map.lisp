@@ -27,19 +27,19 @@
 
 ;;; An entry is a pair of how many characters it takes and of what is written.
 
-(defun entry-of-text (text) (cons (length text) text))
+(defun text-item (text) (cons (length text) text))
 
-(defun entry-of-glyph (glyph paint &optional (width 1000))
+(defun glyph-item (glyph paint &optional (width 1000))
   "Return the entry of GLYPH, as PAINT has it in its colour, of no more than WIDTH characters."
   (let ((text (glyph-text glyph)))
     (setf text (subseq text 0 (min (length text) (- width 2))))
     (cons (+ 2 (length text))
           (format nil "~A ~A" (funcall paint (string (glyph-char glyph)) (glyph-ink glyph)) text))))
 
-(defun entries-of (glyphs paint)
-  (mapcar (lambda (glyph) (entry-of-glyph glyph paint)) glyphs))
+(defun glyph-items (glyphs paint)
+  (mapcar (lambda (glyph) (glyph-item glyph paint)) glyphs))
 
-(defun filled (entries columns)
+(defun fill-lines (entries columns)
   "Return ENTRIES as lines of at most COLUMNS characters, if they are not longer themselves: a list
 of lists."
   (loop with lines = '() and used = 0
@@ -51,17 +51,17 @@ of lists."
                     (setf used (car entry))))
         finally (return (nreverse (mapcar #'reverse lines)))))
 
-(defun write-entries (lines stream)
+(defun write-items (lines stream)
   (dolist (line lines)
     (format stream "~{~A~^   ~}~%" (mapcar #'cdr line))))
 
-(defun head-entries (sheet paint)
+(defun head-items (sheet paint)
   "Return the entries of the legend of SHEET that always stand below it."
   (let ((view (sheet-view sheet)))
     (append (when (< 1 (max (view-wide view) (view-high view)))
-              (list (entry-of-text (format nil "Each character is ~D x ~D cells."
+              (list (text-item (format nil "Each character is ~D x ~D cells."
                                            (view-wide view) (view-high view)))))
-            (entries-of (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
+            (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
 
 (defun tail-glyphs (sheet)
   "Return the glyphs of SHEET whose entries stand wherever there is room."
@@ -69,7 +69,7 @@ of lists."
 
 (defun whole-legend (sheet columns paint)
   "Return all that the legend of SHEET says, as lines of COLUMNS characters."
-  (filled (append (head-entries sheet paint) (entries-of (tail-glyphs sheet) paint)) columns))
+  (fill-lines (append (head-items sheet paint) (glyph-items (tail-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
 
@@ -84,7 +84,7 @@ and those of GLYPHS for which there is none of ROOM characters."
          (lines (make-array rows :initial-element '())))
     (loop for glyph in glyphs
           for position from 0 below (* rows columns)
-          do (destructuring-bind (length . text) (entry-of-glyph glyph paint width)
+          do (destructuring-bind (length . text) (glyph-item glyph paint width)
                (push (format nil "  ~A~VA" text (- width length) "")
                      (svref lines (mod position rows)))))
     (values (cl:map 'vector #'reverse lines)
@@ -92,16 +92,16 @@ and those of GLYPHS for which there is none of ROOM characters."
 
 ;;; Below it.
 
-(defun with-remark (head entries columns rows)
+(defun lines-with-count (head entries columns rows)
   "Return lines of HEAD and ENTRIES, no more than ROWS of COLUMNS characters; for which of ENTRIES
 there is no room is counted in the last, if there is room for that. ROWS may be NIL."
   (flet ((kept (count &rest more)
-           (filled (append head (subseq entries 0 count) more) columns))
+           (fill-lines (append head (subseq entries 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
     (if (fits-p (kept (length entries)))
         (kept (length entries))
         (loop for count from (1- (length entries)) downto 0
-              for remark = (entry-of-text (format nil "and ~D more: MAP LEGEND"
+              for remark = (text-item (format nil "and ~D more: MAP LEGEND"
                                                   (- (length entries) count)))
               when (fits-p (kept count remark)) return (kept count remark)
               finally (return (kept 0))))))
@@ -166,8 +166,8 @@ NIL, as far as there is room."
     (multiple-value-bind (beside rest)
         (side-legend (tail-glyphs sheet) side (view-rows view) paint)
       (write-rows sheet beside paint stream)
-      (write-entries (with-remark (head-entries sheet paint) (entries-of rest paint) columns left)
-                     stream))))
+      (write-items (lines-with-count (head-items sheet paint) (glyph-items rest paint) columns left)
+                   stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
   "Return a sheet of REGION for ROBOT that, with the head of its legend, fits into ROWS lines of
@@ -178,7 +178,7 @@ COLUMNS characters, if that can be. Kinds of things have letters also while none
           for view = (view-of snapshot region (- columns +margin-columns+)
                               (and rows (max 1 (- rows 1 lines))))
           for sheet = (sheet-of image view layers letters colored-p)
-          for head = (filled (head-entries sheet #'unpainted) columns)
+          for head = (fill-lines (head-items sheet #'unpainted) columns)
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))
             return sheet)))
 
@@ -226,5 +226,5 @@ out. Call it where the world stands still. Signals WRONG-ARGUMENT."
         (paint (or paint #'unpainted)))
     (with-output-to-string (stream)
       (if only-legend
-          (write-entries (whole-legend sheet columns paint) stream)
+          (write-items (whole-legend sheet columns paint) stream)
           (write-sheet sheet columns rows paint stream)))))

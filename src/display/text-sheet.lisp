@@ -25,7 +25,7 @@
                (map-width map) (map-height map) x y (cosine angle) (sine angle) +no-limit+)
     indices))
 
-(defun cone (view robot camera)
+(defun cone-blocks (view robot camera)
   "Return the numbers of the blocks of VIEW that have something in the field of view of CAMERA."
   (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-spacing+)))
@@ -41,8 +41,8 @@
 (defun cone-marks (view robot)
   (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" (robot-image-name robot))
                            :yellow)))
-    (loop for camera in (remove-if-not #'looking-out (robot-image-cameras robot))
-          append (loop for number in (cone view robot camera) collect (cons number glyph)))))
+    (loop for camera in (remove-if-not #'unobstructed-camera (robot-image-cameras robot))
+          append (loop for number in (cone-blocks view robot camera) collect (cons number glyph)))))
 
 ;;; Ways.
 
@@ -107,7 +107,7 @@ a list of all glyphs that mean something there."
   (glyphs #() :type simple-vector)
   (legend '() :type list))
 
-(defun explain (sheet glyphs)
+(defun add-to-legend (sheet glyphs)
   "Let the legend of SHEET have GLYPHS. Return the first of them."
   (dolist (glyph glyphs (first glyphs))
     (pushnew glyph (sheet-legend sheet)
@@ -121,7 +121,7 @@ a list of all glyphs that mean something there."
           do (push glyph (gethash number table)))
     (push (cons (%layer-text-depth layer) table) (sheet-marks sheet))))
 
-(defun marked (sheet depth number)
+(defun layer-glyphs-at (sheet depth number)
   "Return a list of the glyph of the last layer at DEPTH that has one in the block NUMBER of SHEET."
   (loop for (its-depth . table) in (sheet-marks sheet)
         for glyphs = (and (eq depth its-depth) (gethash number table))
@@ -149,12 +149,12 @@ first the one that shows."
          (map (view-map view))
          (things (loop for index in indices append (gethash index (sheet-things sheet)))))
     (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in view indices))
-        (marked sheet :above number)
+        (layer-glyphs-at sheet :above number)
         (things-glyphs things (sheet-letters sheet))
-        (marked sheet :below number)
+        (layer-glyphs-at sheet :below number)
         (wall-glyphs map indices (sheet-colored-p sheet))
         (place-glyphs map indices)
-        (marked sheet :floor number))))
+        (layer-glyphs-at sheet :floor number))))
 
 (defun sheet-of (robot view layers letters colored-p)
   "Return a sheet of VIEW with LAYERS, some of (TEXT-LAYERS), for ROBOT, an image. LETTERS are those
@@ -168,10 +168,10 @@ of things."
           (coerce (loop for row below (view-rows view)
                         append (loop for column below (view-columns view)
                                      for number from (* row (view-columns view))
-                                     collect (explain sheet
-                                                      (glyphs-of-block
-                                                       sheet number
-                                                       (block-indices view column row)))))
+                                     collect (add-to-legend sheet
+                                                            (glyphs-of-block
+                                                             sheet number
+                                                             (block-indices view column row)))))
                   'simple-vector))
     sheet))
 

@@ -13,7 +13,7 @@
 (defconstant +least-arrowed+ 24 "The length of the shortest way with an arrowhead, in pixels.")
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
-(defun lengths-along (points)
+(defun segments-along (points)
   "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
 length are left out."
   (loop for (x y next-x next-y) on points by #'cddr
@@ -22,7 +22,7 @@ length are left out."
         while next-y
         when (plusp length) collect (list length x y dx dy)))
 
-(defun spot-along (pieces distance)
+(defun point-along (pieces distance)
   "Return the point DISTANCE along the way of PIECES (see LENGTHS-ALONG), a list (x y)."
   (loop for ((length x y dx dy) . more) on pieces
         when (or (<= distance length) (null more))
@@ -33,8 +33,8 @@ length are left out."
 (defun arrow-along (pieces distance)
   "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
   (destructuring-bind ((x y) (to-x to-y))
-      (list (spot-along pieces (- distance (/ +arrow-length+ 2)))
-            (spot-along pieces (+ distance (/ +arrow-length+ 2))))
+      (list (point-along pieces (- distance (/ +arrow-length+ 2)))
+            (point-along pieces (+ distance (/ +arrow-length+ 2))))
     (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (arctangent (- to-y y) (- to-x x)))))
 
 (defun free-arrow (pieces distance arrows)
@@ -50,7 +50,7 @@ where a way leads back; or NIL."
 (defun arrows-along (points &optional others)
   "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
 few, none on a very short one, and none on OTHERS."
-  (let* ((pieces (lengths-along points)) (whole (reduce #'+ pieces :key #'first))
+  (let* ((pieces (segments-along points)) (whole (reduce #'+ pieces :key #'first))
          (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
          (arrows '()))
     (dotimes (index count (reverse arrows))
@@ -78,8 +78,8 @@ in widths of its line. As with queens on a chessboard, no two share a row, a col
 in which they would lie on each other.")
 
 (define-record (way-line (:constructor make-way-line
-                             (position pieces &key (color (turn-ink position))
-                                                   (dashes (turn-dashes position)) (width 2)
+                             (position pieces &key (color (nth-ink position))
+                                                   (dashes (nth-dashes position)) (width 2)
                                                    (arrows-p t) (lane position))))
   "A way, the one at POSITION of several, as a line of PIECES."
   (position 0 integer)
@@ -92,7 +92,7 @@ in which they would lie on each other.")
 
 (defun pieces-in-lane (line)
   "Return the pieces of the way LINE that are lines, each in its lane."
-  (destructuring-bind (aside down) (in-turn (way-line-lane line) +lanes+)
+  (destructuring-bind (aside down) (nth-cyclic (way-line-lane line) +lanes+)
     (let ((dx (* aside (way-line-width line))) (dy (* down (way-line-width line))))
       (loop for piece in (way-line-pieces line)
             when (cddr piece)
@@ -201,7 +201,7 @@ go along a way."
 (defun draw-start (canvas x y color &optional (radius +mark-radius+))
   "Draw what marks where a way begins: a small ring."
   (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
-  (inked (color :width 2) (draw-circle canvas x y radius nil)))
+  (with-halo (color :width 2) (draw-circle canvas x y radius nil)))
 
 (defun draw-goal (canvas x y color &optional (radius +mark-radius+))
   "Draw what marks where a way ends: a spot."
@@ -269,4 +269,4 @@ go along a way."
   (draw-way-marks canvas
                   (loop for robot in robots
                         collect `(draw-start ,@(end-of-planned-way robot)
-                                             ,(turn-ink (robot-image-position robot))))))
+                                             ,(nth-ink (robot-image-position robot))))))

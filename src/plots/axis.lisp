@@ -13,7 +13,7 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
   (marks '() :type list)
   (upward-p nil :type boolean))
 
-(defun spot-of (value log-p)
+(defun scaled-value (value log-p)
   "Return where VALUE is along an axis: VALUE, or its logarithm if LOG-P."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
@@ -30,7 +30,7 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
   (let ((low (axis-low axis)))
     (+ (axis-from axis)
        (* (- (axis-to axis) (axis-from axis))
-          (/ (- (spot-of value (axis-log-p axis)) low) (- (axis-high axis) low))))))
+          (/ (- (scaled-value value (axis-log-p axis)) low) (- (axis-high axis) low))))))
 
 ;;; Limits.
 
@@ -49,7 +49,7 @@ least to each side; 0 and 1 if there are none."
 numbers."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
-(defun widened (low high from to inset)
+(defun padded-limits (low high from to inset)
   "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
 these, but no more than a sixth of it."
   (let* ((span (rational (- to from)))
@@ -94,7 +94,7 @@ LEAST-STEP apart at least."
         when (zerop (mod power every))
           append (loop for factor in factors
                        for value = (* factor (expt 10 power))
-                       when (<= low (spot-of value t) high)
+                       when (<= low (scaled-value value t) high)
                          collect (list value (plain-text value 4)))))
 
 (defun logarithmic-candidates (low high percent)
@@ -111,10 +111,10 @@ LEAST-STEP apart at least."
 fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
   (let ((least-step (if log-p 0 (least-step values percent)))
         (spots (if log-p
-                   (mapcar (lambda (value) (spot-of value t)) (or values '(1 10)))
+                   (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))
                    values)))
     (multiple-value-bind (low high) (limits spots least-step)
-      (multiple-value-bind (start end) (widened low high from to inset)
+      (multiple-value-bind (start end) (padded-limits low high from to inset)
         (fit-marks (make-axis :low start :high end :from from :to to :log-p (and log-p t))
                    (if log-p
                        (logarithmic-candidates start end percent)
@@ -143,11 +143,11 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
 
 (defun across-lines (words width)
   "Return the lines of each of WORDS within WIDTH pixels, or NIL if they don't fit in three."
-  (let ((all (mapcar (lambda (word) (wrapped word width)) words)))
+  (let ((all (mapcar (lambda (word) (wrap-text word width)) words)))
     (and (every (lambda (word lines)
                   (and (<= (length lines) 3)
                        (every (lambda (piece) (<= (text-width piece +text-size+) width))
-                              (split word #'space-p))))
+                              (split-text word #'space-p))))
                 words all)
          all)))
 
@@ -155,7 +155,7 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
   "Return an axis with a mark for each of WORDS: 0, 1, 2 .... It may reach beyond the pixel TO."
   (let* ((count (max 1 (length words)))
          (across (across-lines words (- (/ (- to from) count) 8)))
-         (all (or across (mapcar (lambda (word) (wrapped word +longest-upward+)) words)))
+         (all (or across (mapcar (lambda (word) (wrap-text word +longest-upward+)) words)))
          (least (if across 0 (+ 1 (reduce #'max all :key #'lines-height :initial-value 0)))))
     (make-axis :low -1/2 :high (- count 1/2) :from from :to (max to (+ from (* count least)))
                :marks (loop for lines in all for number from 0 collect (cons number lines))

@@ -7,7 +7,7 @@
 ;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
 ;;; make the same picture to the last byte.
 
-(defun exact (value)
+(defun as-rational (value)
   "Return VALUE, a finite number, as a rational, 0.1 as 1/10; NIL if it is NIL. Signals
 WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
@@ -60,7 +60,7 @@ WRONG-ARGUMENT."
 (defun figure-text (value &key (percent nil) (digits 4))
   "Return VALUE, a number, as text of so many significant DIGITS, as per cent if PERCENT: 0.3,
 12.5 %, 1.5e9. NIL is a dash. Signals WRONG-ARGUMENT."
-  (let ((value (exact value)))
+  (let ((value (as-rational value)))
     (cond ((null value) "-")
           (percent (format nil "~A %" (plain-text (* 100 value) digits)))
           (t (plain-text value digits)))))

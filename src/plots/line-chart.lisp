@@ -22,7 +22,8 @@
                   "a list (x y) or (x y low high)")
   (destructuring-bind (x y &optional low high) point
     (check-argument chart x (not (null x)) "a number, or a word such as the name of a condition")
-    (make-spot (if words-p (name-text x) (exact x)) (exact y) (exact low) (exact high))))
+    (make-spot (if words-p (name-text x) (as-rational x))
+               (as-rational y) (as-rational low) (as-rational high))))
 
 (defun words-p (all)
   "True if some point in the lists ALL has an X that is no number."
@@ -64,24 +65,24 @@
 
 (defconstant +most-sideways+ 8 "How far series stand beside each other at most, in pixels.")
 
-(defun step-sideways (count gap)
+(defun shift-step (count gap)
   "Return how far COUNT series stand beside each other, for places that are GAP pixels apart."
   (min +most-sideways+ (/ (* 6/10 gap) (max 1 count))))
 
-(defun room-beside (series values from to log-p)
+(defun inset-for-series (series values from to log-p)
   "Return how far VALUES should be from the ends of an axis between the pixels FROM and TO, so that
 all SERIES find room beside them."
-  (let* ((spots (mapcar (lambda (value) (spot-of value log-p)) values))
+  (let* ((spots (mapcar (lambda (value) (scaled-value value log-p)) values))
          (span (if spots (- (reduce #'max spots) (reduce #'min spots)) 0))
          (gap (if (zerop span) 60 (* (- to from) (/ (least-gap spots) span)))))
-    (+ 14 (* 1/2 (length series) (step-sideways (length series) gap)))))
+    (+ 14 (* 1/2 (length series) (shift-step (length series) gap)))))
 
-(defun sideways (series places from)
+(defun series-shifts (series places from)
   "Return a function from an index of SERIES to how many pixels that stands to the right of PLACES,
 on an axis that begins at FROM."
   (let* ((middle (/ (1- (length series)) 2))
          (room (if places (- (reduce #'min places) from 7) 0))
-         (step (min (step-sideways (length series) (least-gap places))
+         (step (min (shift-step (length series) (least-gap places))
                     (/ room (max 1 middle)))))
     (lambda (index) (* step (- index middle)))))
 
@@ -95,7 +96,7 @@ on an axis that begins at FROM."
 
 ;;; Words along the axis across are counted, so that all else deals with numbers.
 
-(defun numbered (series words)
+(defun number-words (series words)
   "Return SERIES with the places in WORDS for X."
   (loop for one in series
         collect (make-series (series-name one) (series-index one)
@@ -149,9 +150,9 @@ on an axis that begins at FROM."
 
 (defun draw-series (canvas all plane words percent)
   "Draw ALL series: lines, above them intervals, above them markers."
-  (let ((shifts (sideways all
-                          (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
-                          (axis-from (plane-across plane)))))
+  (let ((shifts (series-shifts all
+                               (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
+                               (axis-from (plane-across plane)))))
     (flet ((each (function)
              (dolist (series all)
                (funcall function series (funcall shifts (series-index series))))))
@@ -167,7 +168,7 @@ on an axis that begins at FROM."
            (if words
                (word-axis words from to)
                (axis-across values from to log-x
-                            :inset (room-beside all values from to log-x))))
+                            :inset (inset-for-series all values from to log-x))))
          upward
          (loop for series in all
                collect (legend-name (series-name series) (some #'spot-y (series-spots series))))
@@ -189,9 +190,9 @@ the text needs it. A series without a name, NIL, does without a legend. Signals 
   (multiple-value-bind (given words-p) (checked-series series)
     (let* ((values (all-x given))
            (words (and words-p values))
-           (all (if words-p (numbered given words) given))
+           (all (if words-p (number-words given words) given))
            (upward (axis-upward (all-y all) percent
-                                (mapcar #'exact (or range (and percent '(0 1))))))
+                                (mapcar #'as-rational (or range (and percent '(0 1))))))
            (plane (plan-line-chart all words values log-x upward options)))
       (plane-svg plane (all-y all)
                  (lambda (canvas)

@@ -31,14 +31,13 @@
     (:kite 0 6/5 23/20 -4/5 -23/20 -4/5))
   "Polygons x y ... around 0, 0.")
 
-(defun look (index vector) (svref vector (mod index (length vector))))
 (defun look-color (index)
   "Return the colour of the series INDEX, as a pixel's value."
-  (look index *colors*))
+  (nth-cyclic index *colors*))
 
 (defun call-with-look (function index width)
   (with-gcontext (draw-gcontext* :foreground (look-color index))
-    (with-dashes ((look index *dashes*) :width width)
+    (with-dashes ((nth-cyclic index *dashes*) :width width)
       (funcall function))))
 
 (defmacro with-look ((index width) &body body)
@@ -67,7 +66,7 @@
 
 (defun draw-marker (canvas index x y &optional (radius 4) (color (look-color index)))
   "Draw the marker of the series INDEX around X, Y, in COLOR, with a white rim."
-  (destructuring-bind (outline filled-p) (look index *shapes*)
+  (destructuring-bind (outline filled-p) (nth-cyclic index *shapes*)
     (fill-shape canvas outline white* x y (+ radius 6/5))
     (fill-shape canvas outline color x y radius)
     (unless filled-p
@@ -99,7 +98,7 @@
     (real (figure-text name))
     (t (string name))))
 
-(defun split (text separator-p)
+(defun split-text (text separator-p)
   "Return the pieces of TEXT between characters for which SEPARATOR-P is true, but empty ones."
   (loop with start = 0
         for end = (position-if separator-p text :start start)
@@ -108,7 +107,7 @@
         while end
         do (setf start (1+ end))))
 
-(defun fitting (word width size bold-p)
+(defun fitting-length (word width size bold-p)
   "Return how many of the first characters of WORD fit in WIDTH pixels; at least one does."
   (loop for count from 1 to (length word)
         while (<= (text-width (subseq word 0 count) size bold-p) width)
@@ -121,8 +120,8 @@ dash, slash or the like among these, but not one it begins with; or where the li
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))
 
-(defun broken (word width size bold-p)
-  (loop for fitting = (fitting word width size bold-p)
+(defun break-word (word width size bold-p)
+  (loop for fitting = (fitting-length word width size bold-p)
         while (< fitting (length word))
         for count = (place-to-break word fitting)
         collect (subseq word 0 count) into pieces
@@ -133,7 +132,7 @@ dash, slash or the like among these, but not one it begins with; or where the li
   "Return lines of WORDS, each as long as fits in WIDTH pixels."
   (let ((lines '()) (line nil))
     (dolist (word words)
-      (dolist (piece (broken word width size bold-p))
+      (dolist (piece (break-word word width size bold-p))
         (let ((longer (if line (concatenate 'string line " " piece) piece)))
           (cond ((or (null line) (<= (text-width longer size bold-p) width))
                  (setf line longer))
@@ -143,13 +142,13 @@ dash, slash or the like among these, but not one it begins with; or where the li
 
 (defun space-p (character) (not (and (graphic-char-p character) (char/= #\Space character))))
 
-(defun wrapped (text width &key (size +text-size+) bold-p)
+(defun wrap-text (text width &key (size +text-size+) bold-p)
   "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels, broken where it is
 broken, else between words; within a word longer than a line behind a dash, else anywhere."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
-       (loop for paragraph in (split text (lambda (character) (char= #\Newline character)))
-             append (wrapped-words (split paragraph #'space-p) width size bold-p))))
+       (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
+             append (wrapped-words (split-text paragraph #'space-p) width size bold-p))))
 
 (defun lines-width (lines &optional (size +text-size+) bold-p)
   "Return how wide LINES are at most, in pixels."
@@ -187,7 +186,7 @@ broken, else between words; within a word longer than a line behind a dash, else
 
 (defun plan-heading (title subtitle width)
   (let ((room (- width (* 2 +margin+))))
-    (list (wrapped title room :size 15 :bold-p t) (wrapped subtitle room))))
+    (list (wrap-text title room :size 15 :bold-p t) (wrap-text subtitle room))))
 
 (defun heading-bottom (heading)
   (+ +margin+ (* 19 (length (first heading))) (lines-height (second heading))))

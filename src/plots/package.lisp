@@ -5,4 +5,4 @@
 no experiment and no robot. Each chart is a function that returns an SVG document as a string.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.canvas)
-  (:import-from :ars-magna.display #:picture-kind #:save-svg))
+  (:import-from :ars-magna.display #:nth-cyclic #:picture-kind #:save-svg))

@@ -23,10 +23,10 @@ one of no width if all are empty. CONNECT: lines belong to the samples."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))
-             (title (wrapped title (- most 24) :bold-p t))
+             (title (wrap-text title (- most 24) :bold-p t))
              (entries (loop for name in names
                             for index from 0
-                            collect (cons index (wrapped name room)))))
+                            collect (cons index (wrap-text name room)))))
         (make-legend :title title :entries entries :connect connect
                      :width (max (+ 24 (lines-width title +text-size+ t))
                                  (+ +sample-width+ 24
@@ -72,13 +72,13 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
   (check-size width height)
   (let* ((heading (plan-heading title subtitle width))
          (legend (plan-legend names legend-title (* 4/10 width) connect))
-         (y-lines (wrapped y-label (- width (* 2 +margin+))))
+         (y-lines (wrap-text y-label (- width (* 2 +margin+))))
          (top (+ (heading-bottom heading) 14 (lines-height y-lines) (if y-lines 8 0)))
          (left (max least-left (+ +margin+ (marks-width upward) 8)))
          (right (- width +margin+ (max 16 (legend-width legend))))
          (across (funcall make-across left (max right (+ left +least-width+))))
          (right (axis-to across))
-         (x-lines (wrapped x-label (- right left)))
+         (x-lines (wrap-text x-label (- right left)))
          (low (+ (marks-height across) (lines-height x-lines) (if x-lines 6 0)))
          (bottom (max (- height +margin+ low extra) (+ top +least-height+)
                       (+ top (legend-height legend)))))

@@ -15,8 +15,8 @@
 
 (defun plan-row (label words width least)
   "Return a row at least LEAST pixels high on a page of WIDTH. WORDS is a list of strings."
-  (let ((label (wrapped label (* 32/100 width)))
-        (words (loop for text in words append (wrapped text (* 34/100 width)))))
+  (let ((label (wrap-text label (* 32/100 width)))
+        (words (loop for text in words append (wrap-text text (* 34/100 width)))))
     (make-row label words
               (+ 8 (max least (lines-height label) (lines-height words))))))
 
@@ -48,7 +48,7 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
            (top (+ (heading-bottom heading) 12))
            (bottom (+ 4 (stack-rows rows (+ top 4))))
            (bottom (if rows bottom (+ top 60)))
-           (x-lines (wrapped x-label (- right left))))
+           (x-lines (wrap-text x-label (- right left))))
       (make-table :heading heading :across across :rows rows :x-lines x-lines
                   :left left :right right :top top :bottom bottom
                   :width (ceiling (+ right (max 16 (+ 14 words-width)) +margin+))
@@ -88,7 +88,7 @@ interval, any of which may be NIL, and what else is said of it."
   (check-argument difference-chart row (and (consp row) (ignore-errors (<= 2 (length row) 5)))
                   "a list (label estimate low high words)")
   (destructuring-bind (label estimate &optional low high words) row
-    (list (name-text label) (exact estimate) (exact low) (exact high) words)))
+    (list (name-text label) (as-rational estimate) (as-rational low) (as-rational high) words)))
 
 (defun signed-text (value percent)
   (concatenate 'string (if (and value (plusp value)) "+" "")
@@ -156,8 +156,8 @@ an interval."
                        (typep (second row) 'sequence))
                   "a list (label numbers middle low high)")
   (destructuring-bind (label numbers &optional middle low high) row
-    (list (name-text label) (remove nil (map 'list #'exact numbers))
-          (exact middle) (exact low) (exact high))))
+    (list (name-text label) (remove nil (map 'list #'as-rational numbers))
+          (as-rational middle) (as-rational low) (as-rational high))))
 
 (defun group-entry (group middle-label)
   (destructuring-bind (label numbers middle low high) group

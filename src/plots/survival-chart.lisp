@@ -21,13 +21,13 @@ which somebody left, TIMES those at which anybody did."
                        (time-p (first step)) (probability-p (second step)))
                   "a list (time survival low high), with a time from 0 and a survival from 0 to 1")
   (destructuring-bind (time survival &optional low high) step
-    (mapcar #'exact (list time survival low high))))
+    (mapcar #'as-rational (list time survival low high))))
 
 (defun checked-times (times)
   (check-argument survival-chart times
                   (and (typep times 'sequence) (every #'time-p times))
                   "a sequence of times from 0")
-  (map 'list #'exact times))
+  (map 'list #'as-rational times))
 
 (defun checked-curve (name index &key steps censored times)
   (make-curve (name-text name) index
@@ -49,7 +49,7 @@ which somebody left, TIMES those at which anybody did."
 (defun step-at (time curve)
   (find time (curve-steps curve) :key #'first :test #'>= :from-end t))
 
-(defun known-p (curve)
+(defun has-data-p (curve)
   "True if there is something to show of CURVE."
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
@@ -68,7 +68,7 @@ which somebody left, TIMES those at which anybody did."
         collect (axis-place (if next (first next) end) (plane-across plane))
         collect y))
 
-(defun backward (points)
+(defun reverse-points (points)
   "Return POINTS, x y ..., from the last to the first."
   (loop for (y x) on (reverse points) by #'cddr
         collect x
@@ -88,7 +88,7 @@ time END."
       (loop for (end . steps) in (bands curve)
             do (draw-lines canvas draw-gcontext*
                            (append (stairs steps end #'third plane)
-                                   (backward (stairs steps end #'fourth plane)))
+                                   (reverse-points (stairs steps end #'fourth plane)))
                            :fill-p t)))))
 
 (defun draw-censored (canvas curve plane)
@@ -113,7 +113,7 @@ time END."
                         (axis-place (second (step-at time curve)) (plane-upward plane)))))
 
 (defun draw-curves (canvas curves plane)
-  (let ((known (remove-if-not #'known-p curves)))
+  (let ((known (remove-if-not #'has-data-p curves)))
     (dolist (curve known) (draw-bands canvas curve plane))
     (dolist (curve known)
       (with-look ((curve-index curve) 1.8)
@@ -157,14 +157,14 @@ other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
                        (lambda (from to)
                          (axis-across ends from to nil :least (risk-width curves) :inset 8))
                        (axis-upward '() t '(0 1))
-                       (mapcar (lambda (curve) (legend-name (curve-name curve) (known-p curve)))
+                       (mapcar (lambda (curve) (legend-name (curve-name curve) (has-data-p curve)))
                                curves)
                        :extra (if (some #'curve-times curves)
                                   (+ 10 (* +text-step+ (1+ (length curves))))
                                   0)
                        :least-left (+ +margin+ +sample-width+ 14 (/ (risk-width curves) 2))
                        options)))
-    (plane-svg plane (some #'known-p curves)
+    (plane-svg plane (some #'has-data-p curves)
                (lambda (canvas)
                  (draw-curves canvas curves plane)
                  (when (some #'curve-times curves)

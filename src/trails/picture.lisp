@@ -11,7 +11,7 @@
   "Lists (outcome marker color width dashes words), in the order of the legend, in which ways are
 drawn, too: so those that failed, of which one wants to know, lie above others.")
 
-(defun look-of (way)
+(defun outcome-look (way)
   (rest (assoc (way-outcome way) *outcome-looks* :test #'string=)))
 
 (defun ways-of-outcome (outcome ways)
@@ -30,7 +30,7 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
         (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-way (canvas way)
-  (let ((look (look-of way)))
+  (let ((look (outcome-look way)))
     (dolist (points (pieces-in-pixels (way-pieces way)))
       (when (cddr points) (draw-line-of-way canvas points look)))))
 
@@ -40,7 +40,7 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
   "Draw arrowheads on WAYS, as many as have room on all of them together."
   (draw-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
-                                                   :color (second (look-of way))))))
+                                                   :color (second (outcome-look way))))))
 
 (defun robot-at-p (snapshot x y)
   "True if a robot in SNAPSHOT is at X, Y."
@@ -61,7 +61,8 @@ which says so itself."
                                           (mapcar (lambda (at) (round at 1/10)) point))))
 
 (defun draw-jumps (canvas way)
-  (draw-jump-dots canvas (jumps-of (pieces-in-pixels (way-pieces way))) (second (look-of way))))
+  (draw-jump-dots canvas (jumps-of (pieces-in-pixels (way-pieces way)))
+                  (second (outcome-look way))))
 
 (defun draw-marker-of (canvas look x y)
   (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
@@ -70,7 +71,7 @@ which says so itself."
   (let ((piece (first (last (way-pieces way)))))
     (when piece
       (destructuring-bind (x . y) (first (last piece))
-        (draw-marker-of canvas (look-of way) (to-pixels x) (to-pixels y))))))
+        (draw-marker-of canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
   "Draw WAYS so faint that many can be told apart, above the dots where robots were put elsewhere."
@@ -129,7 +130,7 @@ and things where these end."
          :more (bundle-entries snapshot ways what)
          :legend (list :opacity (map-opacity in-color)) look))
 
-(defun ways-in (part ways)
+(defun ways-in-part (part ways)
   "Return those of WAYS of which something is in PART (left top right bottom), in cells; all if that
 is NIL."
   (if part
@@ -139,7 +140,7 @@ is NIL."
                        ways))
       ways))
 
-(defun unseen-words (what all ways)
+(defun not-shown-text (what all ways)
   "Return a sentence that says of how many, each a WHAT, there are none in WAYS of ALL; or none."
   (flet ((count-in (ways) (length (remove-duplicates (mapcar #'way-trial ways)))))
     (let ((unseen (- (count-in all) (count-in ways))))
@@ -157,11 +158,11 @@ truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
     (check-map-options operator :title title :layers layers :scale scale)
     (let* ((snapshot (in-part snapshot part operator))
            (all (funcall ways-of))
-           (ways (ways-in part all)))
-      (save-svg (telling-what-breaks
+           (ways (ways-in-part part all)))
+      (save-svg (reporting-broken-graphics
                   (bundle-text snapshot ways what
                                :title (or title own-title)
                                :subtitle (concatenate 'string subtitle
-                                                      (unseen-words what all ways))
+                                                      (not-shown-text what all ways))
                                :layers layers :in-color in-color :scale scale))
                 file kind))))

@@ -37,7 +37,7 @@ those of SIMULATION."
 pieces of its way, moments that were seen, and the moments OWN with their places. Signals
 WRONG-ARGUMENT if these are of robots that are not there."
   (let ((trails '()) (placed '()))
-    (multiple-value-bind (watch seen) (moments-watcher)
+    (multiple-value-bind (watch seen) (make-moments-watcher)
       (flet ((look (simulation)
                (setf trails (note-places simulation trails))
                (funcall watch simulation)
@@ -50,7 +50,7 @@ WRONG-ARGUMENT if these are of robots that are not there."
            (values (take-snapshot (simulation-world (current-simulation)))
                    (loop for trail in (reverse (note-places (current-simulation) trails))
                          collect (cons (robot-name (trail-robot trail)) (pieces-along trail)))
-                   (append (funcall seen) (remarked-moments journal until))
+                   (append (funcall seen) (moments-in-remarks journal until))
                    (reverse placed)))
          journal :until until :observer #'look :beginning #'look)))))
 
@@ -68,7 +68,7 @@ WRONG-ARGUMENT if these are of robots that are not there."
     (draw-way-lines canvas (loop for (position . pieces) in moved
                                  collect (make-way-line position pieces)))
     (draw-way-marks canvas (loop for (position (x y)) in moved
-                                 collect (list 'draw-start x y (turn-ink position))))))
+                                 collect (list 'draw-start x y (nth-ink position))))))
 
 (defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
 
@@ -87,7 +87,7 @@ WRONG-ARGUMENT if these are of robots that are not there."
   "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
   (sample-of-name (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
-    (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (turn-ink position) position)))
+    (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (nth-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
   "Return the entries of the legend for the robots that are to be seen in SNAPSHOT, or whose WAYS
@@ -166,7 +166,7 @@ the others."
 (defun run-picture-text (snapshot ways moments &key limit title subtitle layers in-color scale)
   "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
   (multiple-value-bind (spots notes)
-      (spots-and-notes-in (snapshot-part snapshot) (in-brief moments) limit
+      (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
                           (and (rest ways) t)
                           ;; Where the rings around two places would be one.
                           (/ (* 2 +ring-radius+) (drawn-scale scale snapshot layers)))
@@ -189,7 +189,7 @@ the others."
   (check-kinds 'save-run-picture kinds)
   (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
-                   (shown-end 'save-run-picture journal until)))
+                   (checked-end-tick 'save-run-picture journal until)))
 
 (addition save-run-picture)
 (define-with-keywords save-run-picture
@@ -218,9 +218,9 @@ REPLAY does, and MISUSE without the program that PNG needs or if no journal is k
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
     (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))
-      (save-svg (telling-what-breaks
+      (save-svg (reporting-broken-graphics
                   (run-picture-text (in-part snapshot part 'save-run-picture) ways
-                                    (in-order (append (of-kinds kinds seen) own))
+                                    (sort-moments (append (moments-of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
                                     :subtitle (and anyway (repeated-words journal))
                                     :in-color in-color :scale scale))

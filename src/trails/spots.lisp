@@ -12,7 +12,7 @@
   (y 0 :type real :read-only t)
   (number 0 :type fixnum))
 
-(defstruct (happening (:constructor make-happening (spot words weight)) (:copier nil))
+(defstruct (moment-group (:constructor make-moment-group (spot words weight)) (:copier nil))
   "That at SPOT, or nobody knows where, at the ticks of MOMENTS, the latest first, there was what
 WORDS say."
   (spot nil :type (or null spot) :read-only t)
@@ -25,7 +25,7 @@ WORDS say."
                                (< (abs (- (moment-y moment) (spot-y spot))) reach)))
            spots))
 
-(defun happenings-of (moments several-p reach)
+(defun group-moments (moments several-p reach)
   "Return MOMENTS as happenings: what is nearer than REACH metres to each other is at one spot.
 SEVERAL-P: say of which robot each is."
   (let ((spots '()) (happenings '()))
@@ -37,21 +37,21 @@ SEVERAL-P: say of which robot each is."
                                          spots)))))
              (words (moment-words moment several-p))
              (happening (or (find-if (lambda (other)
-                                       (and (eq spot (happening-spot other))
-                                            (string= words (happening-words other))))
+                                       (and (eq spot (moment-group-spot other))
+                                            (string= words (moment-group-words other))))
                                      happenings)
-                            (first (push (make-happening spot words (moment-weight moment))
+                            (first (push (make-moment-group spot words (moment-weight moment))
                                          happenings)))))
-        (push moment (happening-moments happening))))))
+        (push moment (moment-group-moments happening))))))
 
-(defun matters-more-p (one other)
-  (if (= (happening-weight one) (happening-weight other))
-      (> (length (happening-moments one)) (length (happening-moments other)))
-      (< (happening-weight one) (happening-weight other))))
+(defun more-important-p (one other)
+  (if (= (moment-group-weight one) (moment-group-weight other))
+      (> (length (moment-group-moments one)) (length (moment-group-moments other)))
+      (< (moment-group-weight one) (moment-group-weight other))))
 
 (defun number-spots (happenings)
   "Number the spots of HAPPENINGS, in order. Return them."
-  (let ((spots (remove-duplicates (remove nil (mapcar #'happening-spot happenings))
+  (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot happenings))
                                   :from-end t)))
     (loop for spot in spots for number from 1 do (setf (spot-number spot) number))
     spots))
@@ -64,13 +64,13 @@ SEVERAL-P: say of which robot each is."
     (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
-(defun note-of (happening most)
+(defun group-note (happening most)
   "Return a list of the number of the spot of HAPPENING, if it has one, and a text, with no more
 than MOST ticks, or all if it is NIL."
-  (list (and (happening-spot happening) (spot-number (happening-spot happening)))
+  (list (and (moment-group-spot happening) (spot-number (moment-group-spot happening)))
         (format nil "~A: ~A"
-                (ticks-text (sort (mapcar #'moment-tick (happening-moments happening)) #'<) most)
-                (happening-words happening))))
+                (ticks-text (sort (mapcar #'moment-tick (moment-group-moments happening)) #'<) most)
+                (moment-group-words happening))))
 
 (defparameter *kind-words*
   '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
@@ -99,7 +99,7 @@ than MOST ticks, or all if it is NIL."
   :documentation "What stands before why a plan failed.")
 (defconstant +longest-reason+ 40 "How many characters the reason has at most.")
 
-(defun brief-reason (reason)
+(defun short-reason (reason)
   "Return REASON, why a plan failed, in a few words, without code."
   (let* ((prefix "Plan failure ")
          (own-p (eql 0 (search prefix reason)))
@@ -108,7 +108,7 @@ than MOST ticks, or all if it is NIL."
          (second (and own-p (position #\: words :start (min 1 (length words))))))
     (cut (string-trim " :" (subseq words 0 second)) +longest-reason+)))
 
-(defun in-brief (moments)
+(defun abridge-failures (moments)
   "Return MOMENTS with what failed in few words, and why only once."
   (let ((told '()))
     (flet ((brief (moment)
@@ -116,15 +116,15 @@ than MOST ticks, or all if it is NIL."
                     (why (and at (list (moment-robot moment) (subseq text at)))))
                (cond ((not (and at (member (moment-kind moment) '(:plan :part)))) moment)
                      ((and (eq :plan (moment-kind moment)) (member why told :test #'equal))
-                      (with-text moment (format nil "~Afailed by that" (subseq text 0 at))))
+                      (moment-with-text moment (format nil "~Afailed by that" (subseq text 0 at))))
                      (t (push why told)
-                        (with-text moment
+                        (moment-with-text moment
                           (format nil "~A~A~A" (subseq text 0 at) +reason-mark+
-                                  (brief-reason (subseq text
+                                  (short-reason (subseq text
                                                         (+ at (length +reason-mark+)))))))))))
       (mapcar #'brief moments))))
 
-(defun with-text (moment text)
+(defun moment-with-text (moment text)
   (make-moment (moment-tick moment) (moment-kind moment) text (moment-x moment) (moment-y moment)
                (moment-robot moment) (moment-code moment)))
 
@@ -132,19 +132,19 @@ than MOST ticks, or all if it is NIL."
   "Return the numbered spots of what happened at MOMENTS, and notes that tell of that, lists of a
 number or NIL and a text: of all if LIMIT is NIL, else of LIMIT at most, or of more if so many are a
 user's own. See HAPPENINGS-OF."
-  (let* ((all (stable-sort (happenings-of moments several-p reach) #'matters-more-p))
+  (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          ;; These are a user's own.
-         (own (count 0 all :key #'happening-weight))
+         (own (count 0 all :key #'moment-group-weight))
          (count (if limit (min (max limit own) (length all)) (length all)))
          (told (stable-sort (subseq all 0 count) #'<
                             :key (lambda (happening)
-                                   (reduce #'min (happening-moments happening)
+                                   (reduce #'min (moment-group-moments happening)
                                            :key #'moment-tick))))
          (spots (number-spots told)))
     (values spots
-            (append (mapcar (lambda (happening) (note-of happening (and limit 3))) told)
+            (append (mapcar (lambda (happening) (group-note happening (and limit 3))) told)
                     (not-shown-note "Not shown" (loop for happening in (nthcdr count all)
-                                                      append (happening-moments happening)))))))
+                                                      append (moment-group-moments happening)))))))
 
 ;;; On the map: an open ring where it was, around the thing that lies there, if one does, so that it
 ;;; can be seen; and beside it, where nothing else is, the number.
@@ -170,7 +170,7 @@ large that what lies right there, as what was let go of does, is within it."
              (if (< off (max +ring-radius+ (/ half 3))) (+ half off 3) 0))))
     (reduce #'max (snapshot-things snapshot) :key #'reach :initial-value +ring-radius+)))
 
-(defun boxes-to-spare (snapshot spots)
+(defun boxes-to-avoid (snapshot spots)
   "Return boxes around robots, spots and things: what no number should hide."
   (flet ((box (x y half) (box-around (to-pixels x) (to-pixels y) half)))
     (append (loop for robot in (snapshot-robots snapshot)
@@ -197,7 +197,7 @@ TAKEN."
            (every #'>= (subseq shown 2) (subseq box 2))
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
-(defun pulled-into (shown place)
+(defun move-inside (shown place)
   "Return PLACE, or what is nearest to it of where a number is wholly in the box SHOWN; the middle
 of one that is less wide or high."
   (let ((reach (1+ +number-radius+)))
@@ -213,13 +213,13 @@ and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
   (let ((places (places-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-place-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
-          (pulled-into shown (first places))))))
+          (move-inside shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
   "Draw a ring of RADIUS around X, Y, and TEXT, its number, at PLACE, with a line from there."
   (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
          (edge (around x y angle radius)))
-    (inked (black*)
+    (with-halo (black*)
       (draw-circle canvas x y radius nil)
       (draw-segments canvas draw-gcontext* (append edge place)))
     (draw-number canvas (first place) (second place) text)))
@@ -227,7 +227,7 @@ and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
 (defun draw-spots (canvas snapshot spots ways)
   "Draw SPOTS on the map of SNAPSHOT, the numbers rather not on the boxes WAYS. Return the boxes of
 the numbers."
-  (let ((spared (boxes-to-spare snapshot spots)) (boxes '()))
+  (let ((spared (boxes-to-avoid snapshot spots)) (boxes '()))
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
              (radius (ring-radius snapshot x y))

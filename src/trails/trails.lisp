@@ -54,7 +54,7 @@ counts."
 
 ;;; A way has a point for each tick. What is nearly straight needs only its ends.
 
-(defun off-line (point start end)
+(defun distance-from-line (point start end)
   "Return how far POINT is from the line from START to END, or from START if they are one."
   (destructuring-bind ((x . y) (x1 . y1) (x2 . y2)) (list point start end)
     (let* ((dx (- x2 x1)) (dy (- y2 y1)) (square (+ (* dx dx) (* dy dy)))
@@ -70,8 +70,8 @@ counts."
     (labels ((visit (start end)
                (let ((place nil) (most tolerance))
                  (loop for i from (1+ start) below end
-                       for off = (off-line (svref points i) (svref points start)
-                                           (svref points end))
+                       for off = (distance-from-line (svref points i) (svref points start)
+                                                     (svref points end))
                        when (> off most) do (setf place i most off))
                  (when place
                    (visit start place)
@@ -101,14 +101,14 @@ counts."
 (note-kind-of-file :trajectory (format nil "~{~A,~}" (subseq *trajectory-columns* 0 5))
                    "it is a table of where robots were; any program that reads CSV reads it")
 
-(defun number-as-text (number)
+(defun full-number-text (number)
   "Return NUMBER as any program reads it, to the last bit."
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
 
 (defun trajectory-row (robot tick)
   (printing-plainly ()
-    (append (list (number-as-text tick) (string-downcase (robot-name robot)))
-            (mapcar #'number-as-text
+    (append (list (full-number-text tick) (string-downcase (robot-name robot)))
+            (mapcar #'full-number-text
                     (list* (robot-x robot) (robot-y robot) (robot-angle robot)
                            (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
             (list (format nil "~{~A~^ ~}" (loop for hand across (robot-hands robot)
@@ -136,7 +136,7 @@ counts."
                   "the name of a file, such as \"run.csv\"; before each * ? and [ in it write \\\\")
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
-  (shown-end 'save-trajectory journal until)
+  (checked-end-tick 'save-trajectory journal until)
   (let ((known (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
                        (getf (journal-header journal) :robots))))
     (dolist (name robots)
