@@ -216,14 +216,14 @@
              (run:run-ticks 30))))
     (is-true (has-words-p (told '(rpl:whenever driver:robot-stopped* (print :heard))
                                 (lambda () (command:robot-turn rover 1 nil)))
-                          "robot-turn has ended. No plan has given it" "waits for robot-stopped*"
+                          "robot-turn has ended. No plan has issued it" "waits for robot-stopped*"
                           "(rpl-robot-turn angle) (wait-for robot-stopped*)"))
     (dolist (heard (list (told '(rpl:whenever driver:robot-place-input* (print :heard))
                                (lambda () (command:robot-turn rover 1 nil)))
                          (told '(rpl:pursue (rpl:whenever driver:robot-stopped* (print :heard))
                                  (rpl:seq (driver:rpl-robot-turn 1) (rpl:wait-time 20)))
                                (lambda ()))))
-      (is (not (search "No plan has given it" heard))))))
+      (is (not (search "No plan has issued it" heard))))))
 
 (test continuations.with-names-in-another-order-are-told-of
   (flet ((told (continuation)

@@ -152,7 +152,7 @@
                         "was rpl-robot-turn, which has ended"))
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:wait-for driver:robot-stopped*))))
-                        "has given none by a function such as rpl-robot-turn")))
+                        "has issued none by a function such as rpl-robot-turn")))
 
 (test plans.that-never-end-by-themselves-are-said-to
   (let ((words "does not end by itself: let it (return)") (driver:*plan-limit* 10))

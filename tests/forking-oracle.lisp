@@ -25,8 +25,8 @@
       (and (functionp object) (not (base:closure-p object)))
       (typecase object
         (ars-magna.ways::field (ars-magna.ways::field-lock object))
-        (tasks::node (eq :everybodys (tasks::node-whose object)))
-        (tasks::procedure (nth-value 1 (tasks::everybodys-code object))))))
+        (tasks::node (eq :shared (tasks::node-sharing object)))
+        (tasks::procedure (nth-value 1 (tasks::shared-code object))))))
 
 (defun replaced-slots (object)
   "Return the names of the slots of OBJECT in which nothing is ever altered; kinds say so of them."

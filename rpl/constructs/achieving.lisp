@@ -36,41 +36,41 @@
   (format stream "(~A) has ended, but that is not believed"
           (goal-text (failed-goal-operator failure) (failed-goal failure))))
 
-;;; Running. A frame of one of these remembers a pursuit.
+;;; Running. A frame of one of these remembers a goal-run.
 
-(defstruct (pursuit (:constructor make-pursuit (operator goal)) (:copier nil))
+(defstruct (goal-run (:constructor make-goal-run (operator goal)) (:copier nil))
   "That OPERATOR is being done for GOAL, an instance such as (on a b). VALUE is what came of it."
   (operator nil :type symbol :read-only t)
   (goal nil :read-only t)
   (value nil))
 
-(defun pursuit-form (pursuit)
-  (list (pursuit-operator pursuit) (pursuit-goal pursuit)))
+(defun goal-run-form (goal-run)
+  (list (goal-run-operator goal-run) (goal-run-goal goal-run)))
 
 (defun fail-goal (class task frame &rest arguments)
-  (let ((pursuit (frame-data frame)))
+  (let ((goal-run (frame-data frame)))
     (unwind task frame
             (failure-of (apply #'make-condition class
-                               :operator (pursuit-operator pursuit) :goal (pursuit-goal pursuit)
+                               :operator (goal-run-operator goal-run) :goal (goal-run-goal goal-run)
                                arguments)
                         task frame))))
 
 (defun enter-goal (goal values frame)
   (enter-application (goal-procedure goal) values frame))
 
-(defun pursue-goal (task frame)
-  (let ((pursuit (frame-data frame)))
+(defun run-goal (task frame)
+  (let ((goal-run (frame-data frame)))
     (multiple-value-bind (goal values)
-        (choose-goal (pursuit-operator pursuit) (pursuit-goal pursuit))
+        (choose-goal (goal-run-operator goal-run) (goal-run-goal goal-run))
       (if goal
           (enter-goal goal values frame)
           (fail-goal 'unknown-goal task frame
-                     :known (mapcar #'goal-pattern (goals-of (pursuit-operator pursuit))))))))
+                     :known (mapcar #'goal-pattern (goals-of (goal-run-operator goal-run))))))))
 
 (defun ask-belief (frame otherwise)
   "Begin the plan that says whether the goal of FRAME is believed; without one, let OTHERWISE be
 what it says. Return what a step returns."
-  (multiple-value-bind (goal values) (choose-goal 'belief (pursuit-goal (frame-data frame)))
+  (multiple-value-bind (goal values) (choose-goal 'belief (goal-run-goal (frame-data frame)))
     (if goal
         (enter-goal goal values frame)
         (values frame otherwise))))
@@ -85,20 +85,20 @@ BELIEF matches, the end of the plan counts as success. (CRAM's and XFRM's.)"
   (:parts (goal function (value-lambda goal scope)))
   (:steps
    (begin
-    (setf memory (make-pursuit 'achieve (funcall goal environment)))
+    (setf memory (make-goal-run 'achieve (funcall goal environment)))
     (next asked)
     (ask-belief frame nil))
    (asked
     (cond ((fluent-value (single-value value)) (values (frame-up frame) value))
           (t (next done)
-             (pursue-goal task frame))))
+             (run-goal task frame))))
    (done
-    (setf (pursuit-value memory) value)
+    (setf (goal-run-value memory) value)
     (next checked)
     (ask-belief frame t))
    (checked
     (if (fluent-value (single-value value))
-        (values (frame-up frame) (pursuit-value memory))
+        (values (frame-up frame) (goal-run-value memory))
         (fail-goal 'goal-not-achieved task frame)))))
 
 (define-construct perceive (goal)
@@ -110,9 +110,9 @@ ours.)"
   (:like achieve)
   (:steps
    (begin
-    (setf memory (make-pursuit 'perceive (funcall goal environment)))
+    (setf memory (make-goal-run 'perceive (funcall goal environment)))
     (next seen)
-    (pursue-goal task frame))
+    (run-goal task frame))
    (seen
     (next checked)
     (ask-belief frame value))
@@ -125,9 +125,9 @@ if none matches. (BELIEF of XFRM; the syntax is ours.)"
   (:like achieve)
   (:steps
    (begin
-    (setf memory (make-pursuit 'belief (funcall goal environment)))
+    (setf memory (make-goal-run 'belief (funcall goal environment)))
     (next answered)
-    (pursue-goal task frame))
+    (run-goal task frame))
    (answered (values (frame-up frame) value))))
 
 ;;; Looking.
@@ -137,7 +137,7 @@ if none matches. (BELIEF of XFRM; the syntax is ours.)"
                 ,@(loop for node in nodes
                         collect `(defmethod current-form ((node ,node) frame)
                                    (if (frame-data frame)
-                                       (pursuit-form (frame-data frame))
+                                       (goal-run-form (frame-data frame))
                                        (node-form node)))))))
   (define-current-forms achieve-node perceive-node belief-node))
 
@@ -146,5 +146,5 @@ if none matches. (BELIEF of XFRM; the syntax is ours.)"
   "Return the goals that TASK (default: the calling task) works for, innermost first: a list of
 lists such as (achieve (on a b)). Each serves the next. Goals of the tasks around TASK come last.
 (Ours.)"
-  (mapcar #'pursuit-form
-          (remove-if-not #'pursuit-p (mapcar #'frame-data (and task (frames-around task))))))
+  (mapcar #'goal-run-form
+          (remove-if-not #'goal-run-p (mapcar #'frame-data (and task (frames-around task))))))

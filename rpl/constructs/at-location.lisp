@@ -7,8 +7,7 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
-  "What keeps the plans of one runner from driving its robot away from each other's places. STAYS is
-a fluent: the stays under way."
+  "What keeps plans of one runner at their places. STAYS is a fluent: the stays under way."
   (valve (make-valve 'whereabouts) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
@@ -33,7 +32,7 @@ a fluent: the stays under way."
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))
 
 (defun others-gone (whereabouts)
-  "Return a fluent that is true while nobody stays but tasks that the one that asks is part of."
+  "Return a fluent that is true while no task stays but those that the current task is part of."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
                   (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
@@ -60,7 +59,7 @@ a fluent: the stays under way."
   attempts)
 
 (defun given-p (key form)
-  "True if FORM, an AT-LOCATION, has KEY, be it only with NIL."
+  "True if FORM, an AT-LOCATION, has KEY, even with NIL."
   (and (get-properties (rest (second form)) (list key)) t))
 
 (defun at-location-text (place there go attempts body)

@@ -78,8 +78,7 @@ evaporate the others. If all fail, fail with a composite failure."
 ;;;; One after the other
 
 (defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
-  "What is still to be tried, in ORDER: conses of a node and its environment; and the FAILURES so
-far, last first."
+  "What is left to try, in ORDER: conses (node . environment); and the FAILURES, last first."
   (order '() :type list)
   (failures '() :type list))
 
@@ -187,8 +186,7 @@ Succeed and fail as PAR does."
 ;;;; Some of several
 
 (defstruct (tally (:constructor make-tally (missing left)) (:copier nil))
-  "How many successes are MISSING, how many branches are LEFT that may bring them, and the VALUES
-and FAILURES so far, last first."
+  "How many successes are MISSING, how many branches are LEFT; VALUES and FAILURES, last first."
   (missing 0 :type fixnum)
   (left 0 :type fixnum)
   (values '() :type list)

@@ -28,8 +28,7 @@
       `(make-failing :form ',(form-as-written form)
                       :arguments ,(value-lambda `(list ,@arguments) scope))))
 
-;;; A handler runs in an environment of the failure, which is remembered meanwhile. To retry is to
-;;; leave for the body.
+;;; A handler runs in an environment of the failure. RETRY leaves the handler for the body.
 
 (defun handler-index (failure types)
   (position-if (lambda (type) (failure-matches-p failure type)) types))
@@ -79,8 +78,8 @@
 
 (defun doubt-code (code body form)
   "Warn if CODE, a class that FORM handles in BODY, is only how a command in BODY may end."
-  (let* ((command (find-call (lambda (form) (teller-of-code (first form) code)) body))
-         (fluent (and command (teller-of-code (first command) code))))
+  (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
+         (fluent (and command (fluent-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))
       (doubt-own-form form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
                             value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
@@ -141,7 +140,7 @@ BODY again. At the end of the handler the failure propagates. Return all values 
   (:like with-failure-handling))
 
 (define-construct retry ()
-  "In a handler of WITH-FAILURE-HANDLING: run its body anew."
+  "In a handler of WITH-FAILURE-HANDLING: run its body again."
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)

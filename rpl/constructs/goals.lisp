@@ -28,8 +28,7 @@
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun fits-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, a vector whose elements are at first itself, gets to hold
-what is in the holes."
+  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, gets what is in the holes."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -120,7 +119,7 @@ what is in the holes."
                       of variables (~2:*~(~A~) `(~(~A~) ,x ...))."
                  (goal-operator goal) (plain-name name)))))
 
-;;; Defining. A pattern that matches the same as one defined before means that one.
+;;; Defining. A pattern that matches the same as one defined before redefines that one.
 
 (defun goal-name (operator pattern shape count)
   (let ((old (find-if (lambda (goal)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; The clauses of a policy are plans without a name. All take the policy's parameters, and before
-;;; them its use: what is remembered from clause to clause while it is in force once.
+;;; The clauses of a policy are plans without a name. Their first parameter is the policy's use,
+;;; which keeps what clauses share while it is in force; then come the policy's own parameters.
 
 (addition policy-p)
 (define-record (policy (:constructor %make-policy (name lambda-list init check recover clean-up)))
@@ -58,7 +58,7 @@
   (memory '() :type list))
 
 (defun begin-use (policy arguments)
-  "Return a new use of POLICY, or what is called so, with ARGUMENTS. Signals WRONG-ARGUMENT if it
+  "Return a new use of POLICY, or the one of that name, with ARGUMENTS. Signals WRONG-ARGUMENT if it
 does not take these."
   (let* ((policy (find-policy policy))
          (parameters (policy-lambda-list policy))

@@ -23,17 +23,17 @@
 (defmethod withdraw (task (joining joining))
   (unwatch (joining-watcher joining)))
 
-(defmethod hinderers ((joining joining))
+(defmethod tasks-awaited ((joining joining))
   (let ((target (joining-target joining)))
     (and (under-way-p target) (list target))))
 
-(defun hear-end (watcher value trouble)
+(defun end-join (watcher value trouble)
   (declare (ignore value trouble))
   (unwatch watcher)
   (wake (watcher-client watcher) nil))
 
 (defun await-end (target task)
-  (let ((watcher (make-watcher (fl-funcall 'over-p (task-status target)) #'hear-end task)))
+  (let ((watcher (make-watcher (fl-funcall 'over-p (task-status target)) #'end-join task)))
     (watch watcher)
     (park task (make-joining target watcher))
     (report-circle task)))
@@ -57,8 +57,8 @@ evaporated or was left (CRAM's; the last is ours)."
 ;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
 
 (defstruct (order (:constructor make-order (earlier later)) (:copier nil))
-  "That the task LATER starts only when EARLIER, a task or fluent, is over, or true. WATCHER hears
-of that."
+  "That the task LATER starts only when EARLIER, a task or fluent, is over, or true. WATCHER waits
+for that."
   (earlier nil :type (or task fluent) :read-only t)
   (later nil :type task :read-only t)
   (watcher nil :type (or null watcher)))
@@ -69,7 +69,7 @@ of that."
         (format nil "the end of ~A" (task-label earlier))
         (awaited-text earlier))))
 
-(defmethod hinderers ((gate gate))
+(defmethod tasks-awaited ((gate gate))
   (let ((tasks (mapcar #'order-earlier (gate-holds gate))))
     (and (every (lambda (task) (and (task-p task) (under-way-p task))) tasks)
          tasks)))
@@ -79,7 +79,7 @@ of that."
     (unwatch (shiftf (order-watcher order) nil))
     (release-hold (order-later order) order)))
 
-(defun hear-earlier (watcher value trouble)
+(defun note-earlier-end (watcher value trouble)
   (declare (ignore value))
   (destructuring-bind (order . task) (watcher-client watcher)
     (cond ((null trouble) (lift-order order))
@@ -98,7 +98,7 @@ of that."
   (let ((fluent (order-fluent order)))
     (unless (fluent-value fluent)
       (hold-back (order-later order) order)
-      (setf (order-watcher order) (make-watcher fluent #'hear-earlier (cons order task)))
+      (setf (order-watcher order) (make-watcher fluent #'note-earlier-end (cons order task)))
       (watch (order-watcher order)))))
 
 (defun checked-orders (pairs task)

@@ -3,8 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun checked-target (target task operator what)
-  "Return TARGET, another task for which TASK does OPERATOR: WHAT says it in words. Signals
-WRONG-ARGUMENT and MISUSE."
+  "Return TARGET, for OPERATOR of TASK, WHAT in words. Signals WRONG-ARGUMENT and MISUSE."
   (unless (task-p target)
     (reject-argument operator 'target target "a task, such as the name of a :tag"))
   (check-together task target)
@@ -41,11 +40,10 @@ of TASK is :blocked meanwhile (CRAM's, of 2009)."
           (status keyword :suspended)
           (body node (body-code body scope))))
 
-;;;; On being kept from running
+;;;; Reacting to suspension
 
 (defun do-reaction (reaction task frame)
-  "Run REACTION, a leaf, for TASK at FRAME: with the task variables that are bound there. What goes
-wrong in it becomes a message."
+  "Run REACTION, a leaf, with the task variables of TASK at FRAME. Its errors become messages."
   (let ((*speaking-task* task)
         (*asker* task)
         (innermost (shiftf (task-frame task) frame)))
@@ -68,7 +66,7 @@ the robot. An error in REACTION is a message and has no other effect. Return the
    (begin
     (next inside)
     (let ((reaction reaction))
-      (setf memory (make-heed (lambda (task frame) (do-reaction reaction task frame)))))
+      (setf memory (make-block-hook (lambda (task frame) (do-reaction reaction task frame)))))
     (enter body environment frame))
    (inside (values (frame-up frame) value))))
 
@@ -85,7 +83,7 @@ when it may run again, it starts from the beginning. Return its value (CRAM's)."
   (:steps
    (begin
     (next inside)
-    (setf memory (make-heed #'unwind-body))
+    (setf memory (make-block-hook #'unwind-body))
     (start-branch body task environment 0 (task-level task))
     (await-parts task))
    (inside (values (frame-up frame) value)))

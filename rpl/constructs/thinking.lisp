@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-;;; A thought is a wait that there is only where thinking is charged for. Of others of the robot's
-;;; plans it keeps none from going on, or all.
+;;; A thought is a wait, made only where thinking is charged for. The robot's other plans go on
+;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
   "Return in ticks what SPAN of UNIT is, which OPERATOR costs. Signals WRONG-ARGUMENT."

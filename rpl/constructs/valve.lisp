@@ -1,4 +1,4 @@
-;;;; valve.lisp -- valves: who owns a resource, and who waits for it (manual D).
+;;;; valve.lisp -- valves: the owner of a resource, and the tasks that wait for it (manual D).
 
 (in-package :ars-magna.rpl.constructs)
 
@@ -64,7 +64,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 
 (addition make-valve)
 (defun make-valve (name)
-  "Return a new valve called NAME, that nobody owns."
+  "Return a new valve called NAME without an owner."
   (%make-valve name))
 
 (addition valve-owner)
@@ -117,7 +117,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
           (min 2 (length (claim-valves claim)))
           (mapcar #'valve-text (claim-valves claim))))
 
-;;; Who may have what.
+;;; Granting.
 
 (defun rivals (valve task)
   "Return the claims that hold VALVE and are of tasks that TASK is no part of, innermost first."
@@ -128,13 +128,13 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   (and (> (claim-priority claim) (claim-priority rival))
        (not (evaporating-p (claim-task rival)))))
 
-;; Who does not run as it has lost a valve takes none: it might be from who has that.
+;; A task that is suspended as it has lost a valve takes none: perhaps from the one that has it.
 (defun available-p (valve claim)
   "True if CLAIM may take VALVE, from its rivals if need be."
   (let ((rivals (rivals valve (claim-task claim))))
     (or (null rivals)
         (and (every (lambda (rival) (stronger-p claim rival)) rivals)
-             (null (those-who-took-from (claim-task claim)))))))
+             (null (all-preemptors (claim-task claim)))))))
 
 (defun grantable-p (claim)
   (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
@@ -145,8 +145,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
     (block-task (claim-task claim) t)))
 
 (defun take (valve claim)
-  "Grant VALVE to CLAIM. Return the claims that lose it, the outermost first, each as a list of
-VALVE and the rival."
+  "Grant VALVE to CLAIM. Return lists (VALVE rival) of the claims that lose it, outermost first."
   (let* ((holders (holders valve))
          (rivals (rivals valve (claim-task claim)))
          (outer (find-if-not (lambda (holder) (member holder rivals :test #'eq)) holders)))
@@ -254,7 +253,7 @@ VALVE and the rival."
     (unblock-task (claim-task claim) t)
     (unless (claim-lost claim) (admit-parts (claim-task claim)))))
 
-;; The one who has it now has no parts yet, and no less priority than those behind: no other can.
+;; The new owner has no parts yet, and at least the priority of those behind: no other can have it.
 (defun grant-waiting (valve)
   "Grant the first claim that waits for VALVE and can be granted, or give VALVE back to its losers."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
@@ -272,7 +271,7 @@ VALVE and the rival."
     (dolist (valve valves)
       (setf (valve-claims valve) (without-claim (valve-claims valve) claim))
       (regain valve claim))
-    ;; Who is granted one of them may have got others by that, which nobody else can have then.
+    ;; A claim that is granted one of them may have got others with it, which are taken then.
     (loop for valve in valves
           for owner in (mapcar (lambda (valve) (first (valve-claims valve))) valves)
           when (eq owner (first (valve-claims valve)))
@@ -285,16 +284,16 @@ VALVE and the rival."
   (let ((rival (first (last (rivals valve task)))))
     (and rival (claim-task rival))))
 
-(defmethod hinderers ((claim claim))
+(defmethod tasks-awaited ((claim claim))
   (loop for valve in (claim-valves claim)
         unless (available-p valve claim)
           collect (outermost-rival valve (claim-task claim))))
 
-(defmethod hindrance-text ((claim claim))
-  (let ((names (remove-duplicates (mapcar #'task-label (hinderers claim)) :test #'string=)))
+(defmethod stuck-wait-text ((claim claim))
+  (let ((names (remove-duplicates (mapcar #'task-label (tasks-awaited claim)) :test #'string=)))
     (format nil "the ~A that ~{~A~^ and ~} ~:[has~;have~]" (awaited-text claim) names
             (rest names))))
 
-(defmethod taken-from (task (claim claim))
+(defmethod preemptors (task (claim claim))
   (remove nil (mapcar (lambda (valve) (outermost-rival valve (claim-task claim)))
                       (claim-lost claim))))

@@ -73,7 +73,7 @@ number up to 1e15. If it is 0 or less, do not wait."
     (setf (task-signal task) (failure-of trouble task (task-frame task))))
   (wake task value))
 
-(defun wait-until-heard (task condition)
+(defun wait-for-change (task condition)
   "Let TASK wait until CONDITION, a fluent that is false, changes. Another object never does."
   (if (fluent-p condition)
       (let ((watcher (make-watcher condition #'wake-waiter task)))
@@ -109,14 +109,14 @@ TIMEOUT is a number up to 1e15."
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
                (when timeout (start-timer task timeout))
-               (wait-until-heard task fluent)
+               (wait-for-change task fluent)
                +parked+))))
    (waiting (values (frame-up frame) value))))
 
 ;;;; Reacting to whatever happens
 
-(defun hear (watcher value trouble)
-  "Let the task that WATCHER is for start its body, or remember that it is to."
+(defun count-event (watcher value trouble)
+  "Let the task of WATCHER run the body of its WHENEVER, or count an event to be answered later."
   (declare (ignore value))
   (let* ((task (watcher-client watcher))
          (frame (task-frame task)))
@@ -126,12 +126,12 @@ TIMEOUT is a number up to 1e15."
         (setf (task-signal task) (failure-of trouble task frame)))
       (wake task nil))))
 
-(defun listen-to (condition task)
-  "Return by what TASK hears of CONDITION, its SOURCE of events: a watcher; CONDITION itself if that
-is a view that misses nothing; NIL if it is no fluent, and cannot change."
+(defun make-event-source (condition task)
+  "Return the source of events of CONDITION for TASK: a watcher; CONDITION itself if that is a view
+that counts each event; NIL if it is no fluent, and cannot change."
   (cond ((not (fluent-p condition)) nil)
-        ((misses-nothing-p condition) condition)
-        (t (let ((watcher (make-watcher condition #'hear task)))
+        ((counts-each-event-p condition) condition)
+        (t (let ((watcher (make-watcher condition #'count-event task)))
              (watch watcher)
              watcher))))
 
@@ -143,12 +143,11 @@ is a view that misses nothing; NIL if it is no fluent, and cannot change."
              (park task (watcher-fluent source))))
         ((null source) (wait-for-no-fluent task))
         ((fluent-value source) (give-way task))
-        (t (wait-until-heard task source)))
+        (t (wait-for-change task source)))
   +parked+)
 
-(defun answer-events (source missed)
-  "Note that the body will answer the events that SOURCE has, all, or one if MISSED is :all or a
-view counts them. Signals WRONG-ARGUMENT."
+(defun take-events (source missed)
+  "Take events from SOURCE: one if MISSED is :all, else all. Signals WRONG-ARGUMENT."
   (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
   (cond ((not (watcher-p source)))
         ((eq missed :all) (decf (watcher-pending source)))
@@ -186,14 +185,14 @@ each event."
   (:steps
    (begin
     (let ((condition (funcall condition environment)))
-      (setf memory (listen-to condition task))
+      (setf memory (make-event-source condition task))
       (cond ((fluent-value condition) (next reacting) (enter body environment frame))
             (t (next waiting) (await-event task memory)))))
    (reacting
     (next waiting)
     (await-event task memory))
    (waiting
-    (answer-events memory (funcall missed environment))
+    (take-events memory (funcall missed environment))
     (next reacting)
     (enter body environment frame)))
   (:unwind

@@ -19,7 +19,7 @@
     (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")
     (make-claim task valves priority)))
 
-(defun press (claim task)
+(defun claim-or-queue (claim task)
   "Let TASK make CLAIM. True if it has it at once; otherwise it waits."
   (cond ((grantable-p claim) (grant claim) t)
         (t (queue-up claim)
@@ -54,7 +54,7 @@ If tasks wait for each other's valves, an error message says so (manual D; prior
     (next granted)
     (destructuring-bind (priority . valves) (funcall request environment)
       (setf memory (checked-claim priority valves task)))
-    (if (press memory task) (values frame nil) +parked+))
+    (if (claim-or-queue memory task) (values frame nil) +parked+))
    (granted
     (next inside)
     (enter body environment frame))

@@ -17,8 +17,8 @@
   "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
   (name nil t "the name that the fluent was created with; of a network, its operator" :addition)
   (now nil t :writable)
-  (looked nil (member nil :once :always)
-          "whether somebody has looked at it: see LOOKED-AT-P" :writable)
+  (reading nil (member nil :once :always)
+          "whether it was read: see WAS-READ-P" :writable)
   (home nil (or null home) :writable)
   (height 0 fixnum :writable)
   (sets 0 fixnum "how often it was set to another value: see operators.lisp" :writable)
@@ -37,7 +37,7 @@
   (links '() list :writable)
   (trouble nil (or null condition)
            "the error that it met when it was last computed, or NIL" :writable)
-  (queued nil (member nil t :pulsed) "how it is to be computed anew, NIL if it is not" :writable)
+  (queued nil (member nil t :pulsed) "how it is to be recomputed, NIL if it is not" :writable)
   (successor nil (or null derived) :writable))
 
 (define-record (watcher (:constructor make-watcher (fluent wake client)))
@@ -45,15 +45,15 @@
 value, and NIL or the error met in computing it."
   (fluent nil fluent "the fluent that the watcher watches" :export)
   (wake #'list function
-        "the function that is called when the fluent is heard to be true: see WATCHER" :export)
+        "the function that is called when the fluent becomes true: see WATCHER" :export)
   (client nil t "on whose behalf the watcher watches, such as a task" :export)
-  (pending 0 fixnum "how many events the watcher has been told of that nobody has
-answered" :writable :export)
+  (pending 0 fixnum "how many events the watcher has received that were not handled
+yet" :writable :export)
   (previous nil (or null watcher) :writable)
   (next nil (or null watcher) :writable))
 
 (define-record (link (:constructor make-link (source dependent)))
-  "Says that DEPENDENT is to be computed anew when SOURCE changes."
+  "Says that DEPENDENT is to be recomputed when SOURCE changes."
   (source nil fluent)
   (dependent nil derived)
   (previous nil (or null link) :writable)
@@ -64,8 +64,8 @@ answered" :writable :export)
                                                test key)))
   "A network that remembers: see operators.lisp."
   (bases '() list "the base fluents that it is of")
-  (memory nil t "what was the case when it was read last: how often its bases were set or pulsed
-and, of a view of changes, what TEST compares, KEY of the value, behind it in a cons" :writable)
+  (memory nil t "its state when it was read last: how often its bases were set or pulsed; of a
+view of changes, a cons of that and KEY of the value" :writable)
   (always-p nil t "each event counts")
   (test nil (or null function))
   (key nil (or null function)))
@@ -80,7 +80,7 @@ and, of a view of changes, what TEST compares, KEY of the value, behind it in a 
   (let ((twin (%make-fluent (fluent-name fluent) (fluent-now fluent))))
     (setf (fluent-sets twin) (fluent-sets fluent)
           (fluent-pulses twin) (fluent-pulses fluent)
-          (fluent-looked twin) (fluent-looked fluent))
+          (fluent-reading twin) (fluent-reading fluent))
     twin))
 
 (defmethod fresh-twin ((fluent derived) realm)
@@ -96,7 +96,7 @@ and, of a view of changes, what TEST compares, KEY of the value, behind it in a 
 
 (declaim (inline home-of))
 (defun home-of (fluent)
-  "Return where FLUENT is heard, or NIL: it has no home, or one whose plans have all gone for good."
+  "Return the home of FLUENT; NIL if it has none, or one that is closed."
   (let ((home (fluent-home fluent)))
     (if (and home (home-closed-p home)) nil home)))
 
@@ -167,12 +167,12 @@ list that (LIST-OF member), a structure IN, keeps in its slots FIRST-TYPE and LA
 (define-membership watcher watcher-fluent :join join-watchers :leave leave-watchers)
 (define-membership link link-source :join join-links :leave leave-links)
 
-;;; Of a part of which the robot has several, such as a camera, a variable holds a vector of
-;;; fluents. That vector is true, always, and so never what a condition means.
+;;; For parts of which the robot has several, such as cameras, a variable holds a vector of
+;;; fluents. A vector is always true, so a condition never means it.
 
 (defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
-  "What the variables hold that are known to, a list: the name of a kind of part if a vector of
-fluents, one for each part, or T if a fluent; and whether that is pulsed, and never set.")
+  "Lists by variable: T if it holds a fluent, or the name of a kind of part if it holds a vector of
+fluents, one for each part; and whether these are pulsed and never set.")
 
 (defun declare-fluent-variable (name &key (kind t) pulsed-p)
   "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string;
@@ -213,6 +213,6 @@ and, if PULSED-P is true, that these are never set."
         when (string-equal name variable) return variable))
 
 (defun robots-fluent-p (fluent)
-  "True if FLUENT is called like a known variable, or an element of one: the robot changes it."
+  "True if FLUENT has the name of a known variable, or of an element of one: the robot sets it."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
     (and (find-known (subseq name 0 space)) t)))

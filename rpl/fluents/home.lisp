@@ -16,35 +16,31 @@
   (highest 0 :type fixnum))
 
 (define-record (home (:constructor make-home ()))
-  "Where changes are heard."
+  "Where changes of fluents are applied, by one thread at a time."
   (holder nil t "the thread that has it, or NIL" :writable)
   (backlog (make-backlog) backlog :writable)
   (inbox '() t :writable)
   (outbox '() list :writable)
   (on-post #'list function "the function that is called after each post" :writable)
-  (attended-p (constantly nil) function "the function that says whether a thread is there that will
-hear what is posted" :writable)
+  (attended-p (constantly nil) function "true if a thread is there that will apply posts" :writable)
   (left-p nil boolean
           "a thread has it, or the last one left it in the middle of something" :writable)
-  (closed-p nil boolean "the home hears nothing any more. Can be set" :writable :export)
+  (closed-p nil boolean "the home accepts no changes any more. Can be set" :writable :export)
   (born (next-token) (integer 0)
         "a number that is greater for homes that were made later. Can be set" :writable :export)
-  (repairer #'identity function "the function that is called with the home in that case, before
-anything else is done" :writable)
-  (on-change nil (or null function) "the function that is told of changes before anybody hears of
-them, or NIL: of :SET or :PULSE, a base fluent and its value. Can be set" :writable :export)
-  (wrapper nil (or null function) "the function of an entry that returns what is posted instead, for
-whoever keeps a trace; or NIL" :writable))
+  (repairer #'identity function "the function called first with the home in that case" :writable)
+  (on-change nil (or null function) "the function that is called before watchers are notified of
+a change, or NIL: with :SET or :PULSE, a base fluent and its value. Can be set" :writable :export)
+  (wrapper nil (or null function) "of an entry: returns what is posted instead; or NIL" :writable))
 
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")
 
 (defvar *interface* nil
-  "What plans and fluents belong to where nothing else says so, or NIL: see RPL-INIT-ROBOT.")
+  "The default owner of plans and fluents, or NIL: see RPL-INIT-ROBOT.")
 
 (defgeneric home-in-use (interface)
-  (:documentation "Return the home of fluents that have none yet, where no plan is at work and
-INTERFACE is in use; or NIL.")
+  (:documentation "Return the home of fluents without one, outside of plans of INTERFACE; or NIL.")
   (:method (interface) (declare (ignore interface)) nil))
 
 (defgeneric note-outside-change (interface function fluent value)
@@ -54,7 +50,7 @@ FUNCTION, of SET-VALUE and PULSE, is called with FLUENT and VALUE.")
     (declare (ignore interface function fluent value))
     (values)))
 
-;;; Having it.
+;;; Taking a home.
 
 (defvar *homes* '()
   "The homes that this thread has.")
@@ -105,7 +101,7 @@ or else NIL. An interrupt may come at any point."
 ;;; Posting.
 
 (defun post (home entry)
-  "Let ENTRY, a list of settings or a function, be next in HOME after all that was posted before."
+  "Append ENTRY, a list of settings or a function, to what is posted to HOME."
   (let ((wrapper (home-wrapper home)))
     (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
   (funcall (home-on-post home))
@@ -122,5 +118,5 @@ or else NIL. An interrupt may come at any point."
       (values nil nil)))
 
 (defun posted-p (home)
-  "True if something posted to HOME has not been heard yet."
+  "True if something posted to HOME has not been applied yet."
   (and (or (home-outbox home) (home-inbox home)) t))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(base-fluents depends-p looked-at-p forget-looks fluent-watchers fluent-text
+(export '(base-fluents depends-p was-read-p forget-reading fluent-watchers fluent-text
           operand-value one-fluent truth-value unwatch watch repair-fluents))
 
 ;;; Computing.
@@ -24,7 +24,7 @@
           (t (values (apply operator (mapcar #'stored-value sources)))))))
 
 (defun recompute (derived)
-  "Compute the value of DERIVED, in use, anew. True if it changed, or if computing met an error."
+  "Recompute the value of DERIVED, in use. True if it changed, or if computing met an error."
   (declare #.*hot*)
   (let ((trouble (loop for source in (derived-sources derived)
                        thereis (and (derived-p source) (derived-trouble source))))
@@ -60,21 +60,20 @@
     (setf (fluent-now fluent) nil
           (derived-trouble fluent) nil)))
 
-(defun settle (fluent)
-  "Let the plan runner at work be the home of FLUENT, and of its sources."
+(defun set-home (fluent)
+  "Make the plan runner at work the home of FLUENT, and of its sources."
   (unless (eq *runner* (fluent-home fluent))
     (setf (fluent-home fluent) *runner*)
     (when (derived-p fluent)
       (dolist (source (derived-sources fluent))
-        (when (fluent-p source) (settle source))))))
+        (when (fluent-p source) (set-home source))))))
 
 (defun watch (watcher)
-  "Register WATCHER with its fluent, after the watchers already there. Another thread may have set
-the fluent just before; so a caller that waits for it to be true must check it once more
-afterwards."
+  "Register WATCHER with its fluent, after the watchers already there. Another thread may have just
+set the fluent; so a caller that waits for it to be true must check it once more afterwards."
   (let ((fluent (watcher-fluent watcher)))
     (unless (eq *runner* (fluent-home fluent))
-      (settle fluent)
+      (set-home fluent)
       (memory-barrier))
     (acquire fluent)
     (join-watchers watcher)))
@@ -90,7 +89,7 @@ afterwards."
   "Return the value of FLUENT, which is in use; signal the error that computing it met, if any."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
-  (unless (fluent-looked fluent) (setf (fluent-looked fluent) :once))
+  (unless (fluent-reading fluent) (setf (fluent-reading fluent) :once))
   (fluent-now fluent))
 
 (defun current-value (fluent)
@@ -103,27 +102,25 @@ afterwards."
 
 (declaim (inline one-fluent truth-value))
 (defun one-fluent (object)
-  "Return OBJECT, a condition; of a fluent, the one that is here. Signals MISUSE if it is a vector
-of fluents."
+  "Return OBJECT, a condition; of a fluent, its twin here. Signals MISUSE for a vector of fluents."
   (cond ((fluent-p object) (here object))
         ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
         (t object)))
 
 (defun truth-value (object)
-  "Return the value of OBJECT, a condition: a fluent, or else its own value. Signals MISUSE if it is
-a vector of fluents."
+  "Return OBJECT, a condition; of a fluent, its value. Signals MISUSE for a vector of fluents."
   (if (fluent-p object) (current-value (here object)) (one-fluent object)))
 
 ;; An error fluent is of use only if it is read.
-(defun looked-at-p (fluent)
-  "True if FLUENT was read since FORGET-LOOKS, or is or was in a network, or is waited for."
+(defun was-read-p (fluent)
+  "True if FLUENT was read since FORGET-READING, or is or was in a network, or is waited for."
   (let ((fluent (here fluent)))
-    (and (or (fluent-looked fluent) (fluent-first-watcher fluent)) t)))
+    (and (or (fluent-reading fluent) (fluent-first-watcher fluent)) t)))
 
-(defun forget-looks (fluent)
+(defun forget-reading (fluent)
   "Forget that FLUENT was read."
   (let ((fluent (here fluent)))
-    (when (eq :once (fluent-looked fluent)) (setf (fluent-looked fluent) nil))))
+    (when (eq :once (fluent-reading fluent)) (setf (fluent-reading fluent) nil))))
 
 (declaim (inline operand-value))
 (defun operand-value (object)
@@ -171,7 +168,7 @@ value is always FUNCTION of their values."
       (let ((sources (loop for argument in arguments
                            collect (if (fluent-p argument) (here argument) argument))))
         (dolist (source sources)
-          (when (fluent-p source) (setf (fluent-looked source) :always)))
+          (when (fluent-p source) (setf (fluent-reading source) :always)))
         (%make-derived name function sources (height-over sources)))
       (apply function arguments)))
 
@@ -206,7 +203,7 @@ ARGUMENTS, call FUNCTION at once."
       (list fluent)))
 
 (defun fluent-watchers (fluent)
-  "Return the clients of those who watch FLUENT itself, in order of arrival."
+  "Return the clients of the watchers of FLUENT itself, in order of arrival."
   (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
         while watcher collect (watcher-client watcher)))
 
@@ -241,11 +238,11 @@ ARGUMENTS, call FUNCTION at once."
     (with-output-to-string (stream) (write-network fluent stream))))
 
 (defvar *inside-fluent* nil
-  "True while the value of a fluent is printed, when others are printed by name only: they may be
+  "True while the value of a fluent is printed. Others are then printed by name only: they may be
 each other's values.")
 
 (defun value-text (fluent)
-  "Return the value of FLUENT as text; in words what hinders that."
+  "Return the value of FLUENT as text, or the type of the error that computing it met."
   (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (here fluent))))
     (error (condition) (format nil "error: ~A" (type-of condition)))))
 
@@ -255,7 +252,7 @@ each other's values.")
             (unless *inside-fluent* (value-text fluent)))))
 
 ;;; The lists of fluents may be in any state. So the watched fluents are found from the watchers,
-;;; which are known; the links between fluents are dropped and made anew.
+;;; which are known; the links between fluents are dropped and made again.
 
 (defun reachable-fluents (watchers)
   "Return the fluents that WATCHERS watch, and those that depend on these or that these depend on."
@@ -304,8 +301,7 @@ each other's values.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Register WATCHERS again, and those in the lists of their fluents for which UNWANTED-P is false,
-in HOME."
+  "Register in HOME WATCHERS and, unless UNWANTED-P of them, those in the lists of their fluents."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(function-given-p misses-nothing-p lifting))
+(export '(function-given-p counts-each-event-p lifting))
 
 ;;; A view is a network with a memory. Reading it, by FLUENT-VALUE or by being woken by it, resets
 ;;; it; so each reader needs a view of its own. While a task waits for it, it is true for the
@@ -16,14 +16,14 @@
 (defun count-events (fluents)
   (loop for fluent in fluents sum (+ (fluent-sets fluent) (fluent-pulses fluent))))
 
-(defun look-for-event (view)
+(defun event-since-reading (view)
   "Return a number if something has happened to the fluents of VIEW since it was read last, or NIL."
   (let ((seen (view-memory view)) (events (count-events (view-bases view))))
     (when (< seen events)
       (before-change view)
       (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
 
-(defun look-for-change (view value)
+(defun change-since-reading (view value)
   "Return a number if VALUE, what the fluent of VIEW is now, is another than when it was read last."
   (destructuring-bind (sets . last) (view-memory view)
     (let ((now (count-sets (view-bases view))))
@@ -34,17 +34,17 @@
             (setf (view-memory view) (cons now value))
             now))))))
 
-(defun look (view value)
-  "Return what VIEW says, which this uses up. VALUE is the value of its first fluent."
-  (let ((answer (if (view-test view) (look-for-change view value) (look-for-event view))))
+(defun read-view (view value)
+  "Return the value of VIEW, and reset it. VALUE is the value of its first fluent."
+  (let ((answer (if (view-test view) (change-since-reading view value) (event-since-reading view))))
     ;; It is no longer true when the change under way, if any, is spread.
     (when (and answer *spreading*) (push view (first *spreading*)))
     answer))
 
 (defun make-view (name sources bases memory &key always-p test key)
   (let ((view nil))
-    (dolist (base bases) (setf (fluent-looked base) :always))
-    (setf view (%make-view name (lambda (&rest values) (look view (first values)))
+    (dolist (base bases) (setf (fluent-reading base) :always))
+    (setf view (%make-view name (lambda (&rest values) (read-view view (first values)))
                            sources (height-over sources) bases memory always-p test key))))
 
 ;; What it remembers is a state, and it is of the fork's fluents.
@@ -58,7 +58,7 @@
 (defun fl-pulsed (fluent &key (handle-missed-pulses :once))
   "Return a view: a fluent that is true if FLUENT was set to another value or pulsed since the view
 was last read. Reading it, or being woken by it, resets it. HANDLE-MISSED-PULSES says what counts
-of the events while nobody waited:
+of the events while no task waited:
   :ONCE: the next reading is true, however many events there were, even before this call;
   :ALWAYS: as many readings are true as there were events;
   :NEVER: as :ONCE, but events before this call are ignored.
@@ -71,12 +71,12 @@ the pulse of a network is ours.)"
          (seen (if (eq handle-missed-pulses :never) (count-events bases) 0)))
     (make-view 'fl-pulsed bases bases seen :always-p (eq handle-missed-pulses :always))))
 
-(defun misses-nothing-p (fluent)
-  "True if FLUENT is a view that is true as often as things happen, whenever it is read."
+(defun counts-each-event-p (fluent)
+  "True if FLUENT is a view that counts each event: see FL-PULSED, :ALWAYS."
   (and (view-p fluent) (view-always-p fluent)))
 
 (defun function-given-p (object)
-  "True if OBJECT is a function or the name of one that there is."
+  "True if OBJECT is a function or the name of a defined one."
   (or (functionp object)
       (and (symbolp object) (fboundp object) (functionp (symbol-function object))
            (not (macro-function object)) (not (special-operator-p object)))))
@@ -153,16 +153,14 @@ called if the result is known before. From the first fluent on, the result is a 
 (define-lifted not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
-  "Evaluate FORMS until one is false, as Lisp's AND; from the first one that is a fluent on, return
-a network."
+  "Do as Lisp's AND; from the first of FORMS that is a fluent on, return a network."
   (cond ((null forms) t)
         ((null (rest forms)) (first forms))
         (t `(lift-junction 'and #'every-value nil
                            (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
-  "Evaluate FORMS until one is true, as Lisp's OR; from the first one that is a fluent on, return a
-network."
+  "Do as Lisp's OR; from the first of FORMS that is a fluent on, return a network."
   (if (rest forms)
       `(lift-junction 'or #'some-value t
                       (list ,@(loop for form in forms collect `(lambda () ,form))))

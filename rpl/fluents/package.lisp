@@ -9,7 +9,6 @@ operators of Common Lisp mean these without further ado.")
            #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (ars-magna.host:define-package :ars-magna.rpl.fluents
-  (:documentation "Fluents, networks of fluents, and how a change reaches those who watch. Knows
-no plan.")
+  (:documentation "Fluents, networks of fluents, and how a change reaches watchers. Knows no plan.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted)))

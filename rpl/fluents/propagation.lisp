@@ -46,7 +46,7 @@ views that are true for the instant at which that change happened.")
     (setf (svref (backlog-tails backlog) height) derived)))
 
 (defun enqueue (derived backlog how)
-  "Let DERIVED be renewed when it is its turn, HOW: see RENEW."
+  "Queue DERIVED to be renewed in its turn. HOW is as for RENEW."
   (unless (derived-queued derived)
     (setf (derived-queued derived) how)
     (append-to-backlog derived backlog (fluent-height derived)))
@@ -62,7 +62,7 @@ views that are true for the instant at which that change happened.")
         (values derived (shiftf (derived-queued derived) nil))))))
 
 (defun announce (fluent)
-  "Tell the watchers of FLUENT, of which there is something to tell, if it is true now."
+  "Notify the watchers of FLUENT, changed or pulsed just now, if it is true or in error."
   (let ((value (fluent-now fluent))
         (trouble (and (derived-p fluent) (derived-trouble fluent))))
     (when (or value trouble)
@@ -176,11 +176,10 @@ reports what has happened."
                                   (fluent-value ...) around that fluent, for its value now"
                              (fluent-text fluent)))))
 
-;;; A change that concerns another runner than the one at work is posted to that runner, or made at
-;;; once while no thread has it.
+;;; A change for another runner is posted to that runner, or made at once while no thread has it.
 
 (defun elsewhere (fluent)
-  "Return where changes of FLUENT are to be heard, if that is not where this thread is; else NIL."
+  "Return the home in which FLUENT is to be changed, if this thread is not in it; else NIL."
   (let ((home (home-of fluent)))
     (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
           ((eq home *runner*) nil)
@@ -195,7 +194,7 @@ reports what has happened."
     (spread fluent :change)))
 
 (defun set-elsewhere (home fluent value)
-  "Give FLUENT, of HOME, VALUE: now if nobody has HOME or attends to it, otherwise by a post."
+  "Set FLUENT, of HOME, to VALUE: now if no thread has HOME or serves it, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
            (call-having home #'take-home (lambda () (set-now fluent value) t)))
@@ -215,7 +214,7 @@ plans pause (manual D.2)."
     (if home
         (set-elsewhere home fluent value)
         (set-now fluent value))
-    ;; Perhaps somebody has just begun to wait for it, in another thread.
+    ;; Another thread may have just begun to wait for it.
     (unless (or home *runner*)
       (let ((home (elsewhere fluent)))
         (when home (set-elsewhere home fluent value)))))
@@ -224,8 +223,7 @@ plans pause (manual D.2)."
 (defun (setf fluent-value) (value fluent)
   (set-value fluent value))
 
-;;; A pulse is one instant at which the fluents have other values; then they have their former
-;;; values again.
+;;; A pulse is one instant at which fluents have other values, between their former values.
 
 (defun pulse-all (fluents values)
   (let ((before (mapcar #'fluent-now fluents)))
@@ -240,7 +238,7 @@ plans pause (manual D.2)."
     (spread-back fluents)))
 
 (defun spread-back (fluents)
-  "Compute anew what depends on FLUENTS, which have their values of before a pulse again."
+  "Recompute what depends on FLUENTS, which have their values from before a pulse again."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
       (spreading
@@ -281,19 +279,17 @@ all together. So a task woken by the pulses sees the values that came with them 
     (when changed (spread-all (nreverse changed) :change))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))
 
-;;; A run that was rewound has gone on in a fork. When it is over, those who are left have what it
-;;; has left.
+;;; A run that was rewound continues in a fork. When that is over, its values are copied back.
 
 (defun give-back (fluent from)
-  "Let FLUENT, a base fluent, have the value of its twin in the realm FROM."
+  "Set FLUENT, a base fluent, to the value of its twin in the realm FROM."
   (let ((value (fluent-now (entity-in fluent from))) (home (home-of fluent)))
     (cond ((eql value (fluent-now fluent)))
           (home (set-elsewhere home fluent value))
           (t (set-now fluent value)))))
 
 (defun give-back-all (from realm)
-  "Let the base fluents of REALM have the values of their twins in FROM, a realm that has come of
-it, and whose run is over."
+  "Set the base fluents of REALM to the values of their twins in FROM, a fork of it that is over."
   (let ((*realm* realm))
     (loop for each = from then (realm-parent each)
           until (or (null each) (eq each realm))

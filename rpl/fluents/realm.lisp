@@ -13,15 +13,14 @@
 ;;; the forks made since its last change (SEEN counts them) get their twins.
 
 (define-record (realm (:constructor make-realm (parent number)))
-  "What belongs to one fork, number NUMBER of those of PARENT; or, without one, to all runs that are
-no forks."
+  "The entities of the fork NUMBER of PARENT; or, without PARENT, of all runs that are no forks."
   (parent nil (or null realm) :writable)
   (number 0 fixnum :writable)
   (twins (make-hash-table :test 'eq :size 100) hash-table "entities by token")
   (lock (make-lock "realm") t)
   (forks '() list "a list (number . weak realm), the newest first" :writable)
   (room 16 fixnum
-        "for how many more forks there is room before those that are gone are left out" :writable)
+        "how many more forks are made before those that are gone are removed" :writable)
   (count 0 fixnum "how many forks there have been" :writable)
   (made 0 (integer 0) "a token, given when it was made" :writable)
   (sources '() list "weak references to the homes, when the realm was made, of what it is a fork of.
@@ -45,7 +44,7 @@ Can be set" :writable :export)
   (realm *realm* realm "the realm that the entity belongs to" :writable :export)
   (token 0 fixnum :writable)
   (seen 0 fixnum :writable)
-  (first nil t "what leads, weakly, to the first of all twins, once there are any" :writable))
+  (first nil t "a weak reference to the first of all twins, once there are any" :writable))
 
 (define-shared-slots entity first)
 
@@ -61,8 +60,7 @@ Can be set" :writable :export)
         while each thereis (eq each ancestor)))
 
 (defun entity-in (entity realm)
-  "Return ENTITY, or its twin in REALM if that is a fork of what ENTITY belongs to, or goes on in
-the place of that."
+  "Return ENTITY, or its twin in REALM if that was forked from the realm of ENTITY, or replaces it."
   (cond ((eq realm (entity-realm entity)) entity)
         ((descends-p realm (entity-realm entity))
          (or (known-twin entity realm)
@@ -76,11 +74,11 @@ the place of that."
          (gethash (entity-token entity) (realm-twins realm)))))
 
 (defun entity-like (entity)
-  "Return what is here for ENTITY, of this run or of any fork that has come of the same one."
+  "Return the twin here of ENTITY, of this run or of any fork with the same origin."
   (or (known-twin entity *realm*) (here entity)))
 
 (defgeneric fresh-twin (entity realm)
-  (:documentation "Return a new object like ENTITY for REALM, that nobody uses."))
+  (:documentation "Return a new object like ENTITY for REALM, without users."))
 
 (defun ensure-token (entity)
   "Return the token of ENTITY, given to it now if it has none."
@@ -92,7 +90,7 @@ the place of that."
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
-  "Let TWIN be that of ENTITY in REALM, unless there is one. Return the one that there is."
+  "Make TWIN that of ENTITY in REALM, unless there is one. Return the one that there is."
   (let ((token (ensure-token entity)))
     (with-lock ((realm-lock realm))
       (or (gethash token (realm-twins realm))
@@ -148,8 +146,8 @@ the place of that."
       (setf (entity-seen entity) (realm-number realm)))
     copy))
 
-;;; A run that is rewound goes on in a fork of a fork, and again. So that nothing leads back to what
-;;; is over, that fork takes with it what it could ask for there, and is then one of what is above.
+;;; A run that is rewound again and again continues in a fork of a fork of a fork. To drop the runs
+;;; that are over, the newest takes the twins of its parent and becomes a fork of its grandparent.
 
 (defun twins-in (realm)
   "Return a list of the entities that REALM has twins of, as these."
@@ -164,7 +162,7 @@ the place of that."
                  #'> :key #'car))))
 
 (defun lift-realm (realm)
-  "Let REALM be a fork of what its parent is one of, if that is one, as if made when that was."
+  "Make REALM a fork of its grandparent, if it has one, as if made when its parent was."
   (let* ((parent (realm-parent realm))
          (above (realm-parent parent)))
     (when above
@@ -188,11 +186,11 @@ of REALM and of its other forks, unless REALM is no fork itself."
 ;;; Changes.
 
 (defgeneric concerns-p (entity realm)
-  (:documentation "True if REALM, a fork, may come to ask for ENTITY.")
+  (:documentation "True if REALM, a fork, may need a twin of ENTITY.")
   (:method (entity realm) (declare (ignore entity realm)) t))
 
 (defun serve-forks (entity)
-  "Let the forks made since ENTITY changed last have their twins of it."
+  "Make the twins of ENTITY in the forks made since it changed last."
   (let ((realm (entity-realm entity)))
     (loop for (number . weak) in (realm-forks realm)
           while (> number (entity-seen entity))
@@ -203,6 +201,6 @@ of REALM and of its other forks, unless REALM is no fork itself."
 
 (declaim (inline before-change))
 (defun before-change (entity)
-  "To be called before what ENTITY says changes."
+  "Make the twins of ENTITY that forks need, before its state changes. To be called each time."
   (when (< (entity-seen entity) (realm-count (entity-realm entity)))
     (serve-forks entity)))

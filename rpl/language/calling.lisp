@@ -8,8 +8,7 @@
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 
 (define-expression call
-  "A call with COUNT arguments of a procedure, or of a Lisp function that was unknown when the plan
-was compiled."
+  "A call, with COUNT arguments, of a procedure or of a function unknown to the compiler."
   (:parts (procedure procedure) (count fixnum) (caller function))
   (:steps
    (begin
@@ -121,8 +120,7 @@ values."
           (list* 'call-plan plan arguments)))))
 
 (defun enter-application (plan arguments frame)
-  "Begin PLAN, a procedure or its name, with the list ARGUMENTS for FRAME. Return what a step
-returns."
+  "Begin PLAN, a procedure or its name, with ARGUMENTS for FRAME. Return what a step returns."
   (enter +application+ (vector (frame-environment frame) plan arguments) frame))
 
 (define-construct apply-plan (plan arguments)

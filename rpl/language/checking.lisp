@@ -7,7 +7,7 @@
 
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
-;;; What Lisp code calls is for Lisp to see.
+;;; Calls in Lisp code are checked by Lisp.
 
 (defun say-of-form (warn form control arguments)
   "Let WARN, a function, say of FORM, at its place, what is formatted from CONTROL and ARGUMENTS."
@@ -30,8 +30,7 @@
     (say-of-form #'doubt-definition form control arguments)))
 
 (defun known-operators (&optional (package *package*))
-  "Return the names that calls in PACKAGE could be meant for. Those of one letter, such as ?, are
-like any other."
+  "Return the names, longer than a letter, that calls in PACKAGE could be meant for."
   (let ((names (declared-names)))
     (do-symbols (symbol package names)
       (when (and (known-function-p symbol nil)
@@ -71,7 +70,7 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
 
 (defgeneric advice-on-call (name)
   (:documentation "Return in sentences why NAME, a symbol, is the name of no plan procedure or
-function, and what to write; or NIL. What knows more names has a method.")
+function, and what to write; or NIL. Layers that know more names have methods.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun unknown-call-remedy (name)
@@ -95,7 +94,7 @@ function, and what to write; or NIL. What knows more names has a method.")
                        name (nearest-operator name))))))
 
 (defun look-at-call (form)
-  "Warn if the call FORM is not right, as far as anybody knows now."
+  "Warn if the call FORM is wrong, as far as is known now."
   (let ((name (first form)))
     (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
           ((macro-function name)

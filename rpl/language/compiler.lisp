@@ -123,8 +123,7 @@
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun condition-lambda (form scope)
-  "Return the lambda expression, of the environment, for the object that FORM, a condition, is: a
-fluent to wait for."
+  "Return the lambda expression, of the environment, for the fluent that FORM, a condition, is."
   (check-condition form)
   (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 
@@ -148,8 +147,7 @@ fluent to wait for."
                                             meaning)
                                         scope))))
 
-;;; Every function here named X-CODE returns a form; evaluated once, when the plan is loaded, that
-;;; form builds the nodes.
+;;; Functions named X-CODE return a form that builds nodes. It is run when the plan is loaded.
 
 (defun element-names (lambda-list)
   "Return the variables of LAMBDA-LIST, a destructuring one without defaults."
@@ -184,8 +182,7 @@ SUSPENSION."
                            (slip-in-construct form lambda-list)))))
 
 (defun refuse-code (form scope &optional (container form))
-  "Return code for FORM, of CONTAINER, which plans cannot wait inside: a leaf, or an error if it
-would wait."
+  "Return code for FORM, of CONTAINER, a leaf. Signals MISPLACED-SUSPENSION if it would wait."
   (multiple-value-bind (suspends reason) (suspension form scope)
     (if (eq suspends :must)
         (reject-suspension reason container)
@@ -267,7 +264,7 @@ it, and those to the left of them too, to keep the order."
           ((own-advice-for form) (refuse-code form scope))
           ((macro-function (first form) environment) (expansion-code form scope))
           ((special-operator-p (first form)) (refuse-code form scope))
-          ((operator-in-p form *stirring-functions*)
+          ((operator-in-p form *waking-functions*)
            (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
                (hoisted-code form scope)
                (leaf-code form scope)))

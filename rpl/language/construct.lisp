@@ -25,7 +25,7 @@
       (reject-name "state" name names)))
 
 (defun with-node-form (name clauses forms)
-  "Return a form that runs FORMS with what CLAUSES say of the node called NAME at hand."
+  "Return a form that runs FORMS with the parts and states that CLAUSES give the node NAME."
   (let ((states (mapcar #'first (clause :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))

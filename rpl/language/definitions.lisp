@@ -106,8 +106,7 @@ of the variable and the word for each word that must be there literally."
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
 (defparameter *largest-pattern* 250
-  "How many lists, words and variables may be in a pattern: more than anybody writes, and no more
-than the compiler's stack can bear.")
+  "How many lists, words and variables may be in a pattern: few enough for the compiler's stack.")
 
 (defun larger-than-p (form limit)
   (let ((open (list form)))
@@ -147,7 +146,7 @@ The value of TEMPLATE is the plan text to use. A documentation string may come b
            ',name)))))
 
 (defun pattern-to-show (parameters literals)
-  "Return PARAMETERS as a lambda list for people, with the words of LITERALS. A variable for all the
+  "Return PARAMETERS as a lambda list to show, with the words of LITERALS. A variable for all the
 rest called BODY or FORMS is for a body."
   (cond ((null parameters) '())
         ((atom parameters) (if (assoc parameters literals)

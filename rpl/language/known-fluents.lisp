@@ -186,7 +186,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
              forms))
 
 (defun bound-to-fluents (bindings body scope sequential)
-  "Return the variables that BINDINGS, of a LET or LET* around BODY, bind to fluents for good."
+  "Return the variables that BINDINGS, of a LET or LET*, bind to fluents and BODY does not assign."
   (let ((*fluents-here* (scope-fluents scope)) (found '()))
     (loop for (variable value) in (remove-if #'atom bindings)
           do (cond ((and (known-fluent-p value (scope-environment scope))

@@ -148,9 +148,9 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
 (define-mistake command-of-others :leaf (form)
   "FORM is a command that plans call by another function, and not in what is called later."
   (cond ((and (symbolp (first form)) (same-name-p (first form) 'continuation)) :nowhere)
-        ((has-twin-p (first form))
+        ((has-plan-function-p (first form))
          (format nil "~(~A~) does not tell plans of its end. In a plan write ~A."
-                 (first form) (twin-text (first form))))))
+                 (first form) (plan-call-text (first form))))))
 
 ;;; Handlers of Lisp's. A failure is no error.
 

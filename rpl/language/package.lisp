@@ -1,8 +1,7 @@
 ;;;; package.lisp -- from a plan's text to nodes, and the Lisp that plans understand.
 
 (ars-magna.host:define-package :ars-magna.rpl.language
-  (:documentation "Reads the text of plans: Lisp's own operators, procedures, macros;
-DEFINE-CONSTRUCT adds to it.")
+  (:documentation "Compiles plans: Lisp's operators, procedures, macros, and DEFINE-CONSTRUCT.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.rpl.fluents :ars-magna.rpl.tasks)
   (:import-from :ars-magna.nisp

@@ -15,8 +15,7 @@
              (:global "is a global variable")))))
 
 (defun check-variables (variables environment &optional (form nil form-p))
-  "Signal MALFORMED-DEFINITION, about FORM if that is given, unless all of VARIABLES can be lexical
-variables in ENVIRONMENT."
+  "Signal MALFORMED-DEFINITION, about FORM if given, unless VARIABLES can be bound in ENVIRONMENT."
   (dolist (variable variables)
     (let ((trouble (variable-trouble variable environment)))
       (when trouble
@@ -65,8 +64,8 @@ robot: then they may be the first form of a body, with no list of parameters bef
                         definition name))))
 
 (defun plain-parameters (parameters form environment &optional (definition (author)))
-  "Return PARAMETERS, of FORM in DEFINITION, without types. Signals MALFORMED-DEFINITION unless they
-are a lambda list."
+  "Return the lambda list PARAMETERS, of FORM in DEFINITION, without types; or signal
+MALFORMED-DEFINITION."
   (flet ((reject (trouble)
            (reject-clause definition (if (consp parameters) parameters form)
                           (format nil "an ordinary lambda list, such as (a &optional b &key c); ~
@@ -118,8 +117,8 @@ are a lambda list."
 (define-record (scope (:copier copy-scope))
   "What is visible at a place in a plan. The slots that say nothing else map names to the variables,
 in the code that builds the plan, that hold their nodes."
-  (variable (gensym "ENVIRONMENT") symbol "what leaves call their environment; it is one procedure's
-own, so that plans can be written in the leaves of others" :writable)
+  (variable (gensym "ENVIRONMENT") symbol "the variable of the environment in leaves; each procedure
+has one of its own, as plans can be written in the leaves of others" :writable)
   (environment nil t "the Lisp environment at the place" :writable :export)
   (level 0 fixnum :writable)
   (layers '() list "how leaves get to see what is visible, innermost first" :writable)
@@ -128,7 +127,7 @@ nodes" :writable :export)
   (tags '() list :writable)
   (procedures '() list :writable)
   (retry nil symbol
-         "the variable that holds the node to begin anew at (retry), NIL outside" :writable :export)
+         "the variable of the node that (retry) begins again, NIL outside" :writable :export)
   (task-tags '() list :writable)
   (fluents '() list "the variables that are known to hold fluents" :writable)
   (several nil boolean :writable))
@@ -250,8 +249,7 @@ nodes" :writable :export)
   "The innermost form around, of those in the source that is being compiled, or NIL.")
 
 (defun place-made (form)
-  "Give code made around parts of the current form the source place of that form, so that the
-compiler reports that. Return FORM."
+  "Give code made around parts of the current form its source place, for the compiler. Return FORM."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (in-source-p form)))
                (keep-place form *form-at-hand*)

@@ -14,7 +14,7 @@
 ;;; So the conses of the text are recorded, and those of expansions of macros that are not Lisp's.
 
 (defun author ()
-  "Return what the text at hand is called in messages."
+  "Return the name, for messages, of the text that is being compiled."
   (if *definition*
       (let ((form (defining-form *definition*)))
         (title (first form) (second form)))
@@ -69,8 +69,8 @@
        (string= "ITERATE" (package-name (symbol-package (first form))))))
 
 (defun own-advice-for (form)
-  "Return what is advised about forms like FORM, in which plans cannot wait, or NIL. A macro of a
-user's that is called as iterate's are is none."
+  "Return what is advised about forms like FORM, in which plans cannot wait, or NIL. Macros of users
+that have the names of iterate's are left out."
   (and (consp form)
        (symbolp (first form))
        (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (of-iterate-p form))
@@ -138,7 +138,7 @@ otherwise, as in ordinary Lisp code."
         ((eq (first form) :tag) ":TAG")))
 
 (defun operator-key (name)
-  "Return by what plans know the operator NAME: its name, or the very symbol if it is a user's."
+  "Return the key of the operator NAME in *PLAN-FORMS*: its name, or the symbol if it is a user's."
   (if (and (symbolp name) (our-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
@@ -147,7 +147,7 @@ otherwise, as in ordinary Lisp code."
     (and name (member name names :test #'string=))))
 
 (defun plan-in-leaf-p (form)
-  "True if FORM makes a plan: its text is for itself to read."
+  "True if FORM makes a plan: it reads its text itself."
   (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
 
 (defparameter *lifted-operators*
@@ -180,11 +180,10 @@ otherwise, as in ordinary Lisp code."
   form)
 
 (defvar *written-forms* nil
-  "While a plan is compiled: a table from conses that were made to the forms of the author's text
-that they stand for.")
+  "While a plan is compiled: a table from conses made to the forms of the text they stand for.")
 
 (defun form-as-written (form)
-  "Return what the author has written of which FORM was made, or FORM."
+  "Return the form in the author's text that FORM was made of, or FORM."
   (values (gethash form *written-forms* form)))
 
 (defun note-written-as (expansion form)
@@ -208,8 +207,8 @@ that they stand for.")
   (gethash form *own-conses*))
 
 (defmacro with-own-text ((form) &body body)
-  "Run BODY while FORM, and what is noted besides, is known to be a plan's text. What is made of it
-has the same names every time, so that traces can be compared."
+  "Run BODY with FORM, and what is noted meanwhile, known as a plan's text. Names made there are the
+same every time, so that traces can be compared."
   `(let ((*own-conses* (make-hash-table :test 'eq))
          (*written-forms* (make-hash-table :test 'eq))
          (*gensym-counter* 0))

@@ -17,8 +17,8 @@ form and its scope and returns code that builds a node."
 (defvar *plan-forms* (make-hash-table :test 'equal)
   "The operators that plans have a meaning of their own for: names, and symbols of users.")
 
-(defparameter *stirring-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
-  "Functions after which somebody else may be ready.")
+(defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
+  "Functions after which other tasks may be ready.")
 
 (defun find-plan-form (form environment)
   (and (consp form)
@@ -64,7 +64,7 @@ LET that binds a task variable; or if it binds what cannot be bound."
            (and (exit-suspends-p form scope) :must))
           ((eq name 'function)
            (and (symbolp (second form)) (assoc (second form) (scope-procedures scope)) :must))
-          ((operator-in-p form *stirring-functions*) :may)
+          ((operator-in-p form *waking-functions*) :may)
           ((procedure-name-p name) :must)
           ((or (macro-function name environment)
                (special-operator-p name)

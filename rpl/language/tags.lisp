@@ -30,7 +30,7 @@ BODY is the code of and of the node that it stands for: see Replacing below."
       (if (and task (eq (task-state task) :created))
           task
           (let ((new (make-task (tagged-name node) (tagged-body node))))
-            ;; Who follows the status of the tag goes on to do so.
+            ;; Those that follow the status of the tag continue to.
             (when (and task (task-over-p task))
               (setf (task-status-fluent new) (task-status-fluent task)))
             (when holder (setf (svref holder index) new))
@@ -60,8 +60,7 @@ BODY is the code of and of the node that it stands for: see Replacing below."
                   :replaced '())))
 
 (defun tags-in (forms)
-  "Return the names of the tags in FORMS, not counting those that belong to a WITH-TAGS, or to each
-turn of a PAR-LOOP, in them."
+  "Return the names of the tags in FORMS, without those of a WITH-TAGS, PAR-LOOP or the like there."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
@@ -78,8 +77,7 @@ turn of a PAR-LOOP, in them."
     (nreverse names)))
 
 (defun tagged-scope (scope names first)
-  "Return SCOPE, in whose innermost environment the variables NAMES, from the place FIRST on, are
-tags."
+  "Return SCOPE, with the variables NAMES, from FIRST on in its innermost environment, as tags."
   (inner-scope scope
                :task-tags (append (loop for name in names
                                         for index from first

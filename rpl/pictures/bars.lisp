@@ -169,9 +169,8 @@ cut to two decimals; of a long one its beginning."
   (if (and (trouble-p (span-error span)) (not in-color*)) black* white*))
 
 (defun place-for-name (length x width from to)
-  "Return where the name, LENGTH pixels wide, of a command is written whose box begins at X and is
-WIDTH pixels wide: on it, behind it or before it, between FROM and TO; and whether on it. NIL if
-nowhere is room."
+  "Return where to write the name, LENGTH pixels wide, of a command with a box WIDTH wide from X on:
+on it, behind it or before it, between FROM and TO; and whether on it. NIL if there is no room."
   (cond ((<= (+ 4 length) width) (values (+ x 2) t))
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))
@@ -198,7 +197,7 @@ and TO; or its beginning on it. Return where that ends."
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun command-title (span)
-  "Return what is told of SPAN, a command, where one points at it."
+  "Return the title of SPAN, a command, shown when the pointer is on it."
   (let ((code (span-error span)))
     (format nil "~A, ticks ~A to ~A~@[: ~(~A~)~]~@[. ~A~]" (span-text span) (span-start span)
             (span-end span) code (and code (error-code-meaning code)))))

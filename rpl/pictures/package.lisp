@@ -1,8 +1,7 @@
 ;;;; package.lisp -- pictures of plans.
 
 (ars-magna.host:define-package :ars-magna.rpl-pictures
-  (:documentation "Pictures of plans that run or have run: joins the plan language with the
-canvas.")
+  (:documentation "Pictures of plans that run or have run, on a canvas.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.canvas)
   (:import-from :ars-magna.rpl

@@ -62,7 +62,7 @@
           (task-image-name image) (task-image-form image)
           (and (task-image-folded-p image) (task-image-parts image))))
 
-(defun task-plight (image)
+(defun task-condition (image)
   "Return what the task of IMAGE waits for, or how else it is, if that is to be said; or NIL."
   (cond ((task-image-awaits image)
          (format nil "waits for ~A since tick ~D~:[, ~A~;~]" (task-image-awaits image)
@@ -73,7 +73,7 @@
 
 (defun draw-row-text (canvas image x y width)
   "Write the text of IMAGE from X on, down from Y. Return how many lines that took."
-  (let* ((head (task-head image)) (plight (task-plight image))
+  (let* ((head (task-head image)) (plight (task-condition image))
          (room (max 8 (floor (- width x) +character-width+)))
          (one-p (and plight (<= (+ 2 (length head) (length plight)) room))))
     (write-at canvas x y (cut head room))

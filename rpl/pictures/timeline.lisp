@@ -182,8 +182,7 @@ from when to when they are. Return width and height in pixels."
 ;;; In a place of any width.
 
 (defun scale-for (page width)
-  "Return the scale of PAGE in a place WIDTH pixels wide: of it the names have what they need, up to
-half."
+  "Return the scale of PAGE in WIDTH pixels, of which names take what they need, up to half."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 

@@ -19,9 +19,8 @@ UNKNOWN-NAME and WRONG-ARGUMENT."
       call)))
 
 (defun make-question (task interface plan arguments options)
-  "Return the question of TASK, or of nobody in a plan, what may become of PLAN: a task, a plan with
-the list ARGUMENTS, or a list of both. INTERFACE is whose plans they are. Signals UNKNOWN-NAME and
-WRONG-ARGUMENT."
+  "Return the question of TASK, NIL outside of plans, what may become of PLAN: a task, a plan with
+the list ARGUMENTS, or a list of both, of INTERFACE. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (when (and (task-p plan) arguments)
       (reject-argument 'project :arguments arguments "none, since a task has begun with its own"))
@@ -139,7 +138,7 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-asker* (question-operator question)))
-                      (lighten (fork-simulation (interface-simulation interface))))
+                      (drop-records (fork-simulation (interface-simulation interface))))
       (call-with-plans (lambda () (forget-wish question)) interface))))
 
 (addition project-plan)
@@ -151,7 +150,7 @@ WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
                                   (list :trials trials :horizon horizon :seed seed :cost cost
                                         :world world :print print))))
     (when world (check-believable question))
-    (cond (*rolling-out* (nothing-known question))
+    (cond (*rolling-out* (projection-without-rollouts question))
           (t (first (project-branches question (if world nil (moment-with question))))))))
 
 ;;;; Doing what goes best

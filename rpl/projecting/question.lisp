@@ -3,13 +3,12 @@
 (in-package :ars-magna.rpl-projecting)
 
 ;;; A question is a wish of an interface: so it is copied with the plans, and in a fork its twin
-;;; tells which task waits for the answer, and with which branches and arguments. Twins have the
-;;; same TOKEN, a symbol.
+;;; tells which task waits for the answer, and with which arguments. Twins have the same TOKEN.
 
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
   "What may become of BRANCHES, texts, in what is left of the plan, of PLAN with ARGUMENTS, or of
-the task SUBJECT. OPERATOR is what the plan or user has called who asks. ENDED and RESULT say in a
-rollout how that has ended which the asking task does."
+the task SUBJECT. OPERATOR is the operator that asks. In a rollout, ENDED and RESULT say how what
+the asking task does has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)
   (operator nil :type symbol :read-only t)
   (branches '() :type list :read-only t)
@@ -21,7 +20,7 @@ rollout how that has ended which the asking task does."
   (result nil))
 
 (defvar *rolling-out* nil
-  "True where a rollout runs: there TRY-BEST chooses by chance, and PROJECT knows nothing.")
+  "True where a rollout runs: there TRY-BEST chooses by chance, and PROJECT makes no rollouts.")
 
 (defvar *asked* nil
   "The question of a plan that rollouts are run for, or NIL.")
@@ -34,9 +33,9 @@ rollout how that has ended which the asking task does."
           (question-branches question)
           (if (question-branches question)
               (length (question-branches question))
-              (cut (text-of question) 60))))
+              (cut (question-text question) 60))))
 
-(defun text-of (question &optional (branch 0))
+(defun question-text (question &optional (branch 0))
   "Return a text, not shortened, for what QUESTION is about, or for its BRANCH."
   (cond ((question-branches question) (nth branch (question-branches question)))
         ((question-subject question) (task-label (question-subject question) #'whole-form-text))
@@ -60,9 +59,9 @@ rollout how that has ended which the asking task does."
 ;;; Options.
 
 (defparameter *default-trials* 20
-  "How many rollouts there are of what is projected, unless somebody says otherwise.")
+  "How many rollouts there are by default.")
 (defparameter *default-horizon* 600
-  "How many ticks a rollout is given, unless somebody says otherwise.")
+  "How many ticks a rollout is given by default.")
 
 (defun check-option (operator name value)
   "Signal WRONG-ARGUMENT unless VALUE is one of the option NAME of OPERATOR."
@@ -87,7 +86,7 @@ Values may be fluents. Signals WRONG-ARGUMENT."
 
 ;;; Seeds. The same trial of all branches has the same one.
 
-(defun mixed (&rest numbers)
+(defun mix-numbers (&rest numbers)
   "Return an integer below 2^62 that depends on NUMBERS, integers."
   (let ((digest (make-digest)))
     (digest-add digest numbers)
@@ -99,12 +98,12 @@ run, the tick, and how many questions plans have asked before in that."
   (let* ((interface (wish-interface question))
          (simulation (if interface (interface-simulation interface) *simulation*))
          (seed (option question :seed)))
-    (cond (seed (mixed seed trial))
-          ((null simulation) (mixed 0 trial))
-          (t (mixed (simulation-seed simulation)
-                    (simulation-tick simulation)
-                    (if (wish-task question) (wishes-in-tick interface) -1)
-                    trial)))))
+    (cond (seed (mix-numbers seed trial))
+          ((null simulation) (mix-numbers 0 trial))
+          (t (mix-numbers (simulation-seed simulation)
+                          (simulation-tick simulation)
+                          (if (wish-task question) (wishes-in-tick interface) -1)
+                          trial)))))
 
 ;;;; Answers
 
@@ -118,7 +117,7 @@ run, the tick, and how many questions plans have asked before in that."
 (defun project-branch (question moment branch)
   "Return the projection of BRANCH of QUESTION by rollouts from MOMENT, see SCENE."
   (let ((scene (make-scene question moment branch)))
-    (make-projection (text-of question branch)
+    (make-projection (question-text question branch)
                      (if moment (simulation-tick moment) 0)
                      (option question :horizon)
                      (loop for trial from 1 to (option question :trials)
@@ -145,19 +144,19 @@ run, the tick, and how many questions plans have asked before in that."
 ;;; Questions of plans.
 
 (defun answer-by-chance (question)
-  "Answer QUESTION, in a rollout: by any branch, or a projection that knows nothing."
+  "Answer QUESTION, in a rollout: by any branch, or a projection without rollouts."
   (grant-wish question
               (if (question-branches question)
                   (roll-index (length (question-branches question))
                               (runner-dice (interface-runner (wish-interface question))))
-                  (nothing-known question))))
+                  (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)
   "Answer QUESTION, of a plan, by rollouts. Return :LATER if the answer is not needed any more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
                       (let ((*fork-asker* (question-operator question)))
-                        (lighten (fork-at-rest interface)))))
+                        (drop-records (fork-at-rest interface)))))
          (projections (catch 'abandoned
                         (let ((*asked* question)) (project-branches question moment)))))
     (cond ((null projections) :later)

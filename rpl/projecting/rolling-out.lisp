@@ -35,23 +35,22 @@ how it has ended, with which result, at no cost, and OPTION."
 
 (defun go-to-end (question interface begin over)
   "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
-simulation pass until what QUESTION is about has ended, or OVER, which is called after each, says
-how it ends. Return how it has ended, with which result, at what cost, and the option whose function
-broke it off, if any."
+simulation pass until what QUESTION is about has ended, or OVER, called after each, says how.
+Return how it has ended, its result, its cost, and the option whose function broke it off, if any."
   (handler-case
       (let* ((last (+ (simulation-tick) (option question :horizon)))
              (task (funcall begin))
              (how (pass-until interface
                               (lambda ()
                                 ;; The plan that asked may not wait for that any more.
-                                (when (and *asked* (unwanted-wish-p *asked*))
+                                (when (and *asked* (obsolete-wish-p *asked*))
                                   (throw 'abandoned nil))
                                 (or (funcall over) (end-of task question interface)))
                               last)))
         (with-cost question how (if task (task-result task) (question-result question))))
     (error (condition) (broken-off condition))))
 
-;;; A plan that never waits would take a million steps in each tick, and bring nothing to light.
+;;; A plan that never waits would take a million steps in each tick, to no use.
 
 (defun runaway-test (runner)
   "Return a function that returns :RUNAWAY if the plans of RUNNER have taken as many steps as a
@@ -158,9 +157,9 @@ SCENE, where that has ended in the world that the question believes in."
 ;;; fork of it with a seed of its own; so all begin alike, also if the run goes on meanwhile, and
 ;;; any of them can be looked at again.
 
-(defun call-in-peace (function print)
-  "Call FUNCTION, which runs a rollout: no plan is at work around it, and nobody is to answer. What
-it writes is lost unless PRINT is true."
+(defun call-undisturbed (function print)
+  "Call FUNCTION, which runs a rollout, as if no plan were at work around it, without a debugger.
+What it writes is dropped unless PRINT is true."
   (let ((*rolling-out* t)
         (*standard-output* (if print *standard-output* (make-broadcast-stream)))
         (*error-output* (if print *error-output* (make-broadcast-stream)))
@@ -172,7 +171,7 @@ it writes is lost unless PRINT is true."
 
 ;;; The moment.
 
-(defun lighten (moment)
+(defun drop-records (moment)
   "Make MOMENT, a fork, keep no journal and no trace, and report no errors. Return it."
   (setf (simulation-journal moment) nil
         (message-queue-error-policy (simulation-messages moment)) :collect)
@@ -183,14 +182,14 @@ it writes is lost unless PRINT is true."
 ;;; The rollout.
 
 (defun begin-rollout (question branch)
-  "Let begin what QUESTION, of a fork, asks about: its BRANCH, if it has such. Return the task whose
-end counts, or NIL: see NOTE-ENDED."
+  "Begin what QUESTION, of a fork, asks about: its BRANCH, if it has any. Return the task whose end
+counts, or NIL: see NOTE-ENDED."
   (let ((interface (wish-interface question)) (task (wish-task question)))
     (call-with-plans (lambda ()
                        (cond ((null task) (forget-wish question))
                              ((question-branches question) (grant-wish question branch))
                              ((question-subject question)
-                              (grant-wish question (nothing-known question)))
+                              (grant-wish question (projection-without-rollouts question)))
                              (t (grant-wish question :do-it))))
                      interface)
     (cond ((question-subject question))
@@ -199,9 +198,9 @@ end counts, or NIL: see NOTE-ENDED."
           ((and (question-branches question) (not (eq :branch (option question :until))))
            (task-top task)))))
 
-(defun nothing-known (question)
+(defun projection-without-rollouts (question)
   "Return the projection without rollouts that PROJECT returns for QUESTION in a rollout."
-  (make-projection (text-of question) (simulation-tick) (option question :horizon) '()))
+  (make-projection (question-text question) (simulation-tick) (option question :horizon) '()))
 
 (defun roll-out-in-fork (scene trial seed then)
   (let ((fork (fork-simulation (scene-moment scene) :seed seed)))
@@ -228,7 +227,7 @@ is true, or the option :PRINT of the question."
          (then (lambda (rollout)
                  (let ((*standard-output* output) (*error-output* errors))
                    (funcall then rollout)))))
-    (call-in-peace (lambda ()
+    (call-undisturbed (lambda ()
                      (let ((*fork-asker* (question-operator question)))
                        (if (scene-moment scene)
                            (roll-out-in-fork scene trial seed then)

@@ -34,11 +34,11 @@ the same words whichever of them it is that takes it."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
-      (format nil "~A takes ~A from itself for ever: each time it hears that its command was ~
-                   interrupted it issues another"
+      (format nil "~A takes ~A from itself for ever: each time its command is interrupted it ~
+                   issues another"
               (taker-text newer) resource)
-      (format nil "~A and ~A take ~A from each other for ever: each time one hears that its ~
-                   command was interrupted it issues another"
+      (format nil "~A and ~A take ~A from each other for ever: each time the command of one is ~
+                   interrupted it issues another"
               (taker-text older) (taker-text newer) resource)))
 
 (defun warn-of-takeovers (interface text)
@@ -128,7 +128,7 @@ has given as many as it may in this tick."
                                                  "WHENEVER" "AT-LOCATION"))))
 
 (defun watches-p (task)
-  "True if TASK waits in a loop, or for whatever may come: to wait is what it is for."
+  "True if TASK waits in a loop, or for any event: to wait is its purpose."
   (find-if (lambda (form) (operator-called-p form "LOOP" "WHENEVER"))
            (plan-backtrace task (task-frame task))))
 
@@ -144,33 +144,33 @@ has given as many as it may in this tick."
               (or (null common) (all-to-succeed-p common))
               (not (reacting-to-events-p newer common))))))
 
-(defun deed-text (deed)
-  (let ((task (deed-task deed)))
+(defun action-text (action)
+  (let ((task (action-task action)))
     (format nil "rpl-~(~A~) of ~@[~A in ~]the plan ~A"
-            (deed-name deed)
+            (action-name action)
             (and (task-parent task) (task-label task))
             (task-label (task-top task)))))
 
-(defun gentle-p (deed)
-  "True if DEED takes no time, stops the robot, or cleans up."
-  (or (deed-cleanup-p deed)
-      (command-instant-p (deed-command deed))
-      (trait-p :stops (deed-command deed))))
+(defun gentle-p (action)
+  "True if ACTION takes no time, stops the robot, or cleans up."
+  (or (action-cleanup-p action)
+      (command-instant-p (action-command action))
+      (trait-p :stops (action-command action))))
 
-(defun tell-of-clash (interface older newer)
-  "Say once if the deed NEWER of INTERFACE has interrupted the deed OLDER of a task beside its own."
+(defun warn-of-clash (interface older newer)
+  "Say once if the action NEWER of INTERFACE has interrupted OLDER, of a task beside its own."
   (when (and newer
-             (clash-p (deed-task older) (deed-task newer))
+             (clash-p (action-task older) (action-task newer))
              (not (gentle-p newer))
-             ;; Who gives way to a higher priority expects it.
-             (notany (lambda (loser) (part-of-p (deed-task older) loser))
+             ;; A task that gives way to a higher priority expects it.
+             (notany (lambda (loser) (part-of-p (action-task older) loser))
                      (valve-losers (interface-valve interface))))
-    (let ((interrupted (deed-text older)) (by (deed-text newer)))
+    (let ((interrupted (action-text older)) (by (action-text newer)))
       (tell-once interface (list :clash interrupted by)
                  "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a ~
                   time. Give them one after the other, or let each task have the robot while it ~
                   needs it: (with-valve ((rpl-robot-valve)) ...)."
-                 interrupted by (deed-resource older)))))
+                 interrupted by (action-resource older)))))
 
 ;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
@@ -182,31 +182,31 @@ has given as many as it may in this tick."
         (let ((at (current-form (frame-node frame) frame)))
           (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
-(defun hurry (older newer)
-  "Return how many ticks, 0 or 1, the deed OLDER was given by its task, which cuts it short by the
-deed NEWER, most likely by mistake; NIL if that may be meant, as where it reacts to an event."
-  (let ((task (deed-task older)) (ticks (- (deed-tick newer) (deed-tick older))))
+(defun haste (older newer)
+  "Return how many ticks, 0 or 1, the action OLDER was given by its task, which cuts it short by the
+action NEWER, most likely by mistake; NIL if that may be meant, as where it reacts to an event."
+  (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
-         (eq task (deed-task newer))
+         (eq task (action-task newer))
          (not (gentle-p older))
          (not (gentle-p newer))
          (not (reacting-to-events-p task nil))
          (or (= 0 ticks)
              (and (= 1 ticks)
                   ;; One may drive on for a tick, too.
-                  (not (trait-p :drives (deed-command older)))
+                  (not (trait-p :drives (action-command older)))
                   (operator-called-p (step-before task) "WAIT-TIME")
                   (not (watches-p task))))
          ticks)))
 
-(defun tell-of-hurry (interface older newer)
-  "Say once if the deed NEWER of INTERFACE has cut OLDER short before it began, or just after."
-  (let ((ticks (and newer (hurry older newer))))
+(defun warn-of-haste (interface older newer)
+  "Say once if the action NEWER of INTERFACE has cut OLDER short before it began, or just after."
+  (let ((ticks (and newer (haste older newer))))
     (when ticks
-      (tell-once interface (list :hurry-in-plan (deed-name older) (deed-name newer))
+      (tell-once interface (list :hurry-in-plan (action-name older) (action-name newer))
                  "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
                   does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries ~
                   out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
-                 (deed-name older) (task-label (task-top (deed-task older))) (= 0 ticks)
-                 (deed-name newer) (deed-resource older)
-                 (wait-text (deed-outcome older) (deed-resource older))))))
+                 (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
+                 (action-name newer) (action-resource older)
+                 (wait-text (action-outcome older) (action-resource older))))))

@@ -74,8 +74,7 @@ pulsed, and never set, begins so. Return their names."
   (storage-bin-jammer* "The camera or hand that kept the bin from closing, or NIL."))
 
 (defun all-fluent-variables ()
-  "Return lists (variable kind) of all fluent variables, in order of definition; the kind of part is
-a symbol, NIL for the robot itself."
+  "Return lists (variable kind) of all fluent variables, in order; the kind of the robot is NIL."
   (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
 
 (defun make-fluents (robot)

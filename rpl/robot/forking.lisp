@@ -61,8 +61,7 @@ plans were begun again since."
       (car (first (last (interface-eras other))))))
 
 (defun begin-era (old new)
-  "Begin an era: tasks that start from now on in NEW, which replaces OLD, are different from those
-that have started in OLD since."
+  "Begin an era in NEW, which replaces OLD: its later tasks differ from those of OLD."
   (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
     (let ((before (interface-of (interface-robot interface) old))
           (number (runner-serial (interface-runner interface))))
@@ -78,26 +77,26 @@ that have started in OLD since."
 ;;; outside: that plans were begun and ended, fluents set, commands issued by plan functions, or
 ;;; tasks suspended. A run that can be rewound records them itself.
 
-(defun react-again ()
+(defun repeat-reaction ()
   (let ((interface (usable-interface)))
     (when interface
       (with-plans (interface) (react-fully interface)))))
 
 (defun note-of-plans (interface function &rest arguments)
-  "Let the run of INTERFACE remember that FUNCTION of ARGUMENTS does again what is done here."
+  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats what is done here."
   (apply #'note-doing (interface-simulation interface) function arguments))
 
-(defun say-again (word arguments serial)
-  "Call the function WORD with ARGUMENTS and the task with the number SERIAL, or the runner of plans
-if that is NIL, as somebody did then."
+(defun repeat-call (word arguments serial)
+  "Repeat a call from outside: of the function WORD with ARGUMENTS and the task numbered SERIAL or,
+if that is NIL, the runner of plans."
   (let* ((interface (usable-interface))
          (runner (and interface (interface-runner interface)))
          (subject (if (and runner serial) (task-numbered serial runner) runner)))
     (when subject (apply word (append arguments (list subject))))))
 
-(defmethod note-word ((interface interface) word arguments subject)
+(defmethod note-outside-call ((interface interface) word arguments subject)
   (when (interface-valid-p interface)
-    (note-of-plans interface #'say-again word arguments
+    (note-of-plans interface #'repeat-call word arguments
                    (and (task-p subject) (task-serial subject)))))
 
 (defun name-of-fluent (fluent)
@@ -109,7 +108,7 @@ if that is NIL, as somebody did then."
           return (list variable index)
         finally (return fluent)))
 
-(defun change-again (function name value)
+(defun repeat-change (function name value)
   "Call FUNCTION with the fluent that NAME, see NAME-OF-FLUENT, means here, and VALUE."
   (funcall function
            (if (consp name)
@@ -121,7 +120,7 @@ if that is NIL, as somebody did then."
 (defun note-change (function fluent value)
   "Remember for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
   (when (and *simulation* (simulation-past *simulation*))
-    (note-doing *simulation* #'change-again function (name-of-fluent fluent) value)))
+    (note-doing *simulation* #'repeat-change function (name-of-fluent fluent) value)))
 
 (defmethod note-outside-change ((interface interface) function fluent value)
   (note-change function fluent value))
@@ -129,7 +128,7 @@ if that is NIL, as somebody did then."
 (defmethod note-outside-change ((interface null) function fluent value)
   (note-change function fluent value))
 
-;;; What the run was that is over is forgotten.
+;;; References to a run that is over are dropped.
 
 (defun realm-of (simulation)
   (cdr (assoc '*realm* (environment-of simulation))))
@@ -144,8 +143,7 @@ if that is NIL, as somebody did then."
 (attend *rewind-hooks* leave-fluents)
 
 (defun give-fluents-back (old new)
-  "Let the fluents of OLD, a run that was rewound, have the values that they have where it has gone
-on, in NEW, which is over."
+  "Set the fluents of OLD, a rewound run, to their values in NEW, its continuation, which is over."
   (let ((from (realm-of new)) (realm (realm-of old)))
     (unless (or (null realm) (eq from realm)) (give-back-all from realm))))
 
@@ -153,8 +151,8 @@ on, in NEW, which is over."
 
 ;; A live run that was rewound has let top-level code work in a fork of where that worked before.
 (defun leave-rewound (robot options)
-  "Let top-level code, now that the simulator of ROBOT has started a run of its own, work again
-where all runs do that are no forks. Fluents have the values there that they had last."
+  "Let top-level code, now that the simulator of ROBOT has started a new run, work again in the
+realm of runs that are no forks. Fluents have the values there that they had last."
   (declare (ignore robot options))
   (let ((from (global-value '*realm*)))
     (unless (eq from +root+)
@@ -185,7 +183,7 @@ where all runs do that are no forks. Fluents have the values there that they had
     (push (interface-ender twin) (robot-enders robot))
     twin))
 
-;; What this thread is at cannot be gone on with elsewhere.
+;; What this thread is in the middle of cannot continue in a fork.
 (defmethod participant-around-p ((interface interface))
   (and (holding-p interface) (not (interface-resting-p interface))))
 
@@ -222,7 +220,7 @@ where all runs do that are no forks. Fluents have the values there that they had
     (and task (format nil "the variable ~(~A~) of the task ~D, ~A"
                       name (task-serial task) (task-label task)))))
 
-;;; What is what.
+;;; Counterparts.
 
 (defmethod counterpart-here ((entity entity))
   (here entity))

@@ -32,9 +32,9 @@ been told since which robot it commands")
   (:state
    (runner nil (or null plan-runner) "what runs the plans" :export)
    (tick-wanted-p nil boolean "the plans are to go on with the next tick")
-   (unwanted '() t "the plans that somebody wants to end")
-   (deeds '() list "the commands of plans that are under way, the oldest first")
-   (answers '() list "what was answered to them and is not yet heard, the oldest first")
+   (ends-requested '() t "the plans that have been asked to end")
+   (actions '() list "the commands of plans that are under way, the oldest first")
+   (answers '() list "the answers to them that are not applied yet, the oldest first")
    (takeovers '() list "how often plans have taken which resource in a tick")
    (takeover-tick nil t "the tick in which that was")
    (wishes '() list "what tasks want done while all plans rest, the oldest first" :export)
@@ -50,15 +50,15 @@ been told since which robot it commands")
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on, :READY for at once, or NIL"))
   (:link
-   (origin '() list "how messages call the plans, kept so that no tick makes it anew")
+   (origin '() list "how messages name the plans, kept so that it is made once")
    (ender nil (or null function) "what the robot calls when its run is over")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a pair of the last failure that the journal was told of, and that remark, or NIL")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")
-   (resting-p nil boolean "whoever holds the plans has them rest, for the run to be forked")
-   (lock (make-lock "plans") t "what whoever touches the plans holds")
-   (deeds-lock (make-lock "commands of plans") t "what whoever touches deeds or answers holds")
+   (resting-p nil boolean "the thread that holds the plans keeps them at rest for a fork")
+   (lock (make-lock "plans") t "what is held to touch the plans")
+   (actions-lock (make-lock "commands of plans") t "what is held to touch actions or answers")
    (holder nil t "the thread that holds the lock, so that plans may start and end others")
    (calls nil (or null user-calls) "what users' code that thread calls")
    (wanted 0 atomic-count "how many threads want the lock, or wait for all to rest")
@@ -85,7 +85,7 @@ been told since which robot it commands")
 (defvar *reacting* nil
   "The interface whose plans react in this thread: they drive its robot and no other.")
 
-;;; Who touches the plans.
+;;; Access to the plans.
 
 (defvar *held* '()
   "The interfaces whose plans this thread holds.")
@@ -124,9 +124,9 @@ for that, or some plan is ready. For any thread."
     (and (realp tick) tick)))
 
 (defun ready-p (interface)
-  "True if plans of INTERFACE are ready, have something to hear, or wait for time. For any thread."
+  "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."
   (and (or (interface-next-tick interface)
-           (heard-from-outside-p (interface-runner interface)))
+           (outside-request-p (interface-runner interface)))
        t))
 
 (defun asks-p (interface)
@@ -171,8 +171,8 @@ that is to be called when it has them. Interrupts wait, but for the extent of AL
           (have))))))
 
 (defun call-with-plans (function interface)
-  "Call FUNCTION while nobody else touches the plans of INTERFACE. Signals MISUSE if one of them is
-known to be at Lisp code that does not return. One that waits in a debugger can be answered here."
+  "Call FUNCTION while no other thread touches the plans of INTERFACE. Signals MISUSE if one of them
+is known to be at Lisp code that does not return. One that waits in a debugger can be answered."
   (check-not-kept interface)
   (check-not-asking interface)
   (if (holding-p interface)

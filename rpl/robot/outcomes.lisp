@@ -4,9 +4,9 @@
 
 (export '(define-outcome))
 
-;;; The functions follow from the commands' definitions: what is the robot's is left out, cameras,
-;;; hands and bins are given by index, and any argument may be a fluent. What becomes of the
-;;; fluents when a command ends is said by DEFINE-OUTCOME, in the table of commands.lisp.
+;;; The functions follow from the commands' definitions: the robot is left out, cameras, hands and
+;;; bins are given by index, and any argument may be a fluent. How the end of a command sets fluents
+;;; is defined by DEFINE-OUTCOME, in the table of commands.lisp.
 
 (defun fluent-of (variable part)
   "Return the fluent in VARIABLE, which for a PART is a vector."
@@ -47,7 +47,7 @@
                              collect (convert-argument argument (spec-type spec) operator))))
         (check-in-plan interface operator command arguments)
         (note-last-command interface operator resource)
-        (issue-deed interface command resource arguments outcome issue)))))
+        (issue-action interface command resource arguments outcome issue)))))
 
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
@@ -61,13 +61,13 @@ and the results, makes settings of its end. Return nothing."
 
 (defun search-under-way (interface)
   "Return the camera of a search for designators that plans of INTERFACE wait for, or NIL."
-  (flet ((search-p (deed)
-           (and (deed-open-p deed)
+  (flet ((search-p (action)
+           (and (action-open-p action)
                 (find-if (lambda (spec)
                            (member (spec-name spec) '(designator designators) :test #'same-name-p))
-                         (command-results (deed-command deed))))))
-    (let ((deed (find-if #'search-p (interface-deeds interface))))
-      (and deed (deed-resource deed)))))
+                         (command-results (action-command action))))))
+    (let ((action (find-if #'search-p (interface-actions interface))))
+      (and action (action-resource action)))))
 
 (defun expected-text (interface type argument)
   "Return in words what to give for ARGUMENT, which is not of TYPE, in a plan of INTERFACE."
@@ -130,7 +130,7 @@ in a clause of KIND (:pulse, which tells of its end, or :error) is the first to 
     (doubt-definition "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
                        plans the robot and the continuation are left out: ~A.~]"
                       name parameters (length forms)
-                      (< (length parameters) (length forms)) (twin-text command-name))))
+                      (< (length parameters) (length forms)) (plan-call-text command-name))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
@@ -149,13 +149,14 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
              collect `(,(if ours 'addition 'public) ,name)
              collect `(setf (get ',command-name 'result-fluents)
                             ',(remove-duplicates (clause-fluents clauses '(:set :error))))
-             collect `(note-twin ',command-name '(,name ,@parameters)
-                                 ',(fluent-form :pulse clauses (first parameters))
-                                 ',(fluent-form :error clauses (first parameters))
-                                 (mapcar #'error-code-keyword
-                                         (command-errors (find-command ',command-name)))
-                                 ',(loop for fluent in (clause-fluents clauses '(:set))
-                                         collect (fluent-in-plan fluent (first parameters))))
+             collect `(note-plan-function
+                       ',command-name '(,name ,@parameters)
+                       ',(fluent-form :pulse clauses (first parameters))
+                       ',(fluent-form :error clauses (first parameters))
+                       (mapcar #'error-code-keyword
+                               (command-errors (find-command ',command-name)))
+                       ',(loop for fluent in (clause-fluents clauses '(:set))
+                               collect (fluent-in-plan fluent (first parameters))))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents.~:[~; (Manual C.)~]"
@@ -171,7 +172,7 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                         (doubt-count-in-plan ',name ',command-name ',parameters arguments)
                         form))))
 
-;;; A command of users' has a function in plans only when it is known what becomes of its end.
+;;; A user's command has a function in plans only if its outcome is defined.
 
 (defun advice-on-command (name)
   "Return in sentences what plans call the command that NAME, a symbol that begins with RPL-, is
@@ -182,9 +183,9 @@ for, or what lets them call it; or NIL."
          (own (and command (plan-function-name (command-name command))))
          (same-p (and own (same-name-p name own))))
     (cond ((null command) nil)
-          ((and (has-twin-p (command-name command)) (not same-p))
+          ((and (has-plan-function-p (command-name command)) (not same-p))
            (format nil "plans call it ~(~A~)." own))
-          ((and same-p (not (has-twin-p (command-name command))))
+          ((and same-p (not (has-plan-function-p (command-name command))))
            (let ((*print-case* :downcase))
              (format nil "plans do not know yet what tells them of the end of the command ~A. Say ~
                           so once: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~

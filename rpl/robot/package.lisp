@@ -38,21 +38,21 @@
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable
                 #:fluent-value #:fluent-name
                 #:set-value #:pulse
-                #:apply-settings #:looked-at-p #:forget-looks
+                #:apply-settings #:was-read-p #:forget-reading
                 #:*interface* #:home-in-use #:note-outside-change #:*runner* #:post #:react-to-all
-                #:exhaust-reaction #:close-runner #:tell-at-rest #:advance-timers #:note-tick
-                #:next-wake-time #:heard-from-outside-p #:runner-idle-p #:set-charges
+                #:exhaust-reaction #:close-runner #:notify-at-rest #:advance-timers #:note-tick
+                #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
                 #:runner-note #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
-                #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-doomed
+                #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-ending-p
                 #:waiting-parts #:failure-text #:missed-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
-                #:fluent-text #:note-twin #:has-twin-p #:twin-text #:pulse-of-command
-                #:last-command #:last-pulse #:endless-advice
+                #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
+                #:pulse-of-command #:last-command #:last-pulse #:endless-advice
                 #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
@@ -62,11 +62,11 @@
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
                 #:call-with-client-still
-                #:hear-of-trouble #:note-seen #:*realm*
+                #:note-plan-trouble #:note-seen #:*realm*
                 #:give-back-all #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:all-tasks #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
                 #:entity-realm #:entity-like
-                #:note-word #:task-now #:advice-on-call #:advice-on-goal))
+                #:note-outside-call #:task-now #:advice-on-call #:advice-on-goal))

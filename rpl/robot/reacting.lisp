@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl-robot)
 
 (export '(wish serve-wish add-wish forget-wish grant-wish wishes-in-tick fork-at-rest
-          unwanted-wish-p call-apart))
+          obsolete-wish-p call-apart))
 
 ;;; A run cannot be forked inside a plan's step, since part of its state is on Lisp's stack. So a
 ;;; task that wants a fork leaves a wish, waits, and goes on in the same tick with the result.
@@ -11,18 +11,17 @@
 ;;; plans react again. A wish contains all that it is about, so that a fork has its twin.
 
 (define-record wish
-  "What TASK of INTERFACE waits for; without a task, what somebody outside wants of a fork."
+  "What TASK of INTERFACE waits for; without a task, what a caller outside wants of a fork."
   (task nil (or null task)
         "the task that waits for the wish to be served, or NIL if none does" :export)
   (interface nil (or null interface) "the interface that has the wish" :export))
 
 (defgeneric serve-wish (wish)
   (:documentation "Do what WISH is about and let its task go on by GRANT-WISH. Called while all
-plans of its interface rest. An error lets the task fail. Return :LATER if nothing has become of
-it."))
+plans of its interface rest. An error lets the task fail. Return :LATER if it was not served."))
 
 (defconstant +most-wishes+ 100
-  "How many wishes are served in a tick. A plan that wishes without end is not to stop time.")
+  "How many wishes are served in a tick, so that endless wishes do not stop time.")
 
 (defun add-wish (wish)
   "Let WISH be served when the plans, which the caller holds, rest."
@@ -83,7 +82,7 @@ it."))
       (unless (serve-next interface)
         (return (if (wish-to-serve interface) :budget outcome))))))
 
-;;; What those who serve need.
+;;; For methods of SERVE-WISH.
 
 (defun fork-at-rest (interface)
   "Return a fork of the simulation of INTERFACE, whose plans rest and are held by the caller."
@@ -92,14 +91,14 @@ it."))
            (fork-simulation (interface-simulation interface)))
     (setf (interface-resting-p interface) nil)))
 
-(defun unwanted-wish-p (wish)
-  "True if nobody waits for what comes of WISH any more: its plan is to end, or all is over."
+(defun obsolete-wish-p (wish)
+  "True if no task waits for the result of WISH any more: its plan is to end, or all is over."
   (let* ((interface (wish-interface wish)) (task (wish-task wish))
          (simulation (interface-simulation interface)))
     (or (interface-closing-p interface)
         (and (simulation-over simulation) t)
         (and (thread-of interface) (not (live-p simulation)))
-        (and task (member (task-top task) (interface-unwanted interface)) t))))
+        (and task (member (task-top task) (interface-ends-requested interface)) t))))
 
 (defun call-apart (function)
   "Call FUNCTION as if no plan were at work around it."
@@ -147,7 +146,7 @@ nothing happens."
         (charge-as-told interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
         (let ((outcome (rolling ((plans-dice interface)) (react-and-serve interface))))
-          ;; Whoever closed it while its plans reacted has left the rest to us.
+          ;; If it was closed while its plans reacted, the rest is done here.
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
                 (t outcome))))))
 
@@ -170,16 +169,16 @@ nothing happens."
 (defun busy-p (interface)
   "True if a command of a plan is in progress, or something else may still change fluents of plans."
   (let ((simulation (interface-simulation interface)))
-    (or (find nil (interface-deeds interface) :key #'deed-over-p)
+    (or (find nil (interface-actions interface) :key #'action-over-p)
         (wish-to-serve interface)
         (plusp (agenda-pending (simulation-agenda simulation)))
         (timeline-inbox (simulation-timeline simulation))
-        (kickers-may-tell-p interface))))
+        (kickers-may-set-fluents-p interface))))
 
-;;; What the journal is told of plans, besides what they did: it is no part of the run.
+;;; Remarks on plans in the journal. They are no part of the run.
 
 (defun remark-trouble (interface kind task failure)
-  "Let the journal of the run of INTERFACE say of TASK, by KIND a :PLAN or a :PART of one, that it
+  "Add a remark to the journal of the run of INTERFACE: TASK, by KIND a :PLAN or a :PART of one, has
 failed by FAILURE or, if that is NIL, was ended. Return the remark."
   (remark (interface-simulation interface) kind
           (format nil "~@[in ~A: ~]~:[task~;plan~] ~A ~:[was ended~;failed: ~:*~A~]"
@@ -187,14 +186,14 @@ failed by FAILURE or, if that is NIL, was ended. Return the remark."
                   (eq :plan kind) (task-label task) (and failure (one-line-text failure)))
           (interface-robot interface)))
 
-(defmethod hear-of-trouble ((interface interface) task failure)
+(defmethod note-plan-trouble ((interface interface) task failure)
   (when (simulation-journal (interface-simulation interface))
     (let ((remark (remark-trouble interface :part task failure)))
       (when failure (setf (interface-told interface) (cons failure remark))))))
 
 (defun remark-end (interface task)
-  "Let the journal of the run of INTERFACE say that TASK, a plan, failed or was ended; and no more
-that this failure happened, if that was just now."
+  "Add a remark to the journal of the run of INTERFACE: TASK, a plan, failed or was ended. Remove
+the one on the same failure of a part in this tick."
   (let ((failure (and (eq :failed (task-state task)) (task-result task)))
         (simulation (interface-simulation interface)))
     (destructuring-bind (&optional told . remark) (shiftf (interface-told interface) nil)
@@ -203,11 +202,11 @@ that this failure happened, if that was just now."
     (remark-trouble interface :plan task failure)))
 
 (defun note-end (interface task)
-  (atomic-remove task (interface-unwanted interface))
+  (atomic-remove task (interface-ends-requested interface))
   (cond ((eq :succeeded (task-state task))
-         (tell-of-unawaited interface task)
-         (tell-of-unread interface task))
-        (t (interrupt-deeds interface task)
+         (warn-of-unawaited interface task)
+         (warn-of-unread interface task))
+        (t (interrupt-actions interface task)
            (remark-end interface task)))
   (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))
 
@@ -218,7 +217,7 @@ that this failure happened, if that was just now."
                       :tick (simulation-tick simulation)
                       :client interface
                       :busy-p (lambda () (busy-p interface))
-                      ;; By which plans that hog their thread are noticed.
+                      ;; To notice plans that hog their thread.
                       :clock (lambda () (and (live-p simulation) (seconds-now)))
                       :slow *hog-seconds*
                       :on-post (lambda () (call-to-plans interface))

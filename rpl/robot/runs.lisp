@@ -10,8 +10,8 @@
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
 
 (defun robot-to-drive ()
-  "Return the robot of the current simulation that plans are to drive if nobody has said which: the
-only one, or that of the prompt. Signals MISUSE if that could be several, or the run is over."
+  "Return the robot of the current simulation that plans drive by default: the only one, or that of
+the prompt. Signals MISUSE if that could be several, or the run is over."
   (check-not-over (current-simulation))
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
@@ -22,8 +22,8 @@ only one, or that of the prompt. Signals MISUSE if that could be several, or the
                          (and robots (robot-name (first robots))))))))
 
 (defun note-robot-commanded ()
-  "Note that the prompt in which this thread is has been told which robot it commands from now on:
-plans that begin later drive that one, whatever RPL-INIT-ROBOT has said before."
+  "Note that the prompt of this thread commands another robot from now on: plans that begin later
+drive that one, even after an RPL-INIT-ROBOT."
   (let ((interface (usable-interface)))
     (when interface (setf (interface-commanded interface) :none))))
 
@@ -92,7 +92,7 @@ it runs as ticks pass; live in a thread of its own. Signals UNKNOWN-NAME."
   "Pass ticks, headless, in which the plans of INTERFACE react, until OVER, a function, returns
 true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT at tick LAST."
   (let ((simulation (interface-simulation interface)))
-    (note-of-plans interface #'react-again)
+    (note-of-plans interface #'repeat-reaction)
     (with-plans (interface) (react-fully interface))
     (loop
       (let ((how (funcall over))) (when how (return how)))
@@ -108,7 +108,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
         (t :stopped)))
 
 (defun run-headless (interface task)
-  "Pass ticks until TASK is over. Return its state, or how it came that it is not over."
+  "Pass ticks until TASK is over. Return its state, or why it is not over."
   (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
                   "a number of ticks, up to 1e9")
   (pass-until interface
@@ -116,8 +116,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
               (+ (simulation-tick (interface-simulation interface)) *plan-limit*)))
 
 (defun await-over (interface task)
-  "Wait until TASK is over, live. Return its state, or why it is not over. Warn once if only a call
-from outside can wake the plans."
+  "Wait live until TASK ends. Return its state, or why not. Warn once if only calls can wake plans."
   (let ((over (make-semaphore "plan over"))
         (simulation (interface-simulation interface))
         (told nil))
@@ -130,7 +129,7 @@ from outside can wake the plans."
                     ((not (and (live-p simulation) (interface-valid-p interface)))
                      (return :stopped))
                     ((task-over-p task) (return (task-state task)))
-                    ;; Who is at a break holds the plans until it is answered, perhaps here.
+                    ;; A plan at a break holds the plans until that is answered, perhaps here.
                     ((and (not told)
                           (null (interface-holder interface))
                           (deadlocked-p interface))
@@ -148,7 +147,7 @@ from outside can wake the plans."
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here."))
   (doubt-wait 'run-plan (interface-simulation interface)))
 
-;;; What did not end.
+;;; Plans that did not end.
 
 (defun report-limit (interface task)
   (error-set "The plan " (task-label task) " was given up at tick "
@@ -171,7 +170,7 @@ from outside can wake the plans."
   "A function of the task of a plan that RUN-PLAN ran and that failed; a trial binds it.")
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
-(defun tell-of-failure (interface task)
+(defun warn-of-failure (interface task)
   "Say once for each plan of a run that TASK, which RUN-PLAN ran for a program, failed."
   (let ((simulation (interface-simulation interface)))
     (funcall *plan-failed* task)
@@ -211,7 +210,7 @@ MISUSE, also if the run is over before it begins."
                            (setf task begun)
                            (atomic-push begun (interface-awaited interface))))
                (setf state (await-plan interface task))
-               (when (eq :failed state) (tell-of-failure interface task)))
+               (when (eq :failed state) (warn-of-failure interface task)))
         (when (and task (not (task-over-p task))) (end-in interface task))
         (when task (atomic-remove task (interface-awaited interface))))
       (values (task-result task) state))))
@@ -225,30 +224,30 @@ MISUSE, also if the run is over before it begins."
       (tasks-of interface))))
 
 (defun want-end (interface task)
-  "Let TASK of INTERFACE, or all if it is NIL, evaporate when its runner gets to that."
+  "Ask TASK of INTERFACE, or all if it is NIL, to evaporate; its runner does it later."
   (check-not-secluded (interface-simulation interface))
-  (note-of-plans interface #'say-again #'end-again '() (and task (task-serial task)))
+  (note-of-plans interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of interface)))
-    (unless (task-over-p task) (atomic-push task (interface-unwanted interface))))
+    (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
   (stop-plan (interface-runner interface) task))
 
 (defun end-in (interface task)
-  "Let TASK of INTERFACE, or all if it is NIL, evaporate: now, or when their thread gets to it."
+  "Evaporate TASK of INTERFACE, or all if it is NIL: now, or later in the thread of the plans."
   (want-end interface task)
   (unless (or (holding-p interface) (thread-of interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
-(defun end-again (subject)
-  "End SUBJECT, a task or, for all of its plans, a runner, as somebody did then."
+(defun repeat-end (subject)
+  "Repeat the end of SUBJECT, a task or, for all of its plans, a runner."
   (end-in (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
   "True if TASK, a plan, was ended from outside; it may still be running."
   (let ((interface (usable-interface)))
     (or (task-over-p task)
-        (task-doomed task)
-        (and interface (member task (interface-unwanted interface)) t))))
+        (task-ending-p task)
+        (and interface (member task (interface-ends-requested interface)) t))))
 
 (defun end-task (task)
   "Evaporate TASK, of any runner: at once if it belongs to the current plans."
@@ -259,8 +258,8 @@ MISUSE, also if the run is over before it begins."
           (t (want-end interface task)))))
 
 (defun elsewhere-p (interface)
-  "True if this thread works in another run than that of INTERFACE, where that may have come to: in
-a fork of it, or in the one that goes on since it was rewound."
+  "True if this thread works in a run that continues that of INTERFACE: a fork of it, or the one
+that has replaced it since a rewind."
   (and *simulation*
        (not (eq *simulation* (interface-simulation interface)))
        (or (fork-p *simulation*)

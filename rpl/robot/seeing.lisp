@@ -20,7 +20,7 @@
 
 (attend *plan-start-hooks* trace-if-wanted)
 
-;; What was kept of the run, to go back to, may be older than that a trace is wanted.
+;; The state that was restored may be older than the wish for a trace.
 (defun trace-rewound (old new)
   (declare (ignore old))
   (when *trace-plans*
@@ -60,7 +60,7 @@ is true, also print stacks, variables and valves: see PRINT-TASKS."
   (declare (ignore runner))
   (asking (robot) (failure-sentences robot)))
 
-;; Where a runner says whose tasks are meant, no robot is.
+;; With a runner, a task is meant and no robot.
 (defmethod reasons ((name symbol) runner)
   (if (or runner (null name))
       (call-next-method)

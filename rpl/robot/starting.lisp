@@ -34,10 +34,9 @@ or around this call, as soon as they can."
       (add-participant interface simulation)
       (push (interface-ender interface) (robot-enders (interface-robot interface))))))
 
-;; The prompt sets it to know the robot that it commands.
+;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *robot-to-drive* (constantly nil)
-  "A function that returns which of several robots plans are to drive if nobody has said so; or NIL
-if there is none.")
+  "A function that returns which of several robots plans drive by default, or NIL.")
 
 (defun commanded-robot ()
   "Return the robot that the prompt commands in which this thread is, or NIL."
@@ -58,7 +57,7 @@ simulation inside of a live one has only inherited is left alone."
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
-(defun tell-of-ended (interface robot)
+(defun warn-of-ended (interface robot)
   "Say once if plans of INTERFACE end, as plans are to drive ROBOT, another one of the same run, or
 as one of them says so itself."
   (let* ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface))
@@ -73,13 +72,13 @@ as one of them says so itself."
                   robots by commands and continuations~;. Call it before the plan, not in it~]."
                  robot (length tasks) (mapcar #'task-label tasks) before same-p))))
 
-;; What is bound to *TRACE-PLANS* around a doing is gone when that is done again.
+;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
 (defun do-traced (traced-p function &rest arguments)
-  "Call FUNCTION with ARGUMENTS, as was done where plans were to be traced if TRACED-P."
+  "Call FUNCTION with ARGUMENTS, and trace plans if TRACED-P."
   (let ((*trace-plans* (or traced-p *trace-plans*)))
     (apply function arguments)))
 
-;; Who repeats a run says which eras these were, so that the tasks of then are known.
+;; A repeated run gives the eras that it had, so that its tasks are recognized.
 (defun drive-in-eras (robot eras)
   "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return the interface."
   ;; Other threads may set the variable meanwhile.
@@ -107,7 +106,7 @@ there. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than th
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
          (before *interface*))
-    (when before (tell-of-ended before robot))
+    (when before (warn-of-ended before robot))
     (init-robot robot)
     robot))
 
@@ -144,7 +143,7 @@ wait, and for something else. True if so. Most ticks are like that."
   (or (interface-origin interface)
       (setf (interface-origin interface) (list "the plans of " (interface-robot interface)))))
 
-;; If plans have a thread only that lets them react: one may be waiting for the owner to answer it.
+;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
   (look-for-outside interface)
   (cond ((thread-of interface)
@@ -155,7 +154,7 @@ wait, and for something else. True if so. Most ticks are like that."
          (if (live-p simulation)
              (with-plans (interface)
                (unless (rest-fully interface) (react-fully interface)))
-             ;; Headless nobody else is there, and most ticks need no lock.
+             ;; Headless there is no other thread, and most ticks need no lock.
              (unless (and (null (interface-holder interface)) (rest-fully interface))
                (with-plans (interface) (react-fully interface)))))
         ((tasks-of interface) (ensure-thread interface))
@@ -171,8 +170,7 @@ wait, and for something else. True if so. Most ticks are like that."
         ((wish-to-serve interface) t)
         ((live-p simulation) (and (thread-wanted-p interface) (tasks-of interface) t))))
 
-;; Plans that have heard what was posted are held, and who holds them publishes what is left before
-;; they are free.
+;; A thread that applies posts holds the plans, and publishes what is left before it releases them.
 (defmethod participant-at-work-p ((interface interface))
   (or (ready-p interface)
       (interface-holder interface)

@@ -9,8 +9,7 @@
 ;;; the simulator has stopped.
 
 (defstruct (look (:constructor make-look (rests steps task)) (:copier nil))
-  "A sample of the plans' thread: how often it had come to rest, how many steps had been taken, and
-the running TASK, or NIL."
+  "A sample of the plans' thread: its counts of rests and of steps, and the running TASK, or NIL."
   (rests 0 :read-only t)
   (steps 0 :read-only t)
   (task nil :read-only t))
@@ -34,10 +33,10 @@ the running TASK, or NIL."
   (and (busy-since-p look earlier)
        (eql (look-steps look) (look-steps earlier))))
 
-(defun unwanted-p (interface task)
+(defun end-requested-p (interface task)
   (or (interface-closing-p interface)
       (not (live-p (interface-simulation interface)))
-      (member (task-top task) (interface-unwanted interface))))
+      (member (task-top task) (interface-ends-requested interface))))
 
 (defun warn-of-plan (task)
   (warn-at-once (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
@@ -59,8 +58,8 @@ the running TASK, or NIL."
         (stop-plan (interface-runner interface) (task-top (look-task look))))))
 
 (defun watch-plans (interface thread calls ended)
-  "Name what the plans' THREAD, in the users' CALLS, does not get out of, and end it if it is to
-end, until the semaphore ENDED says that the thread has."
+  "Watch the plans' THREAD, with the users' CALLS that it makes, until the semaphore ENDED says that
+it has ended: warn of plans that keep it, and end them if they are to end."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
         do (let ((look (look-at interface thread)))
@@ -70,7 +69,7 @@ end, until the semaphore ENDED says that the thread has."
                    (interface-hog interface) (and (<= 3 stuck) (look-task look)))
              (unless (user-calls-waiting-p calls)
                (when (= 3 stuck) (warn-of-plan (look-task look)))
-               (when (and (<= 3 busy) (unwanted-p interface (look-task look)))
+               (when (and (<= 3 busy) (end-requested-p interface (look-task look)))
                  (end-hog interface thread look (<= 3 stuck)))))
         finally (setf (interface-hog interface) nil)))
 
@@ -80,18 +79,17 @@ end, until the semaphore ENDED says that the thread has."
 (defun leave-to-ticks (interface)
   "Run the plans of INTERFACE in the ticks from now on, without a thread."
   (swap-if (interface-thread interface) (current-thread) nil)
-  ;; Somebody may have closed it, and left that to this thread, before it had none.
+  ;; Another thread may have closed it before, and left the rest to this one.
   (when (interface-closing-p interface) (react-fully interface))
   (wake-owner (simulation-timeline (interface-simulation interface)))
   :over)
 
 (defun react-in-thread (interface)
-  "Let the plans of INTERFACE react. Return :IDLE or :BUDGET, :OVER if there are none to go on here,
-NIL if that was aborted."
+  "Let the plans of INTERFACE react. Return :IDLE, :BUDGET, :OVER if none go on, or NIL if aborted."
   (with-plans (interface)
     (unless (timeline-real-p (simulation-timeline (interface-simulation interface)))
       (return-from react-in-thread (leave-to-ticks interface)))
-    ;; Looked at first: what is to end the plans is heard in this reaction.
+    ;; Read first: a request to end the plans is served in this reaction.
     (let* ((closing-p (interface-closing-p interface))
            (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
       (cond ((and (tasks-of interface) (not closing-p))
@@ -122,9 +120,9 @@ NIL if that was aborted."
     (let-fork-be-kept (interface-simulation interface))
     (ecase (react-in-thread interface)
       (:over (return))
-      ;; A tick may have come meanwhile for which nobody was told to wake.
+      ;; A tick may have come meanwhile without a call to wake.
       (:idle (unless (woken-by-tick-p interface)
-               ;; Where somebody listens to messages, as at the prompt, that is told anyway.
+               ;; With a listener for messages, as at the prompt, that is reported anyway.
                (unless (message-queue-listener *message-queue*) (look-for-stranded interface))
                (rest-plans interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))

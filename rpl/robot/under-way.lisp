@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.rpl-robot)
 
-;;; A command that a plan has issued is a DEED until its last answer has been applied.
+;;; A command that a plan has issued is an ACTION until its last answer has been applied.
 
-(defstruct (deed (:constructor make-deed (command resource outcome task cleanup-p issue tick))
-                 (:copier nil))
+(defstruct (action (:constructor make-action (command resource outcome task cleanup-p issue tick))
+                   (:copier nil))
   "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for at TICK, perhaps to clean up.
 OUTCOME makes settings of an answer."
   (command nil :type command :read-only t)
@@ -25,28 +25,28 @@ OUTCOME makes settings of an answer."
   ;; Its last answer has come.
   (over-p nil))
 
-(defun deed-name (deed)
-  (command-name (deed-command deed)))
+(defun action-name (action)
+  (command-name (action-command action)))
 
-(defstruct (answer (:constructor make-answer (deed err settings last-p)) (:copier nil))
-  "SETTINGS that an answer to DEED with the error code ERR means, not yet heard."
-  (deed nil :type deed :read-only t)
+(defstruct (answer (:constructor make-answer (action err settings last-p)) (:copier nil))
+  "SETTINGS that an answer to ACTION with the error code ERR means, not yet applied."
+  (action nil :type action :read-only t)
   (err nil :read-only t)
   (settings '() :type list :read-only t)
   (last-p nil :read-only t))
 
-(defun add-deed (deed interface)
-  (with-lock ((interface-deeds-lock interface))
-    (setf (interface-deeds interface) (append (interface-deeds interface) (list deed))))
-  deed)
+(defun add-action (action interface)
+  (with-lock ((interface-actions-lock interface))
+    (setf (interface-actions interface) (append (interface-actions interface) (list action))))
+  action)
 
-(defun forget-deed (deed interface)
-  (with-lock ((interface-deeds-lock interface))
-    (removef (interface-deeds interface) deed)))
+(defun forget-action (action interface)
+  (with-lock ((interface-actions-lock interface))
+    (removef (interface-actions interface) action)))
 
-(defun deed-open-p (deed)
-  "True if DEED is in progress, and its end was not reported."
-  (not (or (deed-told-p deed) (deed-over-p deed))))
+(defun action-open-p (action)
+  "True if ACTION is in progress, and its end was not reported."
+  (not (or (action-told-p action) (action-over-p action))))
 
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
 
@@ -61,23 +61,22 @@ OUTCOME makes settings of an answer."
   (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
-  (with-lock ((interface-deeds-lock interface))
+  (with-lock ((interface-actions-lock interface))
     (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
 
 (defun take-answer (answer interface)
-  "Remove ANSWER from those not applied yet, and with the last one its deed. True unless another
-thread has done so before."
-  (with-lock ((interface-deeds-lock interface))
+  "Remove ANSWER from those not applied, and with the last one its action. True if it was there."
+  (with-lock ((interface-actions-lock interface))
     (when (member answer (interface-answers interface))
       (removef (interface-answers interface) answer)
-      (when (answer-last-p answer) (removef (interface-deeds interface) (answer-deed answer)))
+      (when (answer-last-p answer) (removef (interface-actions interface) (answer-action answer)))
       t)))
 
-(defun ends-by-command-p (deed)
-  "True if a new command on its resource interrupts DEED when it is issued: unless it takes no time,
-and is carried out first, or goes on in the background."
-  (not (or (deed-begun-p deed)
-           (command-instant-p (deed-command deed)))))
+(defun ends-by-command-p (action)
+  "True if a new command on its resource interrupts ACTION when it is issued: unless it takes no
+time, and is carried out first, or goes on in the background."
+  (not (or (action-begun-p action)
+           (command-instant-p (action-command action)))))
 
 ;;; The simulator answers in its own thread. An answer, a list of settings of fluents, is applied
 ;;; between two reactions of plans. When a plan's command interrupts older ones on its resource,
@@ -85,10 +84,10 @@ and is carried out first, or goes on in the background."
 ;;; after a command gets the end of that command. The simulator's own later answer to an
 ;;; interrupted command sets only the fluents for the state of the robot: no error fluent, no pulse.
 
-(defun note-pulses (interface deed settings)
-  "Note which fluents SETTINGS, of the end of DEED of INTERFACE, pulse in this tick."
-  (when (deed-task deed)
-    (loop with plan = (task-serial (task-top (deed-task deed)))
+(defun note-pulses (interface action settings)
+  "Note which fluents SETTINGS, of the end of ACTION of INTERFACE, pulse in this tick."
+  (when (action-task action)
+    (loop with plan = (task-serial (task-top (action-task action)))
           for (kind fluent) in settings
           for name = (and (eq :pulse kind) (fluent-name fluent))
           when name
@@ -102,52 +101,52 @@ and is carried out first, or goes on in the background."
       (assoc (fluent-name fluent) (interface-pulses interface) :test #'equal)
     (and name (eql plan (task-serial (task-top task))) tick)))
 
-(defun hear (answer interface)
+(defun apply-answer (answer interface)
   "Apply ANSWER, unless that was done. The caller holds the plans."
   (when (take-answer answer interface)
-    (let ((deed (answer-deed answer)) (settings (answer-settings answer)))
-      (setf (deed-begun-p deed) t)
-      (note-unread interface deed (answer-err answer))
-      (unless (deed-told-p deed) (note-pulses interface deed settings))
-      (with-answer ((deed-issue deed) (answer-err answer))
-        (apply-settings (if (deed-told-p deed)
+    (let ((action (answer-action answer)) (settings (answer-settings answer)))
+      (setf (action-begun-p action) t)
+      (note-unread interface action (answer-err answer))
+      (unless (action-told-p action) (note-pulses interface action settings))
+      (with-answer ((action-issue action) (answer-err answer))
+        (apply-settings (if (action-told-p action)
                             ;; What the robot is or has.
                             (remove :set settings :key #'first :test-not #'eq)
                             (plain-settings settings)))))))
 
-(defun post-answer (interface deed err results)
-  "Post the answer to DEED, with ERR and RESULTS, to its plans. In the simulator's thread."
+(defun post-answer (interface action err results)
+  "Post the answer to ACTION, with ERR and RESULTS, to its plans. In the simulator's thread."
   (let ((settings '()))
     (in-any-case
-      (setf settings (apply (deed-outcome deed) (deed-resource deed) err results))
-      (let ((answer (make-answer deed err settings (ends-p (deed-command deed) err))))
+      (setf settings (apply (action-outcome action) (action-resource action) err results))
+      (let ((answer (make-answer action err settings (ends-p (action-command action) err))))
         (add-answer answer interface)
-        (post (interface-runner interface) (lambda () (hear answer interface)))
-        (when (answer-last-p answer) (setf (deed-over-p deed) t))))))
+        (post (interface-runner interface) (lambda () (apply-answer answer interface)))
+        (when (answer-last-p answer) (setf (action-over-p action) t))))))
 
-(defun answering (interface deed)
-  (setf (deed-continuation deed)
+(defun answering (interface action)
+  (setf (action-continuation action)
         (lambda (err resource &rest results)
           (declare (ignore resource))
-          (post-answer interface deed err results))))
+          (post-answer interface action err results))))
 
 ;;; Telling before the simulator does.
 
-(defun tell-interrupted (deed)
-  "Report to plans that DEED was interrupted, as soon as its task has reached its wait."
-  (setf (deed-told-p deed) t)
-  (tell-at-rest (deed-task deed)
+(defun tell-interrupted (action)
+  "Report to plans that ACTION was interrupted, as soon as its task has reached its wait."
+  (setf (action-told-p action) t)
+  (notify-at-rest (action-task action)
                 (lambda ()
-                  (with-answer ((deed-issue deed) :interrupt)
+                  (with-answer ((action-issue action) :interrupt)
                     (apply-settings (plain-settings
-                                     (funcall (deed-outcome deed) (deed-resource deed)
+                                     (funcall (action-outcome action) (action-resource action)
                                               :interrupt)))))))
 
-(defun hear-answers-on (resource interface except)
+(defun apply-answers-on (resource interface except)
   (dolist (answer (interface-answers interface))
-    (let ((deed (answer-deed answer)))
-      (when (and (eq resource (deed-resource deed)) (not (eq deed except)))
-        (tell-at-rest (deed-task deed) (lambda () (hear answer interface)))))))
+    (let ((action (answer-action answer)))
+      (when (and (eq resource (action-resource action)) (not (eq action except)))
+        (notify-at-rest (action-task action) (lambda () (apply-answer answer interface)))))))
 
 (defun reacting-p (interface)
   (eq *runner* (interface-runner interface)))
@@ -157,47 +156,46 @@ and is carried out first, or goes on in the background."
     (and task (eq :running (task-state task)) task)))
 
 (defun take-over (interface resource &key except (test #'ends-by-command-p))
-  "Report to plans that the deeds on RESOURCE, except EXCEPT, for which TEST is true, were ended by
-the plan at work, if there is one."
+  "Report that the plan at work, if any, ended the actions on RESOURCE, but EXCEPT, that pass TEST."
   (when (reacting-p interface)
-    (hear-answers-on resource interface except)
-    (dolist (deed (interface-deeds interface))
-      (when (and (eq resource (deed-resource deed))
-                 (not (eq deed except))
-                 (deed-open-p deed)
-                 (funcall test deed))
-        (tell-of-clash interface deed except)
-        (tell-of-hurry interface deed except)
-        (tell-interrupted deed)
-        (count-takeover interface resource (deed-task deed) (task-at-work interface))))))
+    (apply-answers-on resource interface except)
+    (dolist (action (interface-actions interface))
+      (when (and (eq resource (action-resource action))
+                 (not (eq action except))
+                 (action-open-p action)
+                 (funcall test action))
+        (warn-of-clash interface action except)
+        (warn-of-haste interface action except)
+        (tell-interrupted action)
+        (count-takeover interface resource (action-task action) (task-at-work interface))))))
 
 ;;; Issuing.
 
 (defun call-on-robot (interface function)
-  "Call FUNCTION, which does something with the robot of INTERFACE. Should that be gone just now,
-the plan at work ends; an error says no more than that."
+  "Call FUNCTION, which does something with the robot of INTERFACE. If it signals an error because
+the robot is gone, end the plan at work."
   (handler-bind ((error (lambda (condition)
                           (declare (ignore condition))
                           (unless (interface-valid-p interface) (leave-plan)))))
     (funcall function)))
 
-(defun issue-deed (interface command resource arguments outcome issue)
-  "Issue COMMAND on RESOURCE; OUTCOME says what plans hear of its end. ISSUE is for the trace."
+(defun issue-action (interface command resource arguments outcome issue)
+  "Issue COMMAND on RESOURCE; OUTCOME makes settings of its end. ISSUE is for the trace."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
-         (deed (make-deed command resource outcome task cleanup-p issue
-                          (simulation-tick (interface-simulation interface))))
+         (action (make-action command resource outcome task cleanup-p issue
+                              (simulation-tick (interface-simulation interface))))
          (issued-p nil))
     (when (and task (not cleanup-p)) (count-command task command outcome resource))
-    (add-deed deed interface)
+    (add-action action interface)
     (in-any-case
       (progn (call-on-robot interface
                             (lambda ()
                               (apply (command-name command) resource
-                                     (append arguments (list (answering interface deed))))))
+                                     (append arguments (list (answering interface action))))))
              (setf issued-p t))
-      (unless issued-p (forget-deed deed interface)))
-    (take-over interface resource :except deed)))
+      (unless issued-p (forget-action action interface)))
+    (take-over interface resource :except action)))
 
 (defun grab (interface resource)
   "Interrupt whatever goes on on RESOURCE, also what takes no time and in the background."
@@ -209,31 +207,31 @@ the plan at work ends; an error says no more than that."
 
 ;; Another thread may end the run at any time, and the robot may be in another run by now: then the
 ;; end of the run has interrupted the command, or will.
-(defun withdraw-deed (deed interface)
-  "Have the command of DEED interrupted, unless the run of INTERFACE is over."
+(defun withdraw-action (action interface)
+  "Have the command of ACTION interrupted, unless the run of INTERFACE is over."
   (let ((simulation (interface-simulation interface)))
     (flet ((over-p ()
              (or (simulation-over simulation)
                  (not (eq simulation (robot-simulation (interface-robot interface)))))))
       (unless (over-p)
-        (handler-case (withdraw-command (deed-resource deed) (deed-continuation deed))
+        (handler-case (withdraw-command (action-resource action) (action-continuation action))
           (misuse (condition) (unless (over-p) (error condition))))))))
 
-;; What was issued to clean up is meant to last.
-(defun interrupt-deeds (interface task)
+;; Commands that were issued to clean up go on.
+(defun interrupt-actions (interface task)
   "Interrupt what the top-level TASK, which has not succeeded, has asked for and is under way."
-  (dolist (deed (interface-deeds interface))
-    (when (and (deed-open-p deed)
-               (deed-task deed)
-               (eq task (task-top (deed-task deed)))
-               (not (deed-cleanup-p deed))
-               (not (command-instant-p (deed-command deed))))
-      (withdraw-deed deed interface)
-      (tell-interrupted deed))))
+  (dolist (action (interface-actions interface))
+    (when (and (action-open-p action)
+               (action-task action)
+               (eq task (task-top (action-task action)))
+               (not (action-cleanup-p action))
+               (not (command-instant-p (action-command action))))
+      (withdraw-action action interface)
+      (tell-interrupted action))))
 
-;;; Fluents tell plans how their own commands end. What the prompt or a program has told the robot
-;;; to do ends unheard, and a plan such as (whenever robot-stopped* ...) stays silent. Plans that
-;;; wait once are named where that is said of all that wait in vain; see warnings.lisp.
+;;; Fluents are set by the commands of plans only. The end of a command of the prompt or a program
+;;; sets none, so a plan such as (whenever robot-stopped* ...) does not react to it. A wait for one
+;;; event is treated in warnings.lisp.
 
 (defun watcher-of-end (interface command)
   "Return a top-level task of INTERFACE, which this thread holds, that watches for the end of
@@ -244,22 +242,22 @@ commands of the robot such as COMMAND; or NIL."
                  (and (some #'watches-p parts) (member pulse (fluents-awaited parts)))))
              (tasks-of interface))))
 
-(defun tell-of-outside (interface command)
+(defun warn-of-outside (interface command)
   (let ((task (call-with-plans-if-free (lambda () (watcher-of-end interface command)) interface)))
     (when task
       (tell-once interface (list :outside (task-label task))
-                 "~(~A~) has ended. No plan has given it, so the plan ~A, which waits for ~A, does ~
-                  not hear of it. Let a plan give it: ~A."
+                 "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is ~
+                  not woken. Let a plan issue it: ~A."
                  command (task-label task)
                  (fluent-text (symbol-value (pulse-of-command command)))
-                 (twin-text command)))))
+                 (plan-call-text command)))))
 
 (defun look-for-outside (interface)
   (let* ((robot (interface-robot interface))
          (event (resource-event robot))
          (command (and (operation-p event)
-                       (not (find robot (interface-deeds interface) :key #'deed-resource))
+                       (not (find robot (interface-actions interface) :key #'action-resource))
                        (command-name (operation-command event))))
          (before (shiftf (interface-outside interface) command)))
     (when (and before (null command) (pulse-of-command before) (tasks-of interface))
-      (tell-of-outside interface before))))
+      (warn-of-outside interface before))))

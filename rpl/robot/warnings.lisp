@@ -6,39 +6,39 @@
 ;;; run on by themselves; most of them move things, and know no fluents. So their code is looked
 ;;; through, and that of users' functions which it calls.
 
-(defparameter *functions-that-tell*
+(defparameter *fluent-setters*
   '(set-value pulse (setf fluent-value) begin-plan)
   "The names of functions by which code may change a fluent, or have a plan do so.")
 
-(defun tells-p (object seen)
+(defun may-set-fluents-p (object seen)
   "True if OBJECT, in the code of a function, or what that calls, may change a fluent. SEEN is a
 table of what has been looked through."
-  (cond ((member object *functions-that-tell* :test #'equal))
+  (cond ((member object *fluent-setters* :test #'equal))
         ((gethash object seen) nil)
         ((functionp object)
          (setf (gethash object seen) t)
-         (some (lambda (part) (tells-p part seen)) (code-references object)))
+         (some (lambda (part) (may-set-fluents-p part seen)) (code-references object)))
         ((and (symbolp object) (users-symbol-p object) (fboundp object)
               (not (macro-function object)))
          (setf (gethash object seen) t)
-         (tells-p (fdefinition object) seen))))
+         (may-set-fluents-p (fdefinition object) seen))))
 
-(defvar *tellers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "What is known of the kickers in the run of an interface: lists of conses (kicker . tells-p).")
+(defvar *known-kickers* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "For each interface an alist of kickers: whether they may change fluents.")
 
-(defun telling-kicker-p (kicker interface)
-  (let ((known (assoc kicker (gethash interface *tellers*) :test #'eq)))
+(defun kicker-sets-fluents-p (kicker interface)
+  (let ((known (assoc kicker (gethash interface *known-kickers*) :test #'eq)))
     (if known
         (cdr known)
         (let* ((seen (make-hash-table :test 'eq))
-               (answer (and (or (tells-p (kicker-body kicker) seen)
-                                (tells-p (kicker-test kicker) seen))
+               (answer (and (or (may-set-fluents-p (kicker-body kicker) seen)
+                                (may-set-fluents-p (kicker-test kicker) seen))
                             t)))
-          (push (cons kicker answer) (gethash interface *tellers*))
+          (push (cons kicker answer) (gethash interface *known-kickers*))
           answer))))
 
-(defun kickers-may-tell-p (interface)
-  (some-kicker (lambda (kicker) (telling-kicker-p kicker interface))
+(defun kickers-may-set-fluents-p (interface)
+  (some-kicker (lambda (kicker) (kicker-sets-fluents-p kicker interface))
                (simulation-world (interface-simulation interface))))
 
 ;;; Commands do not fail: fluents such as ROBOT-MOVEMENT-ERROR* tell how they have ended. A plan
@@ -59,8 +59,7 @@ table of what has been looked through."
 ;; Plain data, so that forks have it, too.
 (defstruct (unread-end (:type list) (:conc-name unread-)
                        (:constructor make-unread (plan command part err)) (:copier nil))
-  "That COMMAND, a name, on the part numbered PART (NIL: the robot) has ended with ERR, of a plan
-with the serial number PLAN."
+  "That COMMAND, a name, of the plan numbered PLAN on the part PART (NIL: robot) ended with ERR."
   plan command part err)
 
 (defun number-of-part (resource)
@@ -73,13 +72,13 @@ with the serial number PLAN."
         collect (if (simple-vector-p value) (svref value (unread-part unread)) value)))
 
 (defun still-unread-p (unread)
-  (notany #'looked-at-p (unread-fluents unread)))
+  (notany #'was-read-p (unread-fluents unread)))
 
-(defun note-unread (interface deed err)
-  "Note that DEED of INTERFACE has ended with ERR, before anybody can have looked at that; it
-supersedes how the same command ended before."
-  (let ((command (deed-name deed)) (task (deed-task deed))
-        (part (number-of-part (deed-resource deed))))
+(defun note-unread (interface action err)
+  "Note that ACTION of INTERFACE has ended with ERR, before this can be read. It supersedes the last
+end of the same command."
+  (let ((command (action-name action)) (task (action-task action))
+        (part (number-of-part (action-resource action))))
     (when (or err (interface-unread interface))
       (setf (interface-unread interface)
             (remove-if (lambda (unread)
@@ -88,16 +87,16 @@ supersedes how the same command ended before."
                                   (eql part (unread-part unread)))))
                        (interface-unread interface))))
     (when (and task
-               (came-to-nothing-p (deed-command deed) err)
-               (not (deed-told-p deed))
-               (not (deed-cleanup-p deed)))
+               (came-to-nothing-p (action-command action) err)
+               (not (action-told-p action))
+               (not (action-cleanup-p action)))
       (let ((unread (make-unread (task-serial (task-top task)) command part err)))
-        (mapc #'forget-looks (unread-fluents unread))
-        ;; Who waits for one of them will be woken.
+        (mapc #'forget-reading (unread-fluents unread))
+        ;; A task that waits for one of them will be woken.
         (when (still-unread-p unread) (push unread (interface-unread interface)))))))
 
-(defun tell-of-unread (interface task)
-  "Say once if a command of TASK, which has succeeded, came to nothing and nobody has looked."
+(defun warn-of-unread (interface task)
+  "Say once if a command of TASK, which has succeeded, came to nothing and that was not read."
   (let* ((serial (task-serial task))
          (all (interface-unread interface))
          (unread (find-if #'still-unread-p (remove serial all :key #'unread-plan :test-not #'eql)))
@@ -118,36 +117,36 @@ supersedes how the same command ended before."
 ;;; commands that take no time and do more than look, go on in the background, stop the robot, or
 ;;; were given to clean up.
 
-(defun unawaited-deeds (interface task)
+(defun unawaited-actions (interface task)
   "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
-  (remove-if-not (lambda (deed)
-                   (and (deed-open-p deed)
-                        (or (ends-by-command-p deed)
-                            (trait-p :asks (deed-command deed)))
-                        (not (trait-p :stops (deed-command deed)))
-                        (not (deed-cleanup-p deed))
-                        (deed-task deed)
-                        (eq task (task-top (deed-task deed)))))
-                 (interface-deeds interface)))
+  (remove-if-not (lambda (action)
+                   (and (action-open-p action)
+                        (or (ends-by-command-p action)
+                            (trait-p :asks (action-command action)))
+                        (not (trait-p :stops (action-command action)))
+                        (not (action-cleanup-p action))
+                        (action-task action)
+                        (eq task (task-top (action-task action)))))
+                 (interface-actions interface)))
 
-(defun unawaited-advice (deed)
-  "Return in a sentence what to do if DEED is to end with its plan; or NIL."
-  (if (eq :evaporated (task-state (deed-task deed)))
+(defun unawaited-advice (action)
+  "Return in a sentence what to do if ACTION is to end with its plan; or NIL."
+  (if (eq :evaporated (task-state (action-task action)))
       (format nil "What gave it was ended before, as by a deadline. ~
                    If the command is to end as well, stop it: (rpl-robot-stop).")
-      (let ((wait (wait-text (deed-outcome deed) (deed-resource deed))))
+      (let ((wait (wait-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
 
-(defun tell-of-unawaited (interface task)
-  (let ((deed (first (unawaited-deeds interface task))))
-    (when deed
+(defun warn-of-unawaited (interface task)
+  (let ((action (first (unawaited-actions interface task))))
+    (when action
       (tell-once interface (list :unawaited (task-label task))
                  "The plan ~A succeeded while its command rpl-~(~A~) was under way, which ~
                   continues.~@[ ~A~]"
-                 (task-label task) (deed-name deed) (unawaited-advice deed)))))
+                 (task-label task) (action-name action) (unawaited-advice action)))))
 
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
-;;; and run, and who reads no messages is shown it if the plan still waits when the run ends.
+;;; and run; without a reader of messages it is shown if the plan still waits when the run ends.
 
 (defun others-may-help-p (interface)
   "True if what the run calls besides plans may set fluents: kickers, observers, other plans."
@@ -196,8 +195,7 @@ supersedes how the same command ended before."
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun stranded-plans (interface)
-  "Return a list (task parts) for each plan of INTERFACE that was begun and waits in vain; () if one
-of its plans can go on."
+  "Return lists (task parts) of plans of INTERFACE that wait in vain; () if any of them can go on."
   (when (and (null (interface-awaited interface))
              (interface-valid-p interface)
              (tasks-of interface)
@@ -229,7 +227,7 @@ of its plans can go on."
   "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
   (not (or (task-parent task)
            (task-over-p task)
-           (member task (interface-unwanted interface))
+           (member task (interface-ends-requested interface))
            (said-p (list :stranded (task-label task))
                    (simulation-world (interface-simulation interface)))
            (some #'watches-p (all-tasks task)))))

@@ -30,8 +30,7 @@ plan. Those of tasks around it are left out. () when TASK is over."
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
-  "Return the variables of one level, a list of lists (name value). Of those called the same, as by
-LET*, the last is in force."
+  "Return lists (name value) of the variables of one level; of those with one name, the last."
   (loop for (name . later) on names
         for index from 1 below (length environment)
         when (and (symbol-package name) (not (member name later)))

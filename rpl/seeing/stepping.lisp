@@ -12,8 +12,7 @@
    (task :initarg :task :reader plan-break-task)
    (frame :initarg :frame :reader plan-break-frame))
   (:report (lambda (break stream) (write-break break stream)))
-  (:documentation "A plan has stopped for somebody to look at it: where it failed, or step by
-step."))
+  (:documentation "A plan has stopped in the debugger: at a failure, or to be stepped through."))
 
 (defun plan-break-p (object)
   "True of breaks of plans."
@@ -72,7 +71,7 @@ interactive debugger they are messages.")
   "When true, plans that are started stop before each expression: see STEP-TASK.")
 
 (defstruct (course (:constructor make-course (task)) (:copier nil))
-  "How somebody goes through TASK. MODE is :run, :step (stop before any expression) or :over: run
+  "How TASK is stepped through. MODE is :run, :step (stop before any expression) or :over: run
 the task WITHIN until it comes back to the frame UNTIL; to any of its expressions, if that is
 :NEXT; until it is over, if that is NIL."
   (task nil :type task :read-only t)
@@ -126,7 +125,7 @@ this task."
       (progn (enter-break (make-condition 'plan-break
                                           :task task :frame frame
                                           :text (format nil "Next: ~A" (form-text form 70))))
-             (resume-stepping course :run))       ; nobody was there
+             (resume-stepping course :run))       ; without a debugger
     (continue ()
       :report "Go on without stopping."
       (resume-stepping course :run))
@@ -151,7 +150,7 @@ this task."
         (when (and form (stops-p course task))
           (stop-at course task frame form leaf-p))))))
 
-;;; Who is gone through.
+;;; Which tasks are stepped through.
 
 (defun courses-of (runner)
   "Return the courses through tasks of RUNNER that are not over."

@@ -5,8 +5,7 @@
 (export '(runner-in-use runner-to-see task-with image-of-tasks runner-mark task-image))
 
 (defgeneric runner-in-use (interface)
-  (:documentation "Return the plan runner whose tasks are shown where nobody says which and
-INTERFACE is in use, or NIL.")
+  (:documentation "Return the plan runner shown by default while INTERFACE is in use, or NIL.")
   (:method (interface) (declare (ignore interface)) nil))
 
 (defun runner-to-see (&optional subject)
@@ -20,8 +19,7 @@ use. Signals MISUSE if there is none."
                    the prompt.")))
 
 (defun task-with (value runner)
-  "Return the task of RUNNER that has VALUE in a variable, or in what is there, and the name of that
-variable; or NIL."
+  "Return the task of RUNNER that has VALUE in, or within, a variable, and its name; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
           for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
@@ -68,8 +66,7 @@ their values, and the valves that tasks have or want."
         (write-valve valve stream)))))
 
 ;;; An image is made while no plan runs, as between two ticks; any thread may draw from it. It has
-;;; the visible rows, from top to bottom, up to a given number: rows left out or folded are only
-;;; counted.
+;;; the visible rows, from top to bottom, up to a given number. Other rows are only counted.
 
 (define-record task-image
   "What is to be seen of a task."
@@ -140,6 +137,6 @@ without the parts of those tasks whose numbers are among FOLDED."
                      :plans (length plans) :tasks (runner-alive runner))))
 
 (defun runner-mark (runner)
-  "Return what changes, for EQUAL, whenever the tasks of RUNNER do; for any thread, and at once."
+  "Return a list that differs, by EQUAL, after any change of the tasks of RUNNER. For any thread."
   (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))

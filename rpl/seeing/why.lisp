@@ -38,7 +38,7 @@
   (and (member (trace-entry-event entry) '(:succeed :fail :evaporate))
        (eql number (trace-entry-value (start-of (trace-entry-task entry) trace)))))
 
-;;; By whom.
+;;; Agents.
 
 (defun issue-words (issue trace)
   (let ((entry (find issue trace :key #'trace-entry-subject)))
@@ -67,7 +67,7 @@
           (agent-words (trace-entry-agent entry) trace)
           (and (trace-entry-form entry) (quoted (trace-entry-form entry)))))
 
-;;; Because of what.
+;;; Causes.
 
 (defun fluent-reason (fluent index trace)
   (let ((change (earlier trace index
@@ -208,7 +208,7 @@ not NIL, has the tasks that are meant.")
 (defmethod reasons ((number integer) runner)
   (if (plusp number) (task-reasons number runner) (call-next-method)))
 
-;; Who may leave the first argument out, and give the others by name, needs a list to take apart.
+;; The first argument may be left out before keywords, so the arguments are one list.
 (addition why)
 (defun why (&rest arguments)
   "Write to :STREAM (default *STANDARD-OUTPUT*), in sentences, why something is as it is. Return

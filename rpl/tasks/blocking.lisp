@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(gate hold-back release-hold spawn-gated block-task check-together make-heed
+(export '(gate hold-back release-hold spawn-gated block-task check-together make-block-hook
           unblock-task))
 
 ;;; A task with a gate is at a frame of its own before its first expression, and goes on when
@@ -77,23 +77,22 @@
 
 ;;; A blocked task keeps its place, with its parts: fluents that it waits for still count, and it
 ;;; runs again when nothing blocks it any longer. Expressions in progress that need to react to
-;;; blocking have a frame whose DATA is a HEED.
+;;; blocking have a frame whose DATA is a BLOCK-HOOK.
 
-(define-record (heed (:constructor make-heed (function)))
-  "What an expression does when its task is blocked: FUNCTION is called with the task and the
-frame."
+(define-record (block-hook (:constructor make-block-hook (function)))
+  "What an expression does when its task is blocked: it calls FUNCTION with task and frame."
   (function #'list function))
-(declaim-final heed)
+(declaim-final block-hook)
 
 (defun tell-blocked (task)
   "Notify the parts of TASK, newest first, and then its own expressions, innermost first, that they
 are stopped; except those that were stopped before."
-  (unless (task-doomed task)
+  (unless (task-ending-p task)
     (dolist (child (reverse (task-children task)))
       (unless (plusp (task-blocked child)) (tell-blocked child)))
     (dolist (frame (frame-chain (task-frame task)))
-      (when (heed-p (frame-data frame))
-        (funcall (heed-function (frame-data frame)) task frame)))))
+      (when (block-hook-p (frame-data frame))
+        (funcall (block-hook-function (frame-data frame)) task frame)))))
 
 (defun interrupt-parts (task)
   "If the running task is a part of TASK let it give way after this step."
@@ -131,12 +130,11 @@ are stopped; except those that were stopped before."
                  only be asked to SUSPEND and WAKE-UP."
                 (task-label other))))
 
-;;; By a word, instead of as long as something lasts.
+;;; SUSPEND and WAKE-UP.
 
-(defun say-in-plans (word task function)
-  "Call FUNCTION, which does what the function WORD says of TASK, when the plan of that can hear of
-it: now, if a plan of the same runner asks, or TASK is in none; else, posted to its runner, before
-that reacts again. Return TASK."
+(defun call-or-post (word task function)
+  "Call FUNCTION, which does what a call of WORD on TASK does: now, if a plan of the same runner
+asks or TASK is in none; else by a post, before the runner reacts again. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
@@ -153,7 +151,7 @@ the whole from ending.
   From a REPL or another thread this takes effect before the plans react again."
   (check-argument suspend task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
-    (say-in-plans #'suspend task
+    (call-or-post #'suspend task
                   (lambda ()
                     (unless (or (task-suspended task) (task-over-p task))
                       (setf (task-suspended task) t)
@@ -165,7 +163,7 @@ the whole from ending.
 anywhere, as SUSPEND (CRAM's)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
-    (say-in-plans #'wake-up task
+    (call-or-post #'wake-up task
                   (lambda ()
                     (when (shiftf (task-suspended task) nil)
                       (unblock-task task t))))))

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(shape-of shape-text keyword-slip misfit note-twin has-twin-p twin-text end-text
-          last-command last-pulse plan-function-p results-of-command pulse-of-command
-          teller-of-code))
+(export '(shape-of shape-text keyword-slip misfit note-plan-function has-plan-function-p
+          plan-call-text end-text last-command last-pulse plan-function-p results-of-command
+          pulse-of-command fluent-of-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
   "How many arguments something takes, LEAST to MOST."
@@ -16,13 +16,13 @@
   (open nil t "true if other keywords do as well"))
 
 (defun keyword-of (parameter)
-  "Return the keyword that PARAMETER, after &KEY in a lambda list or a function type, goes by."
+  "Return the keyword of PARAMETER, after &KEY in a lambda list or a function type."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (cond ((consp name) (first name))
           (t (make-keyword name)))))
 
 (defun shape-of (lambda-list)
-  "Return the shape that LAMBDA-LIST, an ordinary one or that of a function type, means."
+  "Return the shape of LAMBDA-LIST, an ordinary one or that of a function type."
   (let ((mode nil) (least 0) (optional 0) (keys '()) (seen '()))
     (dolist (parameter lambda-list)
       (cond ((member parameter lambda-list-keywords)
@@ -57,8 +57,8 @@ SHAPE's, or NIL. Those that WRONG-P is not true of may be keywords yet."
                            key (and (keywordp key) (nearest-name key (shape-keys shape)))))))
 
 (defun misfit (shape arguments &key (wrong-p #'keywordp))
-  "Return in words what it is of ARGUMENTS, or the forms for them, that SHAPE does not take; NIL if
-they may fit. WRONG-P is as for KEYWORD-SLIP."
+  "Return in words what SHAPE does not take of ARGUMENTS, or of forms for them; NIL if they may fit.
+WRONG-P is as for KEYWORD-SLIP."
   (let* ((count (length arguments))
          (rest (nthcdr (shape-fixed shape) arguments)))
     (cond ((not (<= (shape-least shape) count (shape-most shape)))
@@ -69,11 +69,11 @@ they may fit. WRONG-P is as for KEYWORD-SLIP."
 
 ;;;; Plan functions for commands
 
-(defun note-twin (name call wait &optional fluent codes results)
-  "Note that plans write CALL, with the names of its arguments, of which the first is a part if
-there are several of them, instead of a call of NAME; and that (wait-for WAIT) then waits for the
-end, unless WAIT is NIL. FLUENT, a form, or NIL, then has one of CODES if something went wrong, and
-RESULTS, forms of fluents, what was found."
+(defun note-plan-function (name call wait &optional fluent codes results)
+  "Record that plans write CALL instead of a call of the command NAME, and then (wait-for WAIT),
+unless WAIT is NIL. CALL has the names of its arguments, the first a part if the robot may have
+several. FLUENT, a form, or NIL, then has one of CODES if the command failed; RESULTS, forms of
+fluents, have what was found."
   (setf (get name 'twin) (list call wait)
         (get (first call) 'end) (list (second call) wait results)
         (get (first call) 'codes) (list fluent codes)))
@@ -82,13 +82,12 @@ RESULTS, forms of fluents, what was found."
   "True if NAME is a plan's function for a command."
   (and (symbolp name) (get name 'end) t))
 
-(defun teller-of-code (name code)
-  "Return the form of the fluent that has CODE if what NAME, a plan's function, has begun ends so;
-NIL if it never does."
+(defun fluent-of-code (name code)
+  "Return the form of the fluent that is set if the command of NAME ends with CODE, or NIL."
   (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
     (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
 
-(defun has-twin-p (name)
+(defun has-plan-function-p (name)
   "True if plans call another function instead of the one called NAME."
   (and (symbolp name) (get name 'twin) t))
 
@@ -99,22 +98,21 @@ NIL if it never does."
   "Return the form of the fluent that is pulsed when a command called NAME of a plan ends, or NIL."
   (second (get name 'twin)))
 
-(defun twin-text (name)
+(defun plan-call-text (name)
   "Return in words what plans write instead of a call of NAME."
   (destructuring-bind (call wait) (get name 'twin)
     (let ((*print-pretty* nil))
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 
 (defun end-text (name part)
-  "Return in words how plans wait for the end of what NAME, a plan's function, has begun on the part
-numbered PART, or NIL if nothing tells of that."
+  "Return in words how plans wait for the end of the command of NAME, a plan's function, on the part
+numbered PART; NIL if no fluent is pulsed then."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore results))
     (wait-form-text (subst part variable wait))))
 
 (defun results-of-command (name part)
-  "Return the forms of the fluents that have what NAME, a plan's function, has found out by the part
-numbered PART."
+  "Return the forms of the fluents for the results of NAME, a plan's function, on part number PART."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore wait))
     (subst part variable results)))

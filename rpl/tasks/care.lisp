@@ -23,20 +23,20 @@
 
 (defun failure-of (condition task frame)
   "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
-weighs as many steps as one could take meanwhile, so that a plan that only fails ends its slice."
+counts as the steps that take as long, so that a plan that only fails uses up its slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
                                                    :backtrace (lisp-backtrace)))))
     (unless (failure-task-path failure)
-      (weigh (if (typep failure 'lisp-failure) 5000 200) (task-runner task) task)
+      (count-slow-step (if (typep failure 'lisp-failure) 5000 200) (task-runner task) task)
       (setf (failure-task-path failure) (task-path task)
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)
             (failure-form failure) (first (failure-plan-backtrace failure))
             (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
       (note-event task :failure failure)
-      (hear-of-trouble (runner-client (task-runner task)) task failure)
+      (note-plan-trouble (runner-client (task-runner task)) task failure)
       (tell-listeners *failure-hooks* failure task frame))
     failure))
 
@@ -48,7 +48,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
     (with-output-to-string (stream)
       (loop for call in (if signalled (rest signalled) calls)
             for number from 0
-            until (member (first call) '(run-steps step-leaf call-to-fate))
+            until (member (first call) '(run-steps step-leaf call-to-outcome))
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
 
 (defmethod value-behind ((task task))
@@ -56,11 +56,10 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
 
 ;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
 ;;; even between two changes that belong together. Only what tasks contain is reliable then: their
-;;; parents, states and frames. Everything else (which are ready, when they wake, which fluents they
-;;; watch) is rebuilt from that.
+;;; parents, states and frames. Everything else, such as queues, timers and watchers, is rebuilt.
 
 (defun live-parts (task)
-  "Return TASK and its parts that are not over. Make right how they know each other."
+  "Return TASK and its parts that are not over. Repair the links between them."
   (let ((children (loop for child = (task-newest-child task) then (task-older child)
                         repeat 1000000
                         while child
@@ -75,7 +74,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
     (cons task (mapcan #'live-parts children))))
 
 (defun repair-queues (runner tasks)
-  "Let those of TASKS that are ready, all there are, be queued in RUNNER."
+  "Queue those of TASKS, all of RUNNER, that are ready, and nothing else."
   (loop for ring across (runner-rings runner)
         do (fill (ring-items ring) nil)
            (setf (ring-start ring) 0
@@ -83,16 +82,16 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
   (setf (runner-mask runner) 0
         (runner-held runner) '()
         (runner-spent runner) '()
-        (runner-courtesies runner) '()
+        (runner-notices runner) '()
         (runner-blocks runner) (reduce #'+ tasks :key #'task-blocked))
   (dolist (task tasks)
-    (when (or (eq :running (task-state task)) (courtesy-p (task-awaiting task)))
+    (when (or (eq :running (task-state task)) (notice-p (task-awaiting task)))
       (setf (task-awaiting task) nil
             (task-state task) :ready))
     (when (eq :ready (task-state task)) (make-ready task))))
 
 (defun repair-timers (runner tasks)
-  "Let the timers of RUNNER be those that it has and those of TASKS, for tasks that are not over."
+  "Rebuild the timers of RUNNER from its own and those of TASKS, for tasks that are not over."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
                                             (remove nil (mapcar #'task-timer tasks)))
@@ -111,8 +110,7 @@ weighs as many steps as one could take meanwhile, so that a plan that only fails
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-hearing (runner tasks)
-  "Register the waits of TASKS of RUNNER with their fluents again, and wake those that missed
-events."
+  "Register the waits of TASKS of RUNNER with their fluents again. Wake those that missed events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
                   (lambda (watcher)
                     (let ((client (watcher-client watcher)))
@@ -131,7 +129,7 @@ events."
           ((task-signal task) (make-ready task)))))
 
 (defun repair (runner)
-  "Make RUNNER fit to go on, whatever it was left in the middle of."
+  "Make the state of RUNNER consistent, wherever it was interrupted."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
   (let ((tasks (mapcan #'live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
@@ -139,7 +137,7 @@ events."
     (repair-hearing runner tasks)
     (mapc #'finish-ending tasks)
     (dolist (task tasks)
-      (when (and (task-doomed task) (not (task-over-p task))
+      (when (and (task-ending-p task) (not (task-over-p task))
                  (null (task-signal task)) (null (task-cleaning task)))
         (stop-waiting task)
         (end-parts task)))))
@@ -147,7 +145,7 @@ events."
 ;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true and an
 ;;; interactive debugger is available, the debugger comes first. Its restarts run the leaf again,
 ;;; return a value for it, let the task fail, or end the plan. An ABORT ends the plan in which it
-;;; happens. A leaf that is left for good, as by THROW, ends its plan too.
+;;; happens. A non-local exit from a leaf, as by THROW, ends its plan too.
 
 ;;; What happens to the task.
 
@@ -156,7 +154,7 @@ events."
     (failure-of condition task (task-frame task))))
 
 (defun fail-current (runner trouble)
-  "Let TROUBLE, a failure or that there was no room, be the failure of the running task of RUNNER."
+  "Let the running task of RUNNER fail by TROUBLE, a failure or the lack of memory."
   (let ((task (runner-current runner)))
     (when (typep trouble 'storage-condition) (regain-room trouble))
     (let ((failure (current-failure runner trouble)))
@@ -184,7 +182,7 @@ events."
     (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task)))))
 
 (defun put-in-order (runner)
-  "Repair RUNNER after a step was left for good: the plan that took it ends."
+  "Repair RUNNER after a step was left by a non-local exit: the plan that took it ends."
   (let ((task (running-task runner)))
     (when task
       (setf (task-state task) :ready
@@ -228,19 +226,19 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
       (let ((*spoilt-by-leaving-p* #'in-step-p))
         (funcall function runner)))))
 
-;;; The fate of a task after a step is a keyword:
+;;; The outcome of a step is a keyword:
 ;;;   :DONE    nothing happened;
 ;;;   :FAIL    an error or failure, or the restart FAIL-TASK;
 ;;;   :END     the restart ABORT, or a debugger without a user;
 ;;;   :LEAVE   the restart LEAVE-PLAN.
-;;; There is none if the step is left for good by another way, such as THROW.
+;;; There is none if the step is left by another non-local exit, such as THROW.
 
-(defun call-to-fate (runner function)
-  "Call FUNCTION with RUNNER. Return the fate of its task, the value of FUNCTION or what trouble it
-met, and whether it may have been stopped in the middle of our own code."
+(defun call-to-outcome (runner function)
+  "Call FUNCTION with RUNNER. Return the outcome of the step, the value of FUNCTION or what trouble
+it met, and whether it may have been stopped in the middle of our own code."
   (let ((trouble nil) (anywhere-p nil))
     (block call
-      (labels ((meet (fate) (return-from call (values fate trouble anywhere-p)))
+      (labels ((meet (outcome) (return-from call (values outcome trouble anywhere-p)))
                (end () (meet :end))
                (leave () (meet :leave))
                (fail ()
@@ -251,7 +249,7 @@ met, and whether it may have been stopped in the middle of our own code."
                  (meet :fail))
                (note (condition)
                  (when (let-callers-handle condition) (setf anywhere-p t))
-                 ;; Without a task, plans hear something; that trouble is for those who called.
+                 ;; Without a task, a post is applied; its trouble is the caller's.
                  (when (running-task runner)
                    (setf trouble condition)
                    (when (and *break-on-user-error* (typep condition 'error))
@@ -276,14 +274,14 @@ met, and whether it may have been stopped in the middle of our own code."
                 anywhere-p)))))
 
 (defun call-with-care (runner function)
-  "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which that
-task has to bear."
-  (let ((fate nil) (result nil) (anywhere-p nil))
+  "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which ends
+or fails that task."
+  (let ((outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
-         (setf (values fate result anywhere-p) (call-to-fate runner function))
-      (cond ((null fate) (put-in-order runner))
-            ((or anywhere-p (eq fate :end)) (repair runner))))
-    (ecase fate
+         (setf (values outcome result anywhere-p) (call-to-outcome runner function))
+      (cond ((null outcome) (put-in-order runner))
+            ((or anywhere-p (eq outcome :end)) (repair runner))))
+    (ecase outcome
       (:done result)
       (:fail (fail-current runner result) nil)
       (:end (report-abort runner) (end-current runner) nil)

@@ -55,8 +55,7 @@
         (t (make-ready parent))))
 
 (defun decide (parent signal)
-  "Let SIGNAL happen to PARENT, which waits for its children, when they are all gone; evaporate
-those that are not over."
+  "Evaporate the children of PARENT, which waits for them, and send it SIGNAL when all are gone."
   (setf (task-signal parent) signal
         (task-awaiting parent) nil)
   (if (task-newest-child parent)
@@ -82,7 +81,7 @@ those that are not over."
 ;;; Unwinding.
 
 (defun unwind (task frame signal)
-  "Send SIGNAL up from FRAME. Return what a step returns: the frame that takes care of it, or, when
+  "Send SIGNAL up from FRAME. Return what a step returns: the frame that handles it, or, when
 none does and TASK has ended, +PARKED+."
   (loop while frame
         do (let* ((node (frame-node frame))
@@ -110,7 +109,7 @@ none does and TASK has ended, +PARKED+."
   (:method (task awaited) (declare (ignore task awaited))))
 
 (defun stop-waiting (task)
-  "Let what TASK waits for, be it a fluent, a timer or another, forget it."
+  "Remove TASK from what it waits for: a fluent, a timer or another object."
   (let ((awaited (shiftf (task-awaiting task) nil))
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
@@ -145,7 +144,7 @@ none does and TASK has ended, +PARKED+."
         do (unless (beyond-evaporating-p child) (evaporate-here child))))
 
 (defun beyond-evaporating-p (task)
-  (or (task-over-p task) (task-doomed task) (eq (task-state task) :created)))
+  (or (task-over-p task) (task-ending-p task) (eq (task-state task) :created)))
 
 (addition evaporate)
 (defun evaporate (task)
@@ -157,13 +156,13 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
     (cond ((beyond-evaporating-p task))
           ((not (inside-plans-p (task-runner task)))
            (note-from-outside #'evaporate task)
-           (doom task))
+           (request-end task))
           (t (when (task-parent task)
-               (hear-of-trouble (runner-client (task-runner task)) task nil))
+               (note-plan-trouble (runner-client (task-runner task)) task nil))
              (evaporate-here task)))))
 
 (defun evaporate-here (task)
-  (setf (task-doomed task) t)
+  (setf (task-ending-p task) t)
   (cond ((task-cleaning task)
          (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
         ((eq (task-state task) :running)
@@ -172,7 +171,7 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
                (logior +interrupt+ (runner-mask (task-runner task)))))
         (t (stop-waiting task)
            (end-parts task)))
-  ;; What was kept from running, and cleans up, is so no longer.
+  ;; A blocked task may run again to clean up.
   (when (runner-held (task-runner task)) (release-held (task-runner task))))
 
 (defun end-parts (task)
@@ -184,17 +183,17 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
 
 ;;; Kills from outside, and cleanups that are given up.
 
-(defun doom (task)
+(defun request-end (task)
   "Evaporate TASK as soon as its runner can."
   (let ((runner (task-runner task)))
-    (atomic-push (cons task *asker*) (runner-doomed runner))
+    (atomic-push (cons task *asker*) (runner-ends-requested runner))
     (funcall (runner-on-post runner))))
 
-(defun end-doomed (runner)
-  "Evaporate the tasks that other threads, or code outside of plans, want to end."
-  (loop for doomed = (runner-doomed runner)
-        until (swap-if (runner-doomed runner) doomed '())
-        finally (loop for (task . asker) in (reverse doomed)
+(defun end-requested (runner)
+  "Evaporate the tasks that other threads, or code outside of plans, have asked to end."
+  (loop for requests = (runner-ends-requested runner)
+        until (swap-if (runner-ends-requested runner) requests '())
+        finally (loop for (task . asker) in (reverse requests)
                       do (let ((*asker* asker)) (evaporate task)))))
 
 (defun cleaning-part (task)
@@ -203,10 +202,10 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
       (and (task-cleaning task) task)))
 
 (defun give-up-cleanup (task)
-  "Let the cleanup that TASK is at end now, undone. Queue a warning."
+  "Abandon the cleanup that TASK is in. Queue a warning."
   (warn-notably "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
-  (setf (task-doomed task) t)
+  (setf (task-ending-p task) t)
   (let ((*asker* "the limit of its cleanup"))
     (stop-waiting task)
     (end-parts task)))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(advance-timers note-tick apply-next-batch close-runner digest-runner runner-idle-p
-          make-plan-runner next-wake-time heard-from-outside-p plan-deadlocked-p rest-in-tick
+          make-plan-runner next-wake-time outside-request-p plan-deadlocked-p rest-in-tick
           react-to-all reseed-runner start-plan stop-plan))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
@@ -22,7 +22,7 @@
   BUDGET: how many steps a reaction may take before time passes; NIL: as many as it needs.
   CHARGED: if true, thoughts with a stated cost take ticks, and all reactions of a tick share
 BUDGET.
-  CLOCK: a function that returns seconds, or NIL while nobody cares; with it there are warnings of
+  CLOCK: a function that returns seconds, or NIL for no timing; with it there are warnings of
 Lisp code that runs for more than SLOW seconds.
   DICE: what TRY-ONE chooses by.
   BUSY-P: a function that says whether others, such as a command in progress, may still post.
@@ -46,8 +46,8 @@ Lisp code that runs for more than SLOW seconds.
     (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
 (defconstant +start+ 100
-  "How many steps of a reaction it counts as to start a plan: what starts plans without end is to
-meet the end of the reaction before that of the room. Where steps are counted it is one.")
+  "As how many steps of a reaction the start of a plan counts, so that endless starts use up the
+reaction before the heap. Where steps have a budget it counts as one.")
 
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
@@ -56,7 +56,7 @@ Return the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
-          (weigh +start+ runner)
+          (count-slow-step +start+ runner)
           (push task (runner-roots runner))
           (tell-listeners *plan-start-hooks* task)
           task)))))
@@ -71,14 +71,14 @@ Return the task, which runs at the next reaction."
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
 :budget when the steps of the reaction are spent, or all stand still while one thinks."
   (loop
-    (when (runner-doomed runner) (end-doomed runner))
+    (when (runner-ends-requested runner) (end-requested runner))
     (when (or (>= (runner-steps runner) (runner-limit runner))
               (standing-still-p runner))
       (return :budget))
-    (when (runner-courtesies runner) (settle-courtesies runner))
+    (when (runner-notices runner) (deliver-due-notices runner))
     (let ((task (take-ready runner)))
       (cond (task (run-task task))
-            ((and (runner-courtesies runner) (settle-courtesies runner)))
+            ((and (runner-notices runner) (deliver-due-notices runner)))
             (t (return :idle))))))
 
 (defun run-round (runner)
@@ -91,14 +91,13 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
       (setf (runner-broken-off-p runner) t))
     outcome))
 
-(defun hear-next (runner)
-  "Apply the next batch if RUNNER, whose round is over, must do so before its tasks run again. True
-if there was one."
+(defun apply-due-batch (runner)
+  "Apply the next batch if it is due at the end of a round of RUNNER. True if there was one."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
-            (>= (- (runner-steps runner) (runner-heard-at runner)) +thoughts+))
-    (setf (runner-heard-at runner) (runner-steps runner))
+            (>= (- (runner-steps runner) (runner-batch-applied-at runner)) +thoughts+))
+    (setf (runner-batch-applied-at runner) (runner-steps runner))
     (apply-next-batch runner)))
 
 (defun run-rounds (runner)
@@ -106,7 +105,7 @@ if there was one."
   (loop
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
-            ((hear-next runner))
+            ((apply-due-batch runner))
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 
@@ -159,8 +158,7 @@ waits for the next reaction; without a budget that is after *RUNAWAY-LIMIT* step
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
-  "Apply the batch or call posted to RUNNER first. True unless there was none. Errors in it become
-messages."
+  "Apply the batch or call posted to RUNNER first. True if there was one. Errors become messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
       (at-home (runner)
@@ -172,9 +170,8 @@ messages."
 ;;; Ending.
 
 (defun stop-plan (runner &optional task)
-  "Let TASK, or else all top-level tasks that RUNNER has now, evaporate before it takes another
-step. For any thread."
-  (mapc #'doom (if task (list task) (plan-runner-tasks runner))))
+  "Evaporate TASK, or else all tasks of RUNNER, before it takes another step. For any thread."
+  (mapc #'request-end (if task (list task) (plan-runner-tasks runner))))
 
 (defun close-runner (runner)
   "Evaporate all tasks of RUNNER. Cleanups run as far as they take no time; the rest is abandoned,
@@ -191,7 +188,7 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
 ;;; Time.
 
 (defun note-tick (runner tick)
-  "Let it be TICK for RUNNER, outside of reactions. Who waits for it is woken in the next one."
+  "Set the time of RUNNER to TICK, outside of reactions. The next one wakes tasks that wait for it."
   (setf (runner-tick runner) tick))
 
 (defun advance-timers (runner tick)
@@ -204,20 +201,20 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
   (let ((timer (next-timer (runner-timers runner))))
     (and timer (timer-due timer))))
 
-(defun heard-from-outside-p (runner)
+(defun outside-request-p (runner)
   "True if something was posted to RUNNER, or tasks of it are to end. For any thread."
-  (and (or (runner-doomed runner) (posted-p runner)) t))
+  (and (or (runner-ends-requested runner) (posted-p runner)) t))
 
 (defun runner-idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
-  (not (or (any-ready-p runner) (heard-from-outside-p runner))))
+  (not (or (any-ready-p runner) (outside-request-p runner))))
 
 (defun rest-in-tick (runner tick)
   "Set the time of RUNNER to TICK, without a reaction, if no task would run in it. True if so."
   (let ((wake (next-wake-time runner)))
     (unless (or (and wake (<= wake tick))
                 (not (runner-idle-p runner))
-                (runner-courtesies runner)
+                (runner-notices runner)
                 (runner-charged-p runner)
                 (runner-budget runner)
                 (in-use-p runner))
@@ -234,12 +231,12 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
 ;;; Chance, and the state of it all.
 
 (defun reseed-runner (runner seed)
-  "Let the choices of plans in RUNNER come from the integer SEED from now on."
+  "Draw the choices of plans in RUNNER from the integer SEED from now on."
   (setf (runner-dice runner) (make-dice seed :plans)
         (runner-lisps-dice runner) nil))
 
 (defun digest-runner (runner digest)
-  "Add to DIGEST what the tasks of RUNNER are about, when they wake, and what chance will bring."
+  "Add to DIGEST the tasks of RUNNER, when the next one wakes, and the states of dice and charges."
   (digest-add digest (list (runner-tick runner) (next-wake-time runner)
                            (and (runner-dice runner) (dice-state (runner-dice runner)))
                            (runner-debt runner) (runner-still-until runner)))

@@ -19,7 +19,7 @@
   (value nil t))
 
 (define-record (bundle (:constructor make-bundle (values)))
-  "Several values on their way from a leaf to whoever wants several, as one object."
+  "Several values that a leaf returns, as one object."
   (values '() list "the list of values in the bundle" :export))
 (declaim-final escape completion bundle)
 
@@ -58,7 +58,7 @@ environment."))
   (list (evaluate-form (read *query-io*))))
 
 (defvar *in-leaf-p* nil
-  "True while a leaf offers restarts: the step that it is part of has nothing to add.")
+  "True while a leaf offers restarts: the step around it then offers none.")
 
 (defun call-leaf-offering (leaf environment)
   "Return what LEAF returns in ENVIRONMENT, with the restarts RETRY and USE-VALUE."

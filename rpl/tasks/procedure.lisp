@@ -25,7 +25,7 @@
   (source nil list "the text of a plan procedure as data: (def-interp-proc name parameters form...),
 or (interp-lambda parameters form...)" :writable :addition)
   (body nil (or null node) "the node that the procedure runs, or NIL" :writable :export)
-  (stub nil (or null function) "what Lisp code gets that calls the name" :writable))
+  (stub nil (or null function) "the Lisp function of the name, which signals MISUSE" :writable))
 
 (define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
   :finder registered-procedure :lister registered-procedures :internal t)
@@ -88,7 +88,9 @@ or (interp-lambda parameters form...)" :writable :addition)
                  and give one of the two another name." name (macro-function name)))
           (t (say "~A is a ~:[function~;macro~], no plan. Define a plan that calls it: ~
                    (def-interp-proc my-plan () ~A)." name (macro-function name)
-                  (if (has-twin-p name) (twin-text name) (format nil "(~(~A~) ...)" name)))))))
+                  (if (has-plan-function-p name)
+                      (plan-call-text name)
+                      (format nil "(~(~A~) ...)" name)))))))
 
 (defun reject-procedure (name)
   (let ((remedy (plan-remedy name)))
@@ -116,8 +118,7 @@ or return NIL if ERRORP is NIL."
   "Lists of their lambda list by the names that a DEF-INTERP-PROC has been compiled or loaded for.")
 
 (defun declare-procedure (name lambda-list)
-  "Let the plans that are compiled from now on take NAME for that of a plan procedure with
-LAMBDA-LIST."
+  "Declare NAME, to plans compiled from now on, as a plan procedure with LAMBDA-LIST."
   (setf (gethash name *declared-procedures*) (list lambda-list)))
 
 (defun procedure-name-p (name)
@@ -161,8 +162,7 @@ LAMBDA-LIST."
 
 (defun install-procedure (name lambda-list documentation entry body stub
                           &optional source text)
-  "Make NAME a plan procedure, as TEXT, from SOURCE, defines it. Calls from now on, also in running
-plans, mean this one."
+  "Make NAME a plan procedure, as TEXT, from SOURCE, defines it, for all calls from now on."
   (let ((procedure (ensure-procedure name)))
     (warn-if-function procedure)
     (declare-procedure name lambda-list)
@@ -277,8 +277,8 @@ plans, mean this one."
           unless (member name '(form names states))
             append (code-in (instance-slot node index)))))
 
-(defun everybodys-code (code)
-  "Return a list of the nodes that CODE, a node or procedure, leads to if they are everybody's, and
+(defun shared-code (code)
+  "Return a list of the nodes that CODE, a node or procedure, leads to if forks share them, and
 true; or NIL and false if one of them has closed over something."
   (let ((seen (make-hash-table :test 'eq)) (nodes '()) (work (list code)))
     (loop while work
@@ -287,29 +287,29 @@ true; or NIL and false if one of them has closed over something."
                  ((or symbol number character string entity))
                  ((or node procedure function)
                   (unless (or (gethash object seen)
-                              (and (node-p object) (eq :everybodys (node-whose object)))
+                              (and (node-p object) (eq :shared (node-sharing object)))
                               (and (procedure-p object) (defined-procedure-p object)))
                     (setf (gethash object seen) t)
                     (when (node-p object) (push object nodes))
                     (setf work (append (parts-of-code object) work))))
-                 (t (return-from everybodys-code (values '() nil))))))
+                 (t (return-from shared-code (values '() nil))))))
     (values nodes t)))
 
-(defun find-whose (node)
-  "Find out whose NODE is, and remember it."
-  (multiple-value-bind (nodes everybodys-p) (everybodys-code node)
-    (dolist (each nodes) (setf (node-whose each) :everybodys))
-    (setf (node-whose node) (if everybodys-p :everybodys :a-runs))))
+(defun determine-sharing (node)
+  "Determine whether forks share NODE, and record it."
+  (multiple-value-bind (nodes shared-p) (shared-code node)
+    (dolist (each nodes) (setf (node-sharing each) :shared))
+    (setf (node-sharing node) (if shared-p :shared :per-run))))
 
 (define-shared-slots node form names states)
 (define-shared-slots procedure lambda-list source)
 
 (defmethod copy-plan-value ((node node) fork)
-  (when (eq :unknown (node-whose node)) (find-whose node))
-  (if (eq :everybodys (node-whose node)) node (copy-slots node fork)))
+  (when (eq :unknown (node-sharing node)) (determine-sharing node))
+  (if (eq :shared (node-sharing node)) node (copy-slots node fork)))
 
 (defmethod copy-plan-value ((procedure procedure) fork)
   (if (or (defined-procedure-p procedure)
-          (nth-value 1 (everybodys-code procedure)))
+          (nth-value 1 (shared-code procedure)))
       procedure
       (copy-slots procedure fork)))

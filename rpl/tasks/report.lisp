@@ -1,4 +1,4 @@
-;;;; report.lisp -- tasks, failures and the places of tasks, for people.
+;;;; report.lisp -- tasks, failures and the places of tasks, as text.
 
 (in-package :ars-magna.rpl.tasks)
 
@@ -7,10 +7,10 @@
 
 (defun task-state-text (task)
   "Return in words how TASK is: its state, and whether it evaporates, cleans up or is blocked."
-  (let ((blocker (and (not (task-doomed task))
+  (let ((blocker (and (not (task-ending-p task))
                       (find-if #'plusp (lineage task) :key #'task-blocked))))
     (format nil "~(~A~)~:[~;, evaporating~]~:[~;, cleaning up~]~@[, blocked~A~]" (task-state task)
-            (and (task-doomed task) (not (task-over-p task)))
+            (and (task-ending-p task) (not (task-over-p task)))
             (task-cleaning task)
             (cond ((null blocker) nil)
                   ((eq blocker task) "")
@@ -85,8 +85,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
                            (clause-types form)))))
 
 (defun missed-text (failure)
-  "Return in words that a clause around FAILURE is not for its class, but like it, or only for
-errors of Lisp; or NIL."
+  "Return in words that a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
   (multiple-value-bind (type class) (missed-clause failure)
     (let ((error-type (clause-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class is ~(~S~)" type class))
@@ -149,8 +148,7 @@ failure, too."
 failure is left to the first that returns true. In any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "Report the failure of TASK, a top-level task that has just ended, if it failed. If AWAITED-P,
-somebody waits for the end."
+  "Report the failure of TASK, a top-level task, if it has just failed. AWAITED-P: a caller waits."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))

@@ -4,8 +4,8 @@
 
 (export '(*runaway-limit* alone-p blocked-p make-ready plan-runner
           counted-steps plan-runner-tasks plan-runner-tick runner-note client-forked-p
-          call-with-client-still hear-of-trouble note-seen all-tasks task-numbered note-word
-          task-now))
+          call-with-client-still note-plan-trouble note-seen all-tasks task-numbered
+          note-outside-call task-now))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. Bit n of MASK is
 ;;; set while tasks of level n may be queued. The bit +INTERRUPT+, above all of these, is set when
@@ -20,7 +20,7 @@ tenth of the steps of a reaction if that is less.")
 
 (defconstant +thoughts+ 500
   "Where steps have a budget of ticks, how many the tasks may take, all together, before what was
-posted meanwhile is heard although some of them have not waited yet.")
+posted meanwhile is applied although some of them have not waited yet.")
 
 (defparameter *runaway-limit* 1000000
   "How many steps a reaction without a budget takes before time passes all the same.")
@@ -52,8 +52,8 @@ more fails with class :TOO-MANY-TASKS.")
   (spent '() list
          "the ready tasks that have used their slice in this round, the last one first" :writable)
   (exhausted nil boolean :writable)
-  (courtesies '() list :writable)
-  (doomed '() t :writable)
+  (notices '() list :writable)
+  (ends-requested '() t :writable)
   (budget nil (or null (integer 1))
           "how many steps a reaction may take, NIL for as many as it needs" :writable)
   ;; What thinking costs; see charging.lisp.
@@ -66,7 +66,7 @@ ticks" :writable :export)
   (uncovered 0 integer "how many steps count that are not among STEPS; less than 0 if some of those
 do not" :writable)
   (broken-off-p nil boolean :writable)
-  (heard-at 0 (unsigned-byte 62) :writable)
+  (batch-applied-at 0 (unsigned-byte 62) :writable)
   (ticks-per-second 20 (real (0))
                     "how many ticks are a second for the plan runner's tasks" :writable :export)
   (dice nil (or null dice)
@@ -79,7 +79,7 @@ programs do" :writable :export)
   (stepper nil (or null function) "the function, of task and frame, that is called before each step,
 or NIL" :writable :export)
   (slow 0.1d0 real :writable)
-  (looked-at nil boolean "true if somebody has sat at a debugger in the step under way" :writable)
+  (looked-at nil boolean "true if a debugger was open in the step under way" :writable)
   (warned '() list :writable)
   (notes '() list "what constructs keep for all tasks, a plist" :writable)
   (busy-p (constantly nil) function :writable)
@@ -93,9 +93,9 @@ or NIL" :writable :export)
   (:documentation "True if CLIENT, of a plan runner, is of the run that COPIER copies.")
   (:method (client copier) (declare (ignore client copier)) nil))
 
-;; What tasks go through that others than plans may want to know.
+;; Events of tasks that the client may want to know.
 (defgeneric note-seen (client)
-  (:documentation "Note that somebody looks at the plans of CLIENT, what a runner runs them for.")
+  (:documentation "Note that the plans of CLIENT, of a plan runner, are looked at.")
   (:method (client)
     (declare (ignore client))
     nil))
@@ -106,9 +106,9 @@ or NIL" :writable :export)
     (declare (ignore client))
     (funcall function)))
 
-(defgeneric hear-of-trouble (client task failure)
-  (:documentation "In TASK, of plans of CLIENT, FAILURE has just happened, which something may take
-care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just ended.")
+(defgeneric note-plan-trouble (client task failure)
+  (:documentation "Note that FAILURE, which may be handled, has just happened in TASK, of plans of
+CLIENT; or, if FAILURE is NIL, that TASK, a part of a plan, was just ended.")
   (:method (client task failure) (declare (ignore client task failure))))
 
 (defmethod home-forked-p ((runner plan-runner) copier)
@@ -147,11 +147,10 @@ care of; or, if FAILURE is NIL, TASK is a part of a plan that somebody has just 
   (find number (all-tasks which) :key #'task-serial))
 
 (defun counted-steps (runner)
-  "Return how many steps of RUNNER have counted: those that plans were not spared, and more that
-they were charged for."
+  "Return how many steps of RUNNER have counted: those taken, without exempt ones, and charges."
   (+ (runner-steps runner) (runner-uncovered runner)))
 
-(defun weigh (steps runner &optional task)
+(defun count-slow-step (steps runner &optional task)
   "Let one step of RUNNER, perhaps of TASK, take as much of a reaction as STEPS, since it takes so
 long. Where steps are counted it is one."
   (cond ((and task (task-uncounted-p task)) (incf (runner-steps runner) steps))
@@ -214,7 +213,7 @@ long. Where steps are counted it is one."
   "True if TASK or a task that it is part of is blocked. A task that evaporates is not, and what it
 does to clean up only by what blocks that."
   (loop for each = task then (task-parent each)
-        until (or (null each) (task-doomed each))
+        until (or (null each) (task-ending-p each))
         thereis (plusp (task-blocked each))))
 
 (defun spent-p (task runner)
@@ -256,13 +255,11 @@ does to clean up only by what blocks that."
          (zerop (ring-count (svref (runner-rings runner) (task-level task)))))))
 
 ;;; When a run is repeated, plans do the same again, given the same calls from outside. So each
-;;; function that can be called from outside records its call, with the task or plan runner that it
-;;; is for.
+;;; function that can be called from outside records its call, with its task or plan runner.
 
-(defgeneric note-word (client word arguments subject)
-  (:documentation "Take note that somebody who is not at work in the plans of CLIENT, see
-RUNNER-CLIENT, calls the function WORD with the list ARGUMENTS and then SUBJECT, a task of theirs or
-their plan runner.")
+(defgeneric note-outside-call (client word arguments subject)
+  (:documentation "Record a call from outside of the plans of CLIENT, see RUNNER-CLIENT: of the
+function WORD with the list ARGUMENTS and then SUBJECT, a task of theirs or their plan runner.")
   (:method (client word arguments subject)
     (declare (ignore client word arguments subject))
     (values)))
@@ -279,7 +276,7 @@ works in, or that goes on since that of TASK was rewound: TASK itself if it is n
   (or (null runner) (eq runner *runner*)))
 
 (defun task-meant (task)
-  "Return TASK; if somebody outside of its plan means it, what has become of it."
+  "Return TASK; for a caller outside of its plan, its counterpart there: see TASK-NOW."
   (let ((runner (task-runner task)))
     (if (inside-plans-p runner)
         task
@@ -290,4 +287,4 @@ works in, or that goes on since that of TASK was rewound: TASK itself if it is n
 if that comes from outside of the plans of SUBJECT."
   (let ((runner (if (task-p subject) (task-runner subject) subject)))
     (unless (inside-plans-p runner)
-      (note-word (runner-client runner) word arguments subject))))
+      (note-outside-call (runner-client runner) word arguments subject))))

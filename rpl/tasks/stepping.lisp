@@ -2,72 +2,71 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(tell-at-rest spawn))
+(export '(notify-at-rest spawn))
 
-;;; A task that tells another something by a pulse must not do so before the other waits for it. So
-;;; the teller gives way until the hearer rests: until the hearer waits, is over, is kept from
-;;; running, or has used its slice.
+;;; A task that notifies another by a pulse must not do so before the other waits for it. So the
+;;; sender waits until the receiver is at rest: until it waits, is over, is blocked, or has used its
+;;; slice.
 
-(defstruct (courtesy (:constructor make-courtesy (hearer teller function)) (:copier nil))
-  "That the task TELLER does not go on before FUNCTION has been called, which is when the task
-HEARER has come to rest."
-  (hearer nil :type task :read-only t)
-  (teller nil :type task :read-only t)
+(defstruct (notice (:constructor make-notice (receiver sender function)) (:copier nil))
+  "FUNCTION, to be called when the task RECEIVER has come to rest. The task SENDER waits for that."
+  (receiver nil :type task :read-only t)
+  (sender nil :type task :read-only t)
   (function nil :type function :read-only t))
 
-(defmethod awaited-text ((courtesy courtesy))
-  (format nil "task ~D to come to rest" (task-serial (courtesy-hearer courtesy))))
+(defmethod awaited-text ((notice notice))
+  (format nil "task ~D to come to rest" (task-serial (notice-receiver notice))))
 
 (defun at-rest-p (task runner)
   (case (task-state task)
     (:running nil)
     (:ready (or (spent-p task runner) (blocked-p task)))
-    (t (not (courtesy-p (task-awaiting task))))))
+    (t (not (notice-p (task-awaiting task))))))
 
-(defun tell-at-rest (hearer function)
-  "Call FUNCTION, which lets the task HEARER hear something, now, if that is at rest or there is
-none. Otherwise do so as soon as it is, and let the task at work give way until then."
+(defun notify-at-rest (receiver function)
+  "Call FUNCTION, which notifies the task RECEIVER, now if that is at rest or NIL. Otherwise call it
+as soon as the task is at rest, and let the task at work wait until then."
   (let* ((runner *runner*)
-         (teller (running-task runner)))
-    (cond ((or (null hearer) (null teller) (eq hearer teller)
-               (not (eq runner (task-runner hearer)))
-               ;; Live, answers come in meanwhile, and who gives way could miss its own.
+         (sender (running-task runner)))
+    (cond ((or (null receiver) (null sender) (eq receiver sender)
+               (not (eq runner (task-runner receiver)))
+               ;; Live, answers come in meanwhile, and a sender that waits could miss its own.
                (funcall (runner-attended-p runner))
-               (at-rest-p hearer runner))
+               (at-rest-p receiver runner))
            (funcall function))
-          (t (settle-all (remove teller (runner-courtesies runner)
-                                 :key #'courtesy-hearer :test-not #'eq)
-                         runner)
-             (setf (runner-courtesies runner)
-                   (append (runner-courtesies runner)
-                           (list (make-courtesy hearer teller function)))
+          (t (deliver-notices (remove sender (runner-notices runner)
+                                      :key #'notice-receiver :test-not #'eq)
+                              runner)
+             (setf (runner-notices runner)
+                   (append (runner-notices runner)
+                           (list (make-notice receiver sender function)))
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
-(defun give-way-to-hearer (task frame value)
+(defun wait-for-delivery (task frame value)
   "Make TASK wait, to continue with FRAME and VALUE, if it must report something first. True if so."
-  (let ((courtesy (find task (runner-courtesies (task-runner task)) :key #'courtesy-teller)))
-    (when courtesy
-      (park task courtesy)
+  (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
+    (when notice
+      (park task notice)
       (setf (task-frame task) frame
             (task-value task) value))))
 
-(defun settle (courtesy)
-  (let ((teller (courtesy-teller courtesy)))
-    (call-user-code (courtesy-function courtesy) "what a plan is told")
-    (when (eq courtesy (task-awaiting teller))
-      (wake teller (task-value teller)))))
+(defun deliver-notice (notice)
+  (let ((sender (notice-sender notice)))
+    (call-user-code (notice-function notice) "what a plan is told")
+    (when (eq notice (task-awaiting sender))
+      (wake sender (task-value sender)))))
 
-(defun settle-all (courtesies runner)
-  (when courtesies
-    (setf (runner-courtesies runner)
-          (remove-if (lambda (courtesy) (member courtesy courtesies)) (runner-courtesies runner)))
-    (mapc #'settle courtesies)
+(defun deliver-notices (notices runner)
+  (when notices
+    (setf (runner-notices runner)
+          (remove-if (lambda (notice) (member notice notices)) (runner-notices runner)))
+    (mapc #'deliver-notice notices)
     t))
 
-(defun settle-courtesies (runner)
-  (settle-all (remove-if-not (lambda (courtesy) (at-rest-p (courtesy-hearer courtesy) runner))
-                             (runner-courtesies runner))
-              runner))
+(defun deliver-due-notices (runner)
+  (deliver-notices (remove-if-not (lambda (notice) (at-rest-p (notice-receiver notice) runner))
+                                  (runner-notices runner))
+                   runner))
 
 ;;; Before each step a task yields to a ready task of a higher level, so that a policy reacts to the
 ;;; last step before the next one is taken.
@@ -108,8 +107,7 @@ none. Otherwise do so as soon as it is, and let the task at work give way until 
                 (frame-data frame) data))))))
 
 (defun watched-step (node task frame value)
-  "Do the step of NODE as RUN-STEPS would, for whoever measures, goes through plans step by step, or
-may look into errors."
+  "Do the step of NODE as RUN-STEPS would, but timed, stepped through or with restarts."
   (let* ((runner (task-runner task))
          (stepper (runner-stepper runner)))
     (flet ((take ()
@@ -138,7 +136,7 @@ may look into errors."
 (defun interrupt (task frame value)
   "Evaporate as asked, or give way to a higher level or because TASK has taken its steps. FRAME and
 VALUE are what the last step returned; return what it should have."
-  (when (runner-doomed (task-runner task)) (end-doomed (task-runner task)))
+  (when (runner-ends-requested (task-runner task)) (end-requested (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
          (preempted (>= mask (ash 2 (task-level task))))
@@ -147,7 +145,7 @@ VALUE are what the last step returned; return what it should have."
     (setf (runner-mask runner) mask)
     (cond ((task-signal task) (evaporate-self task frame))
           ((or (null frame) (eq frame +parked+)) (values frame value))
-          ((and (runner-courtesies runner) (give-way-to-hearer task frame value)) +parked+)
+          ((and (runner-notices runner) (wait-for-delivery task frame value)) +parked+)
           ((not (or preempted spent kept)) (values frame value))
           (t (setf (task-frame task) frame
                    (task-value task) value)
@@ -164,7 +162,7 @@ VALUE are what the last step returned; return what it should have."
     (loop
       (when (or (>= (runner-mask runner) higher)
                 (>= (runner-steps runner) (runner-pause runner))
-                (runner-doomed runner))
+                (runner-ends-requested runner))
         (multiple-value-setq (frame value) (interrupt task frame value)))
       (cond ((null frame) (return (finish task :succeeded (single-value value))))
             ((eq frame +parked+) (return)))
@@ -213,8 +211,7 @@ VALUE are what the last step returned; return what it should have."
                     (runner-alive runner)))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
-  "Start TASK, the part number INDEX of PARENT (NIL: a top-level task), to run NODE in ENVIRONMENT.
-Return it."
+  "Start and return TASK, part INDEX of PARENT (NIL: at top level), to run NODE in ENVIRONMENT."
   (let ((runner (if parent (task-runner parent) *runner*)))
     (check-room runner)
     (incf (runner-alive runner))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(hinderers hindrance-text report-circle taken-from those-who-took-from report-deadlock
+(export '(tasks-awaited stuck-wait-text report-circle preemptors all-preemptors report-deadlock
           report-stillness +no-fluent+ wait-for-no-fluent doubt-awaited waiting-parts
           text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
 
@@ -11,24 +11,24 @@
 ;;; could wake a task, it does not count as stuck; the report of deadlocks covers it when nothing
 ;;; runs any more.
 
-(defgeneric hinderers (awaited)
+(defgeneric tasks-awaited (awaited)
   (:documentation "Return the tasks without which AWAITED cannot come; NIL if that is unknown.")
   (:method (awaited)
     (declare (ignore awaited))
     '()))
 
-(defgeneric taken-from (task data)
+(defgeneric preemptors (task data)
   (:documentation "Return the tasks that keep TASK from running by having what DATA, of one of its
 frames, is about.")
   (:method (task data)
     (declare (ignore task data))
     '()))
 
-(defun those-who-took-from (task)
+(defun all-preemptors (task)
   "Return the tasks that keep TASK, or what it is part of, from running by having what it needs."
   (loop for each in (lineage task)
         append (loop for frame in (frame-chain (task-frame each))
-                     append (taken-from each (frame-data frame)))))
+                     append (preemptors each (frame-data frame)))))
 
 (defun working-parts (task)
   "Return the innermost parts of TASK that are at its own level."
@@ -39,8 +39,8 @@ frames, is about.")
 
 (defun obstacles (task)
   "Return the tasks without which TASK, without its parts, cannot go on; NIL if that is unknown."
-  (or (and (task-awaiting task) (hinderers (task-awaiting task)))
-      (those-who-took-from task)))
+  (or (and (task-awaiting task) (tasks-awaited (task-awaiting task)))
+      (all-preemptors task)))
 
 (defun stuck-tasks (task)
   "Return TASK and the tasks that wait for each other with it, or NIL if some of them can go on."
@@ -54,38 +54,37 @@ frames, is about.")
                    (push part open)))))
     (reverse stuck)))
 
-(defgeneric hindrance-text (awaited)
+(defgeneric stuck-wait-text (awaited)
   (:documentation "Return in words what a task that is stuck waits for.")
   (:method (awaited) (awaited-text awaited)))
 
 (defun wait-text (task)
-  "Return in words what TASK waits for, as TASK-AWAITS does, and who has it if that is known."
+  "Return in words what TASK waits for, as TASK-AWAITS does, and its owner if that is known."
   (and (task-awaits task)
-       (if (hinderers (task-awaiting task))
-           (hindrance-text (task-awaiting task))
+       (if (tasks-awaited (task-awaiting task))
+           (stuck-wait-text (task-awaiting task))
            (task-awaits task))))
 
 (defun stuck-text (task)
   (let ((awaiting (task-awaiting task)))
-    (if (and awaiting (hinderers awaiting))
-        (format nil "~A waits for ~A" (task-label task) (hindrance-text awaiting))
-        (let ((names (mapcar #'task-label (those-who-took-from task))))
+    (if (and awaiting (tasks-awaited awaiting))
+        (format nil "~A waits for ~A" (task-label task) (stuck-wait-text awaiting))
+        (let ((names (mapcar #'task-label (all-preemptors task))))
           (format nil "~A waits until ~{~A~^ and ~} ~:[gives~;give~] back what was taken from it"
                   (task-label task) names (rest names))))))
 
-(defun tell-of-circle (tasks)
+(defun warn-of-circle (tasks)
   "Queue a warning: TASKS wait for each other. What they are parts of may still end one of them."
   (warn-notably "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
                 (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
                 ". None can go on until one of them is ended, as by a deadline."))
 
 (defun report-circle (task)
-  "Queue a warning if TASK, which has come to wait, waits in a circle."
+  "Queue a warning if TASK, which has begun to wait, waits in a circle."
   (let ((tasks (stuck-tasks task)))
-    (when tasks (tell-of-circle tasks))))
+    (when tasks (warn-of-circle tasks))))
 
-;;; As long as a part of a task goes on, the task is not stuck. A circle through it may close when
-;;; that part ends.
+;;; A task with a part that goes on is not stuck. A circle may close when that part ends.
 
 (defun first-working-part (task)
   (let ((child (loop for child = (task-newest-child task) then (task-older child)
@@ -93,7 +92,7 @@ frames, is about.")
                      when (<= (task-level child) (task-level task)) return child)))
     (if child (first-working-part child) task)))
 
-(defun hinders-p (task others)
+(defun obstacle-p (task others)
   "True if TASK, or one that it is part of, is an obstacle to one of OTHERS."
   (some (lambda (other)
           (some (lambda (obstacle) (part-of-p task obstacle)) (obstacles other)))
@@ -105,7 +104,7 @@ frames, is about.")
     (let* ((part (first-working-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
                        (stuck-tasks part))))
-      (when (hinders-p task tasks) (tell-of-circle tasks)))))
+      (when (obstacle-p task tasks) (warn-of-circle tasks)))))
 
 ;;;; Stillness
 
@@ -162,8 +161,8 @@ frames, is about.")
         (name
          (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
                       end~]." plan name (end-elsewhere name part tasks)))
-        (t (format nil "~A has given none by a function such as rpl-robot-turn; plans do not ~
-                        hear of others." plan))))))
+        (t (format nil "~A has issued none by a function such as rpl-robot-turn; only those ~
+                        change fluents." plan))))))
 
 ;; Whatever has pulsed a fluent that is waited for itself came before the wait.
 (defun missed-pulses-text (tasks)
@@ -246,8 +245,7 @@ frames, is about.")
   (warn-of-wait task (no-fluent-advice task)))
 
 (defun doubt-awaited (task value)
-  "Queue a warning, once for each form, if TASK does not wait as it was given VALUE, which is true,
-and which nobody means to wait for."
+  "Queue a warning, once for each form, if VALUE, awaited by TASK, is hardly a condition."
   (multiple-value-bind (kind remedy)
       (typecase value
         (number (values "number" (format nil "(wait-time ~A) waits for so many ticks" value)))
@@ -288,8 +286,7 @@ and of the simulator can cause, with advice. A thread waits for one of them."
                   "Control-C ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
 
 (defun report-deadlock (runner)
-  "Queue an error message that says that no task of RUNNER can go on: the plans, what they wait for,
-what could be done, and all tasks."
+  "Queue an error message that no task of RUNNER can go on, with plans, waits, advice and tasks."
   (let ((tasks (plan-runner-tasks runner)))
     (queue-message
      (make-message :error

@@ -22,12 +22,12 @@ first" :writable :export)
   (step #'list function "the function of the node, task, frame and the value of the inner expression
 that has ended, which returns the frame to go on with and a value for it" :writable)
   (unwind nil (or null function) "the function of the same arguments, but a signal, that is called
-when a signal passes the frame, or NIL. It returns a frame that takes care of it, or NIL and, if
+when a signal passes the frame, or NIL. It returns a frame that handles it, or NIL and, if
 another signal is to go on instead, that" :writable)
   (child-ended nil (or null function) "the function of node, task, frame, child, the child's state
 and its result, or NIL" :writable)
-  (whose :unknown (member :unknown :everybodys :a-runs)
-         "whether forks of a run share it, once somebody has found that out" :writable))
+  (sharing :unknown (member :unknown :shared :per-run)
+         "whether forks of a run share it, once that is known" :writable))
 
 (declaim (inline make-frame))
 (define-record (frame (:constructor make-frame (node environment up)))
@@ -41,8 +41,7 @@ around it" :writable :export)
   (data nil t "what the frame has to remember: in DEFINE-EXPRESSION, its MEMORY" :writable :export))
 
 (defun frame-state (frame)
-  "Return the name of the state that FRAME is in, a keyword; a number of parts begun, if its node
-has no states."
+  "Return the state of FRAME, a keyword; if its node has no states, the number of parts begun."
   (let ((states (node-states (frame-node frame))))
     (if (plusp (length states))
         (svref states (frame-counter frame))
@@ -58,7 +57,7 @@ has no states."
   (serial 0 fixnum "the number of the task within its plan runner" :writable :addition)
   (state :created keyword "the task's state: :created, :ready, :running, :waiting, and when it is
 over :succeeded, :failed or :evaporated" :writable :addition)
-  (doomed nil boolean "true if the task is to evaporate" :writable :export)
+  (ending-p nil boolean "true if the task is to evaporate" :writable :export)
   (level 0 (integer 0 7) "the level of the task: 0 for the plan proper, for a policy one above what
 it guards" :writable :export)
   (index 0 fixnum
@@ -72,7 +71,7 @@ NIL" :writable :export)
   (timer nil (or null timer)
          "the timer that ends the task's wait at the latest, or NIL" :writable :export)
   (cleaning '() list "the frames of the task that clean up, innermost first" :writable :export)
-  (blocked 0 fixnum "how many keep it from running" :writable)
+  (blocked 0 fixnum "how many blocks keep it from running" :writable)
   (round 0 fixnum "in which round of its plan runner it used its slice last" :writable)
   (slice 0 fixnum "how many steps it may still take in that round" :writable)
   (result nil t
@@ -81,12 +80,12 @@ NIL" :writable :export)
 TASK-STATUS" :writable :export)
   (parent nil (or null task)
           "the task that the task is part of, or NIL" :writable :addition)
-  (suspensions 0 fixnum "how many of those that keep it from running are suspensions" :writable)
+  (suspensions 0 fixnum "how many of its blocks are suspensions" :writable)
   (suspended nil boolean "true if SUSPEND is one of them" :writable)
   (uncounted-p nil boolean "the task's steps are not charged for, as what it does has a
 price" :writable :export)
   (gate nil t "what it waits for before it starts, or NIL" :writable)
-  (variables '() list "what it has set" :writable)
+  (variables '() list "the task variables that it has set, an alist" :writable)
   (newest-child nil (or null task) "that part of the task which started last of those not over, or
 NIL" :writable :export)
   (older nil (or null task)
@@ -136,8 +135,7 @@ NIL" :writable :export)
         while each collect each))
 
 (defun frames-around (task &optional (frame (task-frame task)))
-  "Return the frames of TASK from FRAME on, and those of the tasks that it is part of, innermost
-first."
+  "Return the frames of TASK from FRAME on, and those of the tasks around it, innermost first."
   (nconc (frame-chain frame)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 
@@ -149,7 +147,7 @@ first."
 (defun evaporating-p (task)
   "True if TASK, or what it is part of, is evaporating."
   (loop for each = task then (task-parent each)
-        while each thereis (task-doomed each)))
+        while each thereis (task-ending-p each)))
 
 (defun under-way-p (task)
   "True if TASK has been started and is not over."
@@ -179,8 +177,7 @@ frames of one list run one expression."
     (nreverse (mapcar #'nreverse runs))))
 
 (defun forms-under-way (frame)
-  "Return the expressions that FRAME, and those that it is run on behalf of, are at, innermost
-first."
+  "Return the expressions that FRAME, and the frames up from it, are at, innermost first."
   (loop for (each) in (frame-runs frame)
         collect (current-form (frame-node each) each)))
 
@@ -218,8 +215,7 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
   (form-text form 3000 200 20))
 
 (defun task-label (task &optional (text (lambda (form) (form-text form 40))))
-  "Return a short text that says which task TASK is; of one without a name, what the function TEXT
-makes of its expression."
+  "Return a short text for TASK: its name, or what the function TEXT returns for its expression."
   (let ((name (task-name task)))
     (cond ((null name) (funcall text (node-form (task-node task))))
           ((and (symbolp name) (< (length (symbol-name name)) 100)) (string-downcase name))
@@ -230,7 +226,7 @@ makes of its expression."
   "Return the labels of the tasks from the top of the plan to TASK."
   (reverse (mapcar #'task-label (lineage task))))
 
-;; Whatever a plan asks for, in whatever task, is asked for by the plan as a whole.
+;; A request of any task counts as one of the whole plan.
 (defmethod asker-note ((task task))
   (list "the plan " (task-label (task-top task))))
 

@@ -31,8 +31,8 @@ waits for its own parts."
 
 (define-record (trace-entry (:constructor make-trace-entry
                                 (tick event task form subject value agent)))
-  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, by the doing
-of AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
+  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, caused by
+AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
 :start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
 value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
 fluent and value; :command: an ISSUE and, for the task
@@ -48,17 +48,17 @@ and each that it is part of, the expressions under way; :answer: the ISSUE and t
   (value nil t "what a task succeeded with; the value that a fluent was given; the error code of an
 answer; for a command the expressions under way, a list for the task and each that it is part of;
 the number of the task that a task is part of when it starts" :addition)
-  (agent nil t "by whose doing it happened: a task's number, an answer, or an asker" :export))
+  (agent nil t "what caused it: a task's number, an answer, or an asker" :export))
 (declaim-final trace-entry)
 
 (define-record (issue (:constructor make-issue (name arguments task)))
-  "That a task asked somebody outside of the plans for something."
+  "A command that a task has issued."
   (name nil symbol "the plan function by which a command was issued" :export)
   (arguments '() list "the list of what it was called with" :export)
   (task 0 fixnum "the number of the task that issued the command" :export))
 
 (define-record (answer (:constructor make-answer (issue error)))
-  "What came of a command."
+  "How a command ended."
   (issue nil issue "the record of the command that an answer is for" :export)
   (error nil t "the error code of an answer, or NIL" :export))
 
@@ -78,7 +78,7 @@ the number of the task that a task is part of when it starts" :addition)
   (list "the answer to " (issue-text (answer-issue answer))))
 
 (defun agent-text (agent)
-  "Return in words who AGENT, of a trace entry, is."
+  "Return in words what AGENT, of a trace entry, is."
   (if (integerp agent)
       (format nil "task ~D" agent)
       (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
@@ -114,8 +114,7 @@ value a fluent was given and by whom, which command was issued or answered, and 
   (make-array count :initial-element 0))
 
 (defstruct (chronicle (:constructor make-trace ()) (:copier nil))
-  "A trace as it is kept: CHUNK, filled up to FILL, and the full ones before it, the newest first,
-each in a list with its own FILL."
+  "A trace as it is kept: CHUNK, filled up to FILL, and lists (chunk fill) before, newest first."
   (chunk (make-chunk 512) :type simple-vector)
   (fill 0 :type (unsigned-byte 32))
   (full '() :type list))

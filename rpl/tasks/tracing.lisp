@@ -4,8 +4,7 @@
 
 (export '(note-command note-event start-trace stop-trace with-answer note-event))
 
-;;; *ASKER* is the agent of an event: the task at work, or the caller that posted what is being
-;;; applied.
+;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
   "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see
@@ -62,7 +61,7 @@ TRACE-ENTRY, are evaluated only then."
 ;;; What is posted.
 
 (defun on-behalf (entry)
-  "Return a function that applies ENTRY, which is posted, on behalf of who asks now."
+  "Return a function that applies ENTRY, which is posted, on behalf of the current asker."
   (let ((asker *asker*))
     (lambda ()
       (let ((*asker* asker))
@@ -83,7 +82,7 @@ record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
         issue))))
 
 (defun call-with-answer (issue error function)
-  "Call FUNCTION, by which plans hear the answer ERROR to ISSUE, see NOTE-COMMAND; trace that."
+  "Call FUNCTION, which applies the answer ERROR to ISSUE, see NOTE-COMMAND; trace that."
   (let ((*asker* (if issue (make-answer issue error) *asker*)))
     (when (and issue *runner* (runner-trace *runner*))
       (trace-doing *runner* :answer issue error))
