@@ -208,11 +208,11 @@
       :components ((:file "keys") (:file "changes") (:file "history") (:file "kinds-of-lines")
                    (:file "editor") (:file "typing")))
      (:module "prompt" :serial t
-      :components ((:file "reporting") (:file "listener") (:file "session") (:file "visit")
+      :components ((:file "reporting") (:file "listener") (:file "session") (:file "open-trial")
                    (:file "listening") (:file "line") (:file "quantities") (:file "arguments")
-                   (:file "errands") (:file "reading") (:file "finding") (:file "loading")
+                   (:file "jobs") (:file "reading") (:file "finding") (:file "loading")
                    (:file "carrying-out") (:file "plans") (:file "worlds")
-                   (:file "breakage") (:file "debugger") (:file "clx") (:file "completing")
+                   (:file "break-requests") (:file "debugger") (:file "clx") (:file "completing")
                    (:file "prompt")))
      (:module "lines" :serial t
       :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")

@@ -1,10 +1,10 @@
 ;;;; build.lisp -- compiles the project for ./cli/ars-magna and ./tests/run.
 
 ;;; Those scripts load this file into a bare SBCL. The environment says where compiled files go. For
-;;; the tests, any warning, undefined functions included, ends the build with status 2 and removes
-;;; the project's compiled files, so that the next build finds it again. For users, who may have
-;;; another SBCL, whatever ASDF accepts is accepted; the tests compile files again that were so
-;;; compiled with warnings.
+;;; the tests, any warning ends the build with status 2, also that of an undefined function. It
+;;; removes the project's compiled files, so that the next build finds it again. For users, who may
+;;; have another SBCL, what ASDF accepts is accepted; the tests compile files again that had
+;;; warnings then.
 
 (require "asdf")
 

@@ -129,7 +129,7 @@ turn 1" "--rate" "free")))))
   (multiple-value-bind (lines status) (run-script "pause
 turn 1" "--rate" "free")
     (is (= 1 status))
-    (is-true (has-words-p (first (last lines)) "not all that was asked for has ended" "RESUME")))
+    (is-true (has-words-p (first (last lines)) "not all requests have ended" "RESUME")))
   (is (string= "done\",\"line\":2,\"text\":\"turn 1\",\"ok\":false"
                (first (last (ends-in (objects-of-script "pause
 turn 1" "--rate" "free")))))))
@@ -144,7 +144,7 @@ quit" "pause
 resume"))
     (multiple-value-bind (lines status) (run-script text "--rate" "free")
       (is (= 1 status))
-      (is-true (has-words-p (first (last lines)) "not all that was asked for has ended"))))
+      (is-true (has-words-p (first (last lines)) "not all requests have ended"))))
   (is (equal '("done\",\"line\":1,\"text\":\"pause\",\"ok\":true"
                "waiting\",\"line\":2,\"text\":\"(robot-turn dot 1)\""
                "done\",\"line\":3,\"text\":\"(list 2)\",\"ok\":true"
@@ -264,7 +264,7 @@ last. Return its status, and its error output."
                   "(unwind-protect (progn ~A (loop)) (loop))"))
     (multiple-value-bind (status errors) (patience-of-script form)
       (is (= 130 status) "~A: ~A ~A" form status errors)
-      (is-true (has-words-p errors "line 1: stopped: control C has come again") "~A" errors))))
+      (is-true (has-words-p errors "line 1: stopped: Control-C was pressed again") "~A" errors))))
 
 (test interrupts.end-at-once-what-did-not-end
   "The third does so anyway; the second if the first has begun nothing, and is not half of it."
@@ -343,7 +343,7 @@ last. Return its status, and its error output."
                 (is-true (base:wait-on-semaphore heard 20)))
       (host::handle-signal sb-posix:sigcont :default)))
   (let ((cli::*continued-p* nil))
-    (cli::take-terminal-again)
+    (cli::resume-terminal)
     (is-true cli::*continued-p* "the line that is typed is drawn again")))
 
 (test scripts.leave-errors-to-continuations-that-are-told

@@ -62,7 +62,7 @@
 
 ;;; ECHO.
 
-(test echo.off-hushes-plans-and-programs
+(test echo.off-hides-plans-and-programs
   (let ((lines '("plan stroll .5" "turn 1")))
     (is (equal '("robot-turn: Robot turned 0.50" "stroll succeeded: 0.5"
                  "robot-turn: Robot turned 1.00")
@@ -72,7 +72,7 @@
     (is (equal '("robot-turn: Robot turned 0.50" "stroll succeeded: 0.5")
                (cddr (type-batch "echo off" "echo on" "plan stroll .5"))))))
 
-(test echo.off-hushes-continuations
+(test echo.off-hides-continuations
   (flet ((shown (setting)
            (joined (type-batch setting
                                "(robot-turn butler 1 (continuation (err robot angle)

@@ -11,7 +11,7 @@
                                :octets (make-string-input-stream (joined lines))))
          (session (cli:make-session :input input :output output)))
     (run:call-with-simulation (lambda () (cli:run-session session)) '(ars-user::butler) :clean t)
-    (cli::let-go-of-streams session output) ; other threads may have something to say
+    (cli::release-streams session output) ; other threads may have something to say
     (lines-of (get-output-stream-string output))))
 
 (defun without-prompts (line)
@@ -69,7 +69,7 @@
                                    "(+ 2 3)")))
     (is-true (written-p "*BREAK* -> oh" written))
     (is-true (find-if (lambda (line) (has-words-p line "0" "continue" "Return from")) written))
-    (is-true (find-if (lambda (line) (has-words-p line "nonsense" "no way to go on")) written))
+    (is-true (find-if (lambda (line) (has-words-p line "nonsense" "one of the restarts")) written))
     (dolist (line '("42" "4" "5"))
       (is-true (written-p line written) "~A is not in ~S" line written))))
 
@@ -86,10 +86,10 @@
   (let ((session (cli:make-session)))
     (with-simple-restart (continue "Go on.")
       (setf (cli::break-state-others (cli::session-break-state session))
-            (list (cli::make-breakage (make-condition 'simple-condition :format-control "oh")
-                                      (list (find-restart 'continue))
-                                      (base:current-thread) (list session))))
-      (is (equal " What has broken waits for one of 0 continue." (cli::what-goes-on session))))))
+            (list (cli::make-break-request (make-condition 'simple-condition :format-control "oh")
+                                           (list (find-restart 'continue))
+                                           (base:current-thread) (list session))))
+      (is (equal " A break waits for one of 0 continue." (cli::what-goes-on session))))))
 
 (test break.can-be-left-with-the-prompt
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
@@ -252,7 +252,7 @@
                 '(((:there :menu) (:there :waits) (:there :menu))
                   ((:there :waits) (:there :menu) (:there :menu)))
                 :test #'equal))
-    (is-true (find-if (lambda (line) (search "go-b is no way to go on" line)) written))
+    (is-true (find-if (lambda (line) (search "go-b is not one of the restarts" line)) written))
     (is-true (written-p "5" written))))
 
 (defun break-elsewhere-and-wait ()
@@ -267,7 +267,7 @@
   (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere-and-wait)" "nonsense" "turn"
                                    "(+ 2 (length ars-magna.tests::*went-on*))")))
     (is (equal '(:turned-back) *went-on*))
-    (is-true (written-p "*ERROR* -> nonsense is no way to go on" written))
+    (is-true (written-p "*ERROR* -> nonsense is not one of the restarts" written))
     (is-true (written-p "3" written))))
 
 (test break.in-a-break-of-another-thread-is-a-message
@@ -290,26 +290,26 @@
   "Who waits there would see nothing else."
   (let ((cli::*own-process-p* nil)
         (window (cli:make-session :place (constantly nil)))
-        (breakage (cli::make-breakage (make-condition 'simple-condition :format-control "look")
-                                      '() (base:current-thread) '())))
-    (is (mentions-p (cli::words-for-repl (list window) breakage) "look"))
-    (is (null (cli::words-for-repl (list window (cli:make-session)) breakage)))
+        (request (cli::make-break-request (make-condition 'simple-condition :format-control "look")
+                                          '() (base:current-thread) '())))
+    (is (mentions-p (cli::words-for-repl (list window) request) "look"))
+    (is (null (cli::words-for-repl (list window (cli:make-session)) request)))
     (setf cli::*own-process-p* t)
-    (is (null (cli::words-for-repl (list window) breakage)))))
+    (is (null (cli::words-for-repl (list window) request)))))
 
 ;;; Whose matter a break is.
 
 (test breaks.wait-for-the-last-prompt-that-can-answer
   (let* ((sessions (loop repeat 2 collect (cli:make-session)))
          (restart (restart-case (first (compute-restarts)) (go-on () nil)))
-         (breakage (cli::make-breakage (make-condition 'simple-condition) (list restart)
-                                       (base:current-thread) (copy-list sessions))))
+         (break-request (cli::make-break-request (make-condition 'simple-condition) (list restart)
+                                                 (base:current-thread) (copy-list sessions))))
     (dolist (session sessions)
-      (setf (cli::break-state-others (cli::session-break-state session)) (list breakage)))
+      (setf (cli::break-state-others (cli::session-break-state session)) (list break-request)))
     (cli::release-all (first sessions))
-    (is (null (cli::breakage-order breakage)) "the other one has not answered yet")
+    (is (null (cli::break-request-call break-request)) "the other one has not answered yet")
     (cli::release-all (second sessions))
-    (is-true (cli::breakage-order breakage))))
+    (is-true (cli::break-request-call break-request))))
 
 (test breaks.of-a-users-own-thread-are-for-lisps-debugger
   "Unless this Lisp does nothing but the program of the prompt."
@@ -318,7 +318,7 @@
              (setf cli::*session* nil cli::*own-process-p* nil)
              (unwind-protect
                   (base:join-thread (funcall start (lambda ()
-                                                     (push (cli::others-matter-p) answer))))
+                                                     (push (cli::outside-prompts-p) answer))))
                (setf cli::*session* session cli::*own-process-p* own-p))
              answer)))
     (is (equal '(t) (there-p (lambda (function) (bordeaux-threads:make-thread function)))))

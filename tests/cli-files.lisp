@@ -298,7 +298,7 @@ function of its name. Return that parameter."
         (is (= 124 status))
         (is (mentions-p errors (format nil "~Athe time limit of 0.5 s" place))))
       (is (mentions-p (nth-value 1 (patience-of-script "" "--load" name))
-                      (format nil "~Acontrol C has come again" place)))))
+                      (format nil "~AControl-C was pressed again" place)))))
   (is (mentions-p (nth-value 1 (uiop:run-program
                                 (list (base:native-name (project-file "cli/ars-magna"))
                                       "--batch" "--time-limit" "0.5")

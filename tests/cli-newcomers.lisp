@@ -49,8 +49,8 @@
 
 (test apropos.searches-names-and-texts
   (let ((text (joined (type-batch "apropos blocked"))))
-    (is-true (has-words-p text "ROBOT-BLOCKED" "Also said" "ROBOT-GO-FORWARD"))
-    (is (< (search "ROBOT-BLOCKED" text) (search "Also said" text))))
+    (is-true (has-words-p text "ROBOT-BLOCKED" "Also in the description" "ROBOT-GO-FORWARD"))
+    (is (< (search "ROBOT-BLOCKED" text) (search "Also in the description" text))))
   (is-true (every (lambda (line) (<= (length line) 79)) (type-batch "apropos robot")))
   (is-true (has-words-p (complaint "apropos xyzzyplugh") "xyzzyplugh")))
 
@@ -134,10 +134,10 @@
                           "No plan is under way" "A fork has one world"
                           "Back from the fork. Tick 5"))
     (is (search "dawdle" text :start2 (search "Back from the fork" text))))
-  (awaiting (null cli::*plan-errands*)))
+  (awaiting (null cli::*plan-jobs*)))
 
 (test fork.can-be-left-with-the-prompt
-  (is-true (answers-p '("In a fork, at tick 0. STEP lets time pass, FORK OFF leads back." "3")
+  (is-true (answers-p '("In a fork, at tick 0. STEP lets time pass, FORK OFF leaves it." "3")
                       '("fork" "(+ 1 2)" "quit" "(+ 2 2)"))))
 
 (test fork.says-what-it-takes
@@ -176,7 +176,7 @@
     (is (<= (widest 40) 40))))
 
 (test robot.never-leaves-the-world
-  (is-true (has-words-p (complaint "robot dot") "another world" "WORLD tiny dot" "over"))
+  (is-true (has-words-p (complaint "robot dot") "another world" "WORLD tiny dot" "ends this run"))
   (let ((text (joined (type-live '("pause" "step 3" "robot dot" "status" "rate" "quit")))))
     (is-true (has-words-p text "another world" "Tick 3"))))
 
@@ -243,7 +243,7 @@
   (is (equal "go-to: Robot is near 8 8.5, by its odometer"
              (car (last (type-batch "go-to 8 8.5"))))))
 
-(test echo.hushes-what-go-to-does-on-the-way
+(test echo.hides-what-go-to-does-on-the-way
   (is (equal '("go-to: Robot is near 8 8.5, by its odometer")
              (rest (type-batch "echo off" "go-to 8 8.5")))))
 

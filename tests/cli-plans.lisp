@@ -93,11 +93,11 @@
   (is-true (has-words-p (complaint "plan dawdle (1") "not complete"))
   (is-true (has-words-p (complaint "stop-plan") "No plan"))
   (let ((cli::*patience* 10))
-    (is-true (has-words-p (complaint "plan dawdle 50") "dawdle" "10 ticks" "goes on"))))
+    (is-true (has-words-p (complaint "plan dawdle 50") "dawdle" "10 ticks" "continues"))))
 
 (test plan.nothing-stays-behind
   (type-batch "plan dawdle 1" "plan stumble x" "plan mope" "plan dawdle")
-  (is (null cli::*plan-errands*)))
+  (is (null cli::*plan-jobs*)))
 
 (test plan.names-may-be-cut-short
   (is-true (answers-p '("dawdle succeeded: :DAWDLED") '("plan daw 1")))
@@ -214,7 +214,7 @@
 (test live.another-is-back-at-once
   (let ((text (joined (type-live '("plan dawdle 1000000000" "plans" "stop-plan" "quit")))))
     (is-true (has-words-p text "Plan 1 is under way: dawdle" "Robot> 1 ")))
-  (awaiting (null cli::*plan-errands*)))
+  (awaiting (null cli::*plan-jobs*)))
 
 ;;; Pausing. A tick that passes in a hundred seconds is one that does not pass.
 
@@ -249,7 +249,7 @@
   (is-true (has-words-p (complaint "picture world.svg -1") "scale"))
   (is-true (has-words-p (complaint "picture world.svg 8 9") "one number"))
   (is-true (has-words-p (complaint "film run.html 8 9") "FILM takes one number"))
-  (is-true (has-words-p (complaint "film run.html gird") "FILM does not know" "GRID"))
+  (is-true (has-words-p (complaint "film run.html gird") "FILM does not take" "GRID"))
   (is-true (has-words-p (complaint "plan-timeline plan.svg") "No plans have run here" "begin-plan"))
   (is-true (has-words-p (complaint "picture world.svg nmaes") "nmaes" "NAMES" "BARE"))
   (is-true (has-words-p (complaint "picture /no/such/directory/world.svg") "/no/such/directory")))

@@ -46,7 +46,7 @@
                           "1 waiting: dawdle")
              "~A" text)
     (is (null (search "was stopped" text))))
-  (awaiting (null cli::*plan-errands*)))
+  (awaiting (null cli::*plan-jobs*)))
 
 (test rewind.by-lisp-lets-plans-be-watched-again
   (let ((text (let ((run:*forks-to-keep* t))
@@ -54,7 +54,7 @@
                                      "quit"))))))
     (is-true (has-words-p text "1 waiting: dawdle") "~A" text)
     (is (null (search "was stopped" text))))
-  (awaiting (null cli::*plan-errands*)))
+  (awaiting (null cli::*plan-jobs*)))
 
 ;;; Forks.
 

@@ -30,7 +30,7 @@
          (talk (make-talk :output output))
          (simulation (run:robot-simulation robot))
          (turn (lambda () (base:signal-semaphore (talk-turns talk))))
-         (session (cli:make-session :input (cli:make-handed-text console) :output console
+         (session (cli:make-session :input (cli:make-window-text console) :output console
                                     :place turn)))
     (setf (talk-session talk) session
           (talk-thread talk)
@@ -52,7 +52,7 @@
   (dolist (line lines) (cli:enter-line (talk-session talk) line)))
 
 (defun type-keys (talk &rest keys)
-  (dolist (key keys) (cli:press-key (cli:session-input (talk-session talk)) key)))
+  (dolist (key keys) (cli:send-key (cli:session-input (talk-session talk)) key)))
 
 (defun end-talk (talk)
   (cli:end-session (talk-session talk))
@@ -241,12 +241,13 @@ line."
 
 (test sessions.that-begin-know-how-often-an-error-has-come-up
   (in-talk (talk)
-    (setf (gethash "jammed" (cli::session-told (talk-session talk))) (cli::make-tally :count 42))
+    (setf (gethash "jammed" (cli::session-error-counts (talk-session talk)))
+          (cli::make-tally :count 42))
     (let ((new (cli:make-session :input (make-string-input-stream "")
                                  :output (make-broadcast-stream))))
       (cli::listen-to new (time:current-simulation))
       (cli::stop-listening new)
-      (is (eql 42 (cli::tally-count (gethash "jammed" (cli::session-told new))))))))
+      (is (eql 42 (cli::tally-count (gethash "jammed" (cli::session-error-counts new))))))))
 
 (test sessions.closing-one-carries-out-nothing
   (in-talk (talk)

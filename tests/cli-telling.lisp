@@ -63,7 +63,7 @@
                     (loop repeat 30 do (base:message-set "Camera 0 turned"))
                     (base:take-messages))))
     (flet ((text () (first (cli::texts-about session messages)))
-           (read-a-line () (cli::begin-flood-anew session)))
+           (read-a-line () (cli::reset-flood session)))
       (is (null (text)))
       (read-a-line)
       (is (null (text)) "a line was read between")

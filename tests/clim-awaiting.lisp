@@ -6,14 +6,15 @@
 
 (defun broken (text thread &optional told-p)
   "Return what a program that calls BREAK with TEXT leaves with a session; it waits in THREAD."
-  (let ((breakage (cli::make-breakage (make-condition 'simple-condition :format-control text)
-                                      '() thread '())))
-    (setf (cli::breakage-told-p breakage) told-p)
-    breakage))
+  (let ((break-request (cli::make-break-request
+                        (make-condition 'simple-condition :format-control text)
+                        '() thread '())))
+    (setf (cli::break-request-told-p break-request) told-p)
+    break-request))
 
-(defun leave-broken (session &rest breakages)
-  "Let BREAKAGES, of other threads, wait for SESSION."
-  (setf (cli::break-state-others (cli::session-break-state session)) breakages))
+(defun leave-broken (session &rest break-requests)
+  "Let BREAK-REQUESTS, of other threads, wait for SESSION."
+  (setf (cli::break-state-others (cli::session-break-state session)) break-requests))
 
 (defun note-above (window)
   "Return what is said above the line that is typed in WINDOW, where one is."
@@ -25,12 +26,12 @@
       (is (null (note-above window)))
       (is (not (mentions-p (window::time-text window) "the prompt asks")))
       (leave-broken session (broken "oh" thread))
-      (is (mentions-p (note-above window) "How does it go on? oh (in another thread, "))
-      (is (mentions-p (window::time-text window) "the prompt asks how a program goes on"))
+      (is (mentions-p (note-above window) "How to continue? oh (in another thread, "))
+      (is (mentions-p (window::time-text window) "the prompt asks how to continue a program"))
       (setf (cli::break-state-own (cli::session-break-state session))
             (broken "mine" (cli::session-thread session) t))
-      (is (mentions-p (note-above window) "1 more waits. How does it go on? mine"))
-      (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
+      (is (mentions-p (note-above window) "1 more waits. How to continue? mine"))
+      (is (mentions-p (window::time-text window) "the prompt asks how to continue two programs")))))
 
 (test awaiting.is-said-once-where-the-simulator-waits
   "The strip's word for how time goes tells of that one."
@@ -41,7 +42,7 @@
       (leave-broken session (broken "oh" thread))
       (is (= 1 (occurrences "asks how" (window::time-text window))))
       (leave-broken session (broken "oh" thread) (broken "ah" thread))
-      (is (mentions-p (window::time-text window) "the prompt asks how two programs go on")))))
+      (is (mentions-p (window::time-text window) "the prompt asks how to continue two programs")))))
 
 (test awaiting.what-breaks-while-another-is-answered-leaves-the-prompt-there
   "What it says would else stand where the line was, which would not be seen."
@@ -120,7 +121,7 @@
       (window::give-line conversation "rewind 10")
       (window::begin-line-with conversation "turn ")
       (is (has-words-p (said-in window)
-                       "REWIND 10: first say how what has broken goes on" "TURN: first"))
+                       "REWIND 10: first answer the break" "TURN: first"))
       (is (equal "" (keys-given window)))
       (window::give-line conversation "(describe 1)")
       (is (mentions-p (keys-given window) "(describe 1)")))))

@@ -23,7 +23,7 @@
     (with-window-of (window 'mole)
       (type-here "world hayloft")
       (window::leave-run window "it was left")
-      (window::agree-on-robot window)
+      (window::match-robot window)
       (is (equal (list 'heifer time:*simulation*) (shown-in window)))
       (is (= 1 (occurrences "HEIFER in HAYLOFT." (said-in window)))))))
 
@@ -34,9 +34,9 @@
             (conversation (window::window-conversation window)))
         (setf (window::conversation-thread conversation) (base:current-thread))
         (type-here "world hayloft")
-        (window::lead-window window (robot:find-robot 'heifer))
+        (window::switch-to-robot window (robot:find-robot 'heifer))
         (window::follow-prompt nil old time:*simulation*)
-        (window::agree-on-robot window)
+        (window::match-robot window)
         (is (equal (list 'heifer time:*simulation*) (shown-in window)))
         (is (= 0 (occurrences "HEIFER in HAYLOFT." (said-in window))))))))
 
@@ -85,7 +85,7 @@
           (setf (window::watcher-robot (window::window-watcher second)) 'mole)
           (window::follow-prompt nil fork run)
           (is (equal (list 'vole run) (shown-in second)))
-          (window::agree-on-robot second)
+          (window::match-robot second)
           (is (not (mentions-p (said-in second) "WOODSHED")))
           (is (equal (list 'mole run) (shown-in first))))))))
 
@@ -93,7 +93,7 @@
   (in-shed
     (with-window-of (window 'mole)
       (is (mentions-p (window::words-for-closing window "out of ink")
-                      "MOLE has closed: out of ink. The run goes on; the line WINDOW"))
+                      "MOLE has closed: out of ink. The run continues; the line WINDOW"))
       (run:end-simulation time:*simulation* "enough")
       (is (equal "The window of MOLE has closed: out of ink"
                  (window::words-for-closing window "out of ink"))))))
@@ -102,11 +102,11 @@
 
 (test going-on.a-new-window-tells-what-was-said-of-definitions
   (in-window (window robot)
-    (let ((window::*habits* '()) (window::*said* '())
+    (let ((window::*last-settings* '()) (window::*legacies* '())
           (cli::*first-messages* (let ((base:*message-queue* (base:make-message-queue)))
                                    (base:warning-set "The poster is inside a wall.")
                                    (base:take-messages))))
-      (window::take-habits window)
+      (window::take-settings window)
       (is (mentions-p (said-in window) "The poster is inside a wall")))))
 
 ;;; When something ends the thread of a prompt.
@@ -124,7 +124,7 @@
       (window::give-line conversation "(sb-thread:abort-thread)")
       (join-prompt window)
       (window::restart-if-lost conversation simulation 'studio-robot)
-      (is (mentions-p (said-in window) "It begins anew"))
+      (is (mentions-p (said-in window) "A new thread starts"))
       (window::give-line conversation "(* 6 7)")
       (window::give-line conversation "quit")
       (join-prompt window)

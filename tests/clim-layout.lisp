@@ -4,9 +4,9 @@
 
 (in-suite clim)
 
-(defun places-at (width height &optional (wishes (window::make-wishes)))
+(defun places-at (width height &optional (preferences (window::make-preferences)))
   "Return the places of all parts of a window in which each section wants 200 pixels."
-  (window::arrange wishes (constantly 200) width height))
+  (window::arrange preferences (constantly 200) width height))
 
 (defun place-of (name places) (rest (assoc name places)))
 
@@ -68,12 +68,12 @@
              (declare (ignore left width))
              (+ top height)))
          (needs (section) (second (assoc section window::*first-needs*))))
-    (let ((places (window::arrange (window::make-wishes) #'needs 640 480)))
+    (let ((places (window::arrange (window::make-preferences) #'needs 640 480)))
       (is (= (bottom 'window::transcript places) (bottom 'window::plan-title places)))
       (loop for (section lines) in '((window::state 4) (window::cameras 3) (window::hands 1)
                                      (window::bins 1))
             do (is (<= (+ 6 (* 16 lines)) (fourth (place-of section places))))))
-    (let ((places (window::arrange (window::make-wishes) #'needs 1280 900)))
+    (let ((places (window::arrange (window::make-preferences) #'needs 1280 900)))
       (is (<= (bottom 'window::plan-title places)
               (second (place-of 'window::low-splitter places)))))))
 
@@ -87,21 +87,22 @@
       (is (equal '(nil nil t nil) (whole 28))))))
 
 (test layout.plans-have-a-column-where-there-is-room
-  (let ((wishes (window::make-wishes :folded '())))
-    (flet ((plan-left (width) (first (place-of 'window::plan (places-at width 1080 wishes))))
-           (state-left (width) (first (place-of 'window::state (places-at width 1080 wishes)))))
+  (let ((preferences (window::make-preferences :folded '())))
+    (flet ((plan-left (width) (first (place-of 'window::plan (places-at width 1080 preferences))))
+           (state-left (width)
+             (first (place-of 'window::state (places-at width 1080 preferences)))))
       (is (= (plan-left 1200) (state-left 1200)))
       (is (< (plan-left 1920) (state-left 1920))))))
 
 (test layout.the-column-of-plans-can-be-made-larger
-  (let ((wishes (window::make-wishes :folded '() :plan-width 700)))
-    (is (= 700 (third (place-of 'window::plan (places-at 1920 1080 wishes)))))
-    (let ((places (places-at 1500 900 (window::make-wishes :folded '() :plan-width 5000))))
+  (let ((preferences (window::make-preferences :folded '() :plan-width 700)))
+    (is (= 700 (third (place-of 'window::plan (places-at 1920 1080 preferences)))))
+    (let ((places (places-at 1500 900 (window::make-preferences :folded '() :plan-width 5000))))
       (is (every (lambda (place) (inside-p place 1500 900)) (mapcar #'rest places)))
       (is (<= 120 (third (place-of 'window::world places)))))))
 
 (test layout.a-plan-can-be-read-at-640-by-480
-  (let ((places (places-at 640 480 (window::make-wishes :folded '()))))
+  (let ((places (places-at 640 480 (window::make-preferences :folded '()))))
     (destructuring-bind (left top width height) (place-of 'window::plan places)
       (declare (ignore left top))
       (is (<= 280 width))
@@ -118,11 +119,11 @@
   (in-window (window robot)
     (lay-out window 800 600)
     (is (not (window::shown-p (pane window 'window::plan))))
-    (window::click (pane window 'window::plan-title) :left 5 5)
+    (window::handle-click (pane window 'window::plan-title) :left 5 5)
     (is (window::shown-p (pane window 'window::plan)))
-    (window::click (pane window 'window::state-title) :left 5 5)
+    (window::handle-click (pane window 'window::state-title) :left 5 5)
     (is (not (window::shown-p (pane window 'window::state))))
-    (window::click (pane window 'window::state-title) :left 5 5)
+    (window::handle-click (pane window 'window::state-title) :left 5 5)
     (is (window::shown-p (pane window 'window::state)))))
 
 (test layout.splitters-move
@@ -131,8 +132,8 @@
     (flet ((size (name) (multiple-value-list (window::pane-size (pane window name))))
            (pull (name x y)
              (let ((pane (pane window name)))
-               (window::press pane :left 1 1)
-               (window::drag pane x y))))
+               (window::handle-press pane :left 1 1)
+               (window::handle-drag pane x y))))
       (let ((world (size 'window::world)) (transcript (size 'window::transcript)))
         (pull 'window::side-splitter -100 0)
         (is (= (- (first world) 100) (first (size 'window::world))))
@@ -148,8 +149,8 @@
     (flet ((width (name) (window::pane-size (pane window name)))
            (pull (name x)
              (let ((pane (pane window name)))
-               (window::press pane :left 1 1)
-               (window::drag pane x 0))))
+               (window::handle-press pane :left 1 1)
+               (window::handle-drag pane x 0))))
       (let ((world (width 'window::world)) (plan (width 'window::plan))
             (state (width 'window::state)))
         (pull 'window::side-splitter -100)
@@ -257,7 +258,7 @@ takes all the room that there is."
     (lay-out window 640 480)
     (let* ((pane (show-many-designators window robot)) (extent (window::pane-extent pane)))
       (is (window::scrollable-p pane))
-      (window::wheel pane 1 5 5)
+      (window::handle-wheel pane 1 5 5)
       (is (= 48 (window::pane-offset pane)))
       (multiple-value-bind (width height) (window::pane-size pane)
         (is (window::on-scroll-bar-p pane (- width 3)))

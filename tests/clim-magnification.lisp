@@ -64,7 +64,7 @@
             (window::event-place pane (motion-event pane (* 3 (floor x)) (* 3 (floor y))))
           (is (= (floor x) at-x))
           (is (= (floor y) at-y))))
-      (window::press splitter :left 1 1)
+      (window::handle-press splitter :left 1 1)
       (clim:handle-event splitter (motion-event splitter -300 0))
       (is (= (- width 100) (window::pane-size pane))))))
 
@@ -76,11 +76,11 @@
 (test magnification.is-kept-for-the-next-window
   (in-window (window robot)
     (window::magnify window 2)
-    (let ((window::*habits* '()) (window::*said* '()))
-      (window::keep-habits window)
+    (let ((window::*last-settings* '()) (window::*legacies* '()))
+      (window::keep-settings window)
       (call-with-window
        (lambda (next)
          (is (= 1 (window::window-magnification next)))
-         (window::take-habits next)
+         (window::take-settings next)
          (is (= 2 (window::window-magnification next))))
        robot))))

@@ -28,7 +28,7 @@
 (defun click-on (pane test &optional (button :left))
   "Click with BUTTON on what is drawn in PANE and satisfies TEST."
   (destructuring-bind (left top right bottom) (nth-value 1 (drawn-in pane test))
-    (window::click pane button (/ (+ left right) 2) (/ (+ top bottom) 2))))
+    (window::handle-click pane button (/ (+ left right) 2) (/ (+ top bottom) 2))))
 
 (defun task-with-number (serial)
   (lambda (subject)
@@ -124,9 +124,9 @@
              (x (ars-magna.rpl-pictures::x-of-tick
                  10 (ars-magna.rpl-pictures:scale-for page (window::content-width pane)))))
         (is (mentions-p (window::hover-text pane x 60) "Tick 10"))
-        (window::click pane :left x 60)
+        (window::handle-click pane :left x 60)
         (is (equal '("rewind-to 10") (lines-given window)))
-        (window::click pane :right x 60)
+        (window::handle-click pane :right x 60)
         (is (row-with window "rewind-to 10"))))))
 
 (test canvas.what-is-clipped-away-is-not-there

@@ -20,7 +20,7 @@
   (in-window (window robot)
     (let ((pane (painted-world window)))
       (flet ((told (x y)
-               (window::hover pane x y)
+               (window::handle-hover pane x y)
                (window::window-hint window)))
         (is (equal "Cell 10, 1: a wall of wood, parameter 50.0" (told 84 12)))
         (is (equal "Cell 10, 4: doorway" (told 84 36)))
@@ -36,7 +36,7 @@
     (window::refresh window)
     (let ((pane (painted-world window)))
       (flet ((told-p (name) (mentions-p (window::window-hint window) name)))
-        (window::hover pane 28 36)
+        (window::handle-hover pane 28 36)
         (is (told-p "BOX#1"))
         (world:move-thing (world:find-thing "BOX#1") (list 15.5 2.5))
         (window::publish (window::window-watcher window) (time:current-simulation))
@@ -48,7 +48,7 @@
         (window::hint window "That is now.")
         (window::repaint pane)
         (is (told-p "That is now.") "which stays until the mouse moves")
-        (window::hover pane 28 36)
+        (window::handle-hover pane 28 36)
         (window::rearrange window)
         (is (equal "" (window::window-hint window)) "panes may have moved")))))
 
@@ -56,7 +56,7 @@
   (in-window (window robot)
     (setf (window::watcher-progress (window::window-watcher window))
           (window::make-progress :state :busy :more (make-string 300 :initial-element #\x)))
-    (window::click (pane window 'window::strip) :left 5 5)
+    (window::handle-click (pane window 'window::strip) :left 5 5)
     (is (mentions-p (remove #\Newline (said-in window)) (make-string 300 :initial-element #\x)))))
 
 (defun robot-beneath (window thing-spot)
@@ -160,9 +160,9 @@ leads to both."
 (test pointing.a-click-picks
   (in-window (window robot)
     (let ((pane (painted-world window)))
-      (window::click pane :left 28 36)
+      (window::handle-click pane :left 28 36)
       (is (= 1 (length (window::selected-boxes pane))))
-      (window::click pane :left 84 12)
+      (window::handle-click pane :left 84 12)
       (is (equal '(:cell 10 1) (window::window-selection window)))
       (is (null (window::selected-boxes pane))))))
 
@@ -171,7 +171,7 @@ leads to both."
 (defun offered (pane x y)
   "Return the texts of the menu that a click with the right button at X, Y of PANE brings."
   (let ((window (window::window-of pane)))
-    (window::click pane :right x y)
+    (window::handle-click pane :right x y)
     (mapcar #'window::row-text (window::pane-rows (window::window-popup window)))))
 
 (defun row-with (window text)
@@ -255,11 +255,11 @@ leads to both."
       (dolist (name '("LID" "BOX#1" "STUDIO-ROBOT" "Cell 3, 4"))
         (is (mentions-p (window::hover-text pane 28 36) name)))
       (let ((picked (loop repeat 5
-                          do (window::click pane :left 28 36)
+                          do (window::handle-click pane :left 28 36)
                           collect (window::window-selection window))))
         (is (= 4 (length (remove-duplicates picked :test #'equal))))
         (is (equal (first picked) (fifth picked)) "after the last comes the first"))
-      (window::click pane :left 124 20)
+      (window::handle-click pane :left 124 20)
       (is (= 3 (count-if (lambda (text) (search "Also here" text)) (offered pane 28 36))))
       (window::choose-row (window::window-popup window)
                           (row-with window "Also here: STUDIO-ROBOT"))
@@ -272,9 +272,9 @@ leads to both."
 
 (defun carry (pane from to)
   "Drag what is at the point FROM of PANE, (x y), to the point TO."
-  (window::press pane :left (first from) (second from))
-  (window::drag pane (first to) (second to))
-  (window::drop pane (first to) (second to)))
+  (window::handle-press pane :left (first from) (second from))
+  (window::handle-drag pane (first to) (second to))
+  (window::handle-drop pane (first to) (second to)))
 
 (test pointing.things-and-the-robot-can-be-dragged
   "This run is not live: time stands still between ticks."
@@ -291,10 +291,10 @@ leads to both."
   "As the lines do that it gives."
   (in-window (window robot)
     (let ((pane (painted-world window)))
-      (window::press pane :left 28 36)
-      (window::drag pane 44 4)
+      (window::handle-press pane :left 28 36)
+      (window::handle-drag pane 44 4)
       (is (mentions-p (window::window-hint window) "inside a wall"))
-      (window::drag pane 124 20)
+      (window::handle-drag pane 124 20)
       (is (not (mentions-p (window::window-hint window) "wall"))))
     (base:take-messages)
     (world:move-thing (world:find-thing 'box) 5.5 0.5)
@@ -314,11 +314,11 @@ leads to both."
 (test pointing.what-is-dragged-over-another-display-is-told-of-until-it-is-dropped
   (in-window (window robot)
     (let ((pane (painted-world window)) (title (pane window 'window::state-title)))
-      (window::press pane :left 28 36)
-      (window::drag pane 124 20)
+      (window::handle-press pane :left 28 36)
+      (window::handle-drag pane 124 20)
       (move-mouse title 5 5)
       (is (mentions-p (window::window-hint window) "BOX#1 to 15.50, 2.50"))
-      (window::drag pane 5000 20)
+      (window::handle-drag pane 5000 20)
       (is (mentions-p (window::window-hint window) "BOX#1: that is not on the map"))
       (setf (window::pane-drag pane) nil)
       (move-mouse title 5 5)

@@ -311,18 +311,18 @@
 (test transcript.stays-where-one-has-scrolled-to
   (in-window (window robot)
     (let* ((pane (fill-transcript window 100)) (end (rows-shown pane)))
-      (window::wheel pane -10 0 0)
+      (window::handle-wheel pane -10 0 0)
       (let ((before (rows-shown pane)))
         (is (= 30 (- (first (last end)) (first (last before)) -1)))
         (fill-transcript window 10)
         (is (equal before (rows-shown pane))))
-      (window::wheel pane 1000 0 0)
+      (window::handle-wheel pane 1000 0 0)
       (is (null (window::pane-last pane))))))
 
 (test transcript.goes-to-its-end-when-a-line-is-entered
   (in-window (window robot)
     (let ((pane (fill-transcript window 100)))
-      (window::wheel pane -10 0 0)
+      (window::handle-wheel pane -10 0 0)
       (window::say-entered (window::window-transcript window) (format nil "Robot> status~%"))
       (is (equal (list 101 100 99)
                  (progn (fill-transcript window 0) (last-numbers pane 3)))))))
@@ -330,7 +330,7 @@
 (test transcript.shows-something-where-one-has-scrolled-to-is-forgotten
   (in-window (window robot)
     (let* ((transcript (window::window-transcript window)) (pane (fill-transcript window 100)))
-      (window::wheel pane -1000 0 0)
+      (window::handle-wheel pane -1000 0 0)
       (let ((room (length (rows-shown pane))))
         (is (equal (list 0 (1- room)) (list (first (rows-shown pane))
                                             (first (last (rows-shown pane))))))
@@ -364,7 +364,7 @@
 (test window.goes-on-with-the-robot-that-its-prompt-chooses
   (in-window (window robot)
     (let ((cli:*prompt-robot* 'somebody))
-      (window::agree-on-robot window)
+      (window::match-robot window)
       (is (eq 'somebody (window::watcher-robot (window::window-watcher window))))
       (is (mentions-p (clim:frame-pretty-name window) "SOMEBODY")))))
 
@@ -374,9 +374,9 @@
       (let ((watcher (window::make-watcher 'studio-robot (constantly nil)
                                           (lambda (reason) (push reason reasons)))))
         (window::watch-simulation watcher (time:current-simulation))
-        (window::look-whether-over watcher)
+        (window::check-run-over watcher)
         (run:end-simulation (time:current-simulation) "enough")
-        (window::look-whether-over watcher)
+        (window::check-run-over watcher)
         (is (null reasons))
-        (window::look-whether-over watcher)
+        (window::check-run-over watcher)
         (is (equal '("enough") reasons))))))

@@ -6,13 +6,13 @@
 
 ;;; Time in a trial.
 
-(defun call-in-visit (function window)
-  "Call FUNCTION with a visit in which the session of WINDOW is, as if its run were a trial."
+(defun call-in-trial (function window)
+  "Call FUNCTION with a trial in which the session of WINDOW is, as if its run were a trial."
   (let ((session (window::window-session window))
-        (visit (cli::make-visit nil nil 1 nil)))
-    (setf (cli::session-visit session) visit
+        (trial (cli::make-open-trial nil nil 1 nil)))
+    (setf (cli::session-trial session) trial
           (cli::session-whereabouts session) (time:current-simulation))
-    (cli::call-among-sessions session (lambda () (funcall function visit)))))
+    (cli::call-among-sessions session (lambda () (funcall function trial)))))
 
 (defun time-said (window)
   (window::look-at-progress (window::window-watcher window))
@@ -20,23 +20,23 @@
 
 (test trials.strip-and-button-say-how-time-passes
   (in-window (window robot)
-    (call-in-visit
-     (lambda (visit)
+    (call-in-trial
+     (lambda (trial)
        (is (mentions-p (time-said window) "20/s  paused"))
        (is (equal "Resume" (window::pause-label window)))
        (window::do-key window nil #\Space)
        (is (equal '("resume") (lines-given window)))
-       (cli::resume-visit visit)
+       (cli::resume-trial trial)
        (is (mentions-p (time-said window) "20/s  running"))
        (is (equal "Pause" (window::pause-label window)))
-       (setf (cli::visit-result visit) t)
+       (setf (cli::open-trial-result trial) t)
        (is (mentions-p (time-said window) "the trial is over")))
      window)))
 
 (test trials.the-buttons-for-the-rate-are-lines
   (in-window (window robot)
-    (call-in-visit (lambda (visit)
-                     (declare (ignore visit))
+    (call-in-trial (lambda (trial)
+                     (declare (ignore trial))
                      (window::do-key window nil #\+)
                      (is (equal '("rate 40") (lines-given window))))
                    window)))
@@ -44,8 +44,8 @@
 (test trials.the-title-says-so-from-the-first-line-on
   "Before anything listens to the run."
   (in-window (window robot)
-    (call-in-visit (lambda (visit)
-                     (declare (ignore visit))
+    (call-in-trial (lambda (trial)
+                     (declare (ignore trial))
                      (is (mentions-p (window::world-title window) ", a trial")))
                    window)))
 
@@ -109,7 +109,7 @@
 
 (test typing.however-much-is-pasted-the-transcript-stays
   (loop for rows from 1 to 100
-        for places = (window::arrange (window::make-wishes) (constantly 100) 640 480 rows)
+        for places = (window::arrange (window::make-preferences) (constantly 100) 640 480 rows)
         do (is (<= 20 (fifth (assoc 'window::transcript places))))
            (is (= 444 (loop for (name nil top nil height) in places
                             when (eq name 'window::interactor) return (+ top height))))))

@@ -29,8 +29,7 @@
 
 (defun keys-given (window)
   "Return the octets that WINDOW has handed over to its prompt, which has not begun."
-  (cli::handed-left (cli::typed-octets (cli:session-input (window::conversation-session
-                                                           (window::window-conversation window))))))
+  (cli::unread-octets (cli::typed-octets (cli:session-input (window::window-session window)))))
 
 (defun said-in (window)
   (format nil "~{~A~%~}" (window::latest-lines (window::window-transcript window) 100)))
@@ -71,9 +70,9 @@
 (test window.a-click-describes-what-it-hits
   (in-window (window robot)
     (let ((pane (painted-world window)))
-      (window::click pane :left 28 36)
-      (window::click pane :left 84 36)
-      (window::click pane :left 84 12)
+      (window::handle-click pane :left 28 36)
+      (window::handle-click pane :left 84 36)
+      (window::handle-click pane :left 84 12)
       (dolist (part '("BOX#1 at 3.50, 4.50" ":color red" "Cell 10, 4: doorway"
                       "Cell 10, 1: a wall of wood, parameter 50.0"))
         (is (mentions-p (said-in window) part))))))
@@ -108,11 +107,11 @@
                         (list (world:cell-x cell) (world:cell-y cell)))))
         (is (= 8 (window::pane-scale pane)))
         (is (equal '(10 4) (cell)))
-        (window::wheel pane -1 84 36)
+        (window::handle-wheel pane -1 84 36)
         (is (= 16 (window::pane-scale pane)))
         (is (equal '(10 4) (cell)))
-        (window::wheel pane 1 84 36)
-        (window::wheel pane 1 84 36)
+        (window::handle-wheel pane 1 84 36)
+        (window::handle-wheel pane 1 84 36)
         (is (= 4 (window::pane-scale pane)))
         (window::fit pane)
         (is (integerp (window::pane-scale pane)))))))

@@ -25,13 +25,13 @@
   (or (position #\Newline text :start point) (length text)))
 
 (defun before-word (text point &optional (in-word-p #'alphanumericp))
-  "Return where in TEXT the word begins that ends at POINT, or before."
+  "Return where the word in TEXT begins that ends at POINT or before."
   (let* ((end (position-if in-word-p text :end point :from-end t))
          (gap (and end (position-if-not in-word-p text :end end :from-end t))))
     (if gap (1+ gap) 0)))
 
 (defun after-word (text point)
-  "Return where in TEXT the word ends that begins at POINT, or after."
+  "Return where the word in TEXT ends that begins at POINT or after."
   (let ((start (position-if #'alphanumericp text :start point)))
     (or (and start (position-if-not #'alphanumericp text :start start))
         (length text))))

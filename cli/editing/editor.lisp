@@ -35,20 +35,20 @@ the like, which are signals.")
     (hand-over-keys :interrupts interrupts)))
 
 (defun show-again (stream)
-  "Show the line being typed into STREAM, as this process continues after a stop."
-  (tell-pastes-apart (edited-console stream) t)
+  "Draw the line being typed into STREAM again, after this process was suspended."
+  (mark-pastes (edited-console stream) t)
   (change-line (edited-console stream) (constantly nil)))
 
-(defgeneric stop-here (stream)
-  (:documentation "Stop this process until its user, who types into STREAM, wants it back.")
+(defgeneric suspend-prompt (stream)
+  (:documentation "Suspend this process until its user, at STREAM, resumes it.")
   (:method ((stream edited-text))
     (hide-line (edited-console stream))
-    (tell-pastes-apart (edited-console stream) nil)
-    (stop-for-a-while)
+    (mark-pastes (edited-console stream) nil)
+    (suspend-process)
     (show-again stream)))
 
 (defvar *while-typing* nil
-  "NIL, or a function that is called now and then while a line is typed.")
+  "NIL, or a function that is called several times a second while a line is typed.")
 
 ;;; Octets.
 
@@ -64,7 +64,7 @@ the like, which are signals.")
              (stream-error () nil)))))
 
 (defun octet-reader (stream)
-  "Return a function that returns the next octet of STREAM, or is given one to return first."
+  "Return a function that returns the next octet of STREAM; with an octet, it puts that back."
   (lambda (&optional octet)
     (if octet
         (progn (put-back-octet (edited-ahead stream) octet) nil)
@@ -84,8 +84,8 @@ the like, which are signals.")
   (:documentation "Save type-ahead of STREAM where other readers find it.")
   (:method ((stream edited-text))))
 
-(defun tell-pastes-apart (console on)
-  "Let the terminal mark pasted text, if ON is true."
+(defun mark-pastes (console on)
+  "Make the terminal mark pasted text, or no longer if ON is NIL."
   (with-console (stream console)
     (write-string (paste-in-brackets on) stream)
     (finish-output stream)))
@@ -131,7 +131,7 @@ other values do not matter.")
 (define-key *actions* (:control-c) (stream)
   "Clear the line; if there is nothing typed, or a program has asked for it, end what waits for it."
   (if (or (string= "" (typed-text-of stream)) (console-asked-p (edited-console stream)))
-      (heed-interrupt)
+      (handle-interrupt)
       (change-to stream "" 0)))
 
 (define-key *actions* (:control-d) (stream)
@@ -149,12 +149,12 @@ other values do not matter.")
 
 (define-key *actions* (:control-z) (stream)
   "Stop this process until its user wants it back."
-  (stop-here stream))
+  (suspend-prompt stream))
 
 (define-key *actions* (:control-\\) (stream)
   "End this process at once."
   (hide-line (edited-console stream))
-  (tell-pastes-apart (edited-console stream) nil)
+  (mark-pastes (edited-console stream) nil)
   (quit-by-signal))
 
 ;;; The history.
@@ -204,7 +204,7 @@ other values do not matter.")
   (change-to stream text (length text))
   text)
 
-(defun press (stream key)
+(defun do-key (stream key)
   "Do what KEY does. Return a text, or :EOF, if the line has ended."
   (cond ((stringp key) (insert-typed stream key) nil)
         ((consp key) (ecase (first key)
@@ -228,21 +228,21 @@ other values do not matter.")
       (when (console-line console) (end-line console))
       (take-keys stream :interrupts t))))
 
-(defun press-text (stream text)
-  "Insert TEXT, and what else has been typed by now: so much at once, as where a terminal pastes
-without saying so, is drawn once. Return a text, or :EOF, if the line has ended by that."
+(defun insert-typed-text (stream text)
+  "Insert TEXT, and what else has been typed by now: so a text that a terminal pastes without
+marking it is drawn once. Return a text, or :EOF, if the line has ended by that."
   (let ((texts (list text)) (next :none))
     (loop while (and (eq next :none) (octets-at-hand-p stream))
           do (let ((key (read-key (octet-reader stream))))
                (if (stringp key) (push key texts) (setf next key))))
     (insert-typed stream (format nil "~{~A~}" (reverse texts)))
-    (unless (eq next :none) (press stream next))))
+    (unless (eq next :none) (do-key stream next))))
 
-(defun press-keys (stream)
+(defun do-keys (stream)
   "Do what the keys that are pressed do, until the line has ended. Return what EDIT-LINE does."
   (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
   (loop for key = (read-key (octet-reader stream))
-        for end = (if (stringp key) (press-text stream key) (press stream key))
+        for end = (if (stringp key) (insert-typed-text stream key) (do-key stream key))
         until end
         ;; Only its first line is shown; the others appear when they are read.
         finally (let* ((text (typed-text-of stream)) (newline (position #\Newline text)))
@@ -251,14 +251,14 @@ without saying so, is drawn once. Return a text, or :EOF, if the line has ended 
 
 (defun edit-line (stream)
   "Return a line from the user, with newlines if several were pasted; :EOF at the end of the input."
-  (flet ((edit () (call-editing (lambda () (press-keys stream)) stream)))
+  (flet ((edit () (call-editing (lambda () (do-keys stream)) stream)))
     (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
       ;; A Control-C typed after the line is for that line.
       (let ((ahead (edited-ahead stream)))
         (add-octets ahead (octets-come stream))
         (let ((interrupt-p (forget-until-interrupt ahead)))
           (keep-ahead stream)
-          (when interrupt-p (heed-interrupt)))))))
+          (when interrupt-p (handle-interrupt)))))))
 
 ;;; As a stream.
 
@@ -333,4 +333,4 @@ it SOUGHT begins; NIL if there is none."
                    (lambda (line) (setf (drawn-line-label line) prompt)))
       (if (member key '(:control-g :control-c))
           (change-to stream text point)
-          (press stream key)))))
+          (do-key stream key)))))

@@ -111,7 +111,7 @@ entry then has a fill pointer."
 ;;; Entries.
 
 (defun add-entry (history text)
-  "Make TEXT, a line that was typed, the newest entry, unless it is blank or is the newest already."
+  "Make TEXT, a typed line, the newest entry, unless it is blank or equals the newest."
   (save-entry history)
   (setf (history-growing history) nil)
   (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
@@ -119,7 +119,7 @@ entry then has a fill pointer."
     (setf (history-unsaved-p history) t)))
 
 (defun begins-with-p (text start)
-  "True if TEXT begins with START. Of long texts that is known sooner than by STARTS-WITH-SUBSEQ."
+  "True if TEXT begins with START. For long texts this is faster than STARTS-WITH-SUBSEQ."
   (and (<= (length start) (length text))
        (string= start text :end2 (length start))))
 

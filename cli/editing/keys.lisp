@@ -16,7 +16,7 @@
   "Lists (code key): what terminals send after Escape and [, or Escape and O.")
 
 (defun read-code (next)
-  "Return the code that NEXT returns: all up to the first letter or ~."
+  "Return the code that NEXT returns: everything up to the first letter or ~."
   (with-output-to-string (out)
     (loop for char = (funcall next)
           while char

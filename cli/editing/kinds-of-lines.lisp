@@ -101,28 +101,28 @@ blanks, and extends to the end of TEXT if there is no second quote."
           ((message-p rest) "")
           (t (without-label (string-left-trim " " rest))))))
 
-(define-constant +going-on+ "     > " :test #'string=
+(define-constant +continuation-prompt+ "     > " :test #'string=
   :documentation "The prompt for lines that continue the line before.")
 
-(defun going-on-p (text)
-  (starts-with-subseq +going-on+ text))
+(defun continuation-prompt-p (text)
+  (starts-with-subseq +continuation-prompt+ text))
 
 (defun line-pasted (text before)
   "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if it continues another line."
   (cond ((null before) (without-label text))
-        ((going-on-p text) (subseq text (length +going-on+)))
+        ((continuation-prompt-p text) (subseq text (length +continuation-prompt+)))
         (t text)))
 
 ;;; If several lines were pasted, prompts tell which of them were typed.
 
 (defun typed-line-of (line)
   "Return LINE, as pasted among others with prompts, without its own; NIL if it was not typed."
-  (cond ((going-on-p line) (line-pasted line t))
+  (cond ((continuation-prompt-p line) (line-pasted line t))
         ((after-label line) (let ((text (without-label line)))
                              (and (string/= "" text) text)))))
 
 (defun read-over (text more)
-  "Read past the form that TEXT, as typed, begins, if that is Lisp: MORE, a function of the text so
+  "Read past the form that TEXT, as typed, begins, if that is Lisp. MORE, a function of the text so
 far, returns the next line of it, or signals an error at the end."
   (when (and (not (comment-p text)) (lisp-p text))
     (handler-case (let ((*read-suppress* t))
@@ -175,7 +175,7 @@ a prompt."
     (dolist (line (typed-by-label last)) (setf (gethash line typed) t))
     (count-if-not (lambda (line)
                     (or (gethash line typed)
-                        (after-label line) (going-on-p line) (comment-p line)))
+                        (after-label line) (continuation-prompt-p line) (comment-p line)))
                   last)))
 
 (defun without-answers (text)

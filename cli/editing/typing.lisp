@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.cli)
 
-(export '(take-waiting make-handed-text press-key typed-ahead))
+(export '(take-waiting make-window-text send-key typed-ahead))
 
-;;; Keys typed while nobody reads them are kept by their effect: finished lines wait, each like a
-;;; line chosen from a menu, and after them the text being typed, as if it had been pasted. The next
+;;; Keys typed while no line is read are kept by their effect: finished lines wait, each like a line
+;;; chosen from a menu, and after them the text being typed, as if it had been pasted. The next
 ;;; reader gets them as keys. Arrow up goes through earlier lines, as at a prompt. Keys that need
 ;;; the prompt, such as Tab, do nothing.
 
@@ -25,7 +25,7 @@
     (inserted text (ahead-text ahead) (ahead-point ahead))))
 
 (defun enter-ahead (ahead lines)
-  "Let LINES wait after those of AHEAD."
+  "Append LINES to the waiting lines of AHEAD."
   (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
 
 (defun type-last-again (ahead)
@@ -42,7 +42,7 @@
     (when (and next (< -1 next (length entries)))
       (change-ahead ahead (nth next entries) (length (nth next entries))))))
 
-(defun press-ahead (ahead key entries)
+(defun do-key-ahead (ahead key entries)
   "Do to AHEAD what KEY does. ENTRIES, the newest first, were entered before its lines."
   (cond ((stringp key) (insert-ahead ahead key))
         ((consp key) (destructuring-bind (kind text) key
@@ -63,7 +63,7 @@
 ;;; From octets, and to octets.
 
 (defun text-reader (text)
-  "Return a function that returns the next character of TEXT, or NIL, or is given one to return."
+  "Return a function that returns the next character of TEXT, or NIL; an argument steps back."
   (let ((position 0))
     (lambda (&optional again)
       (cond (again (decf position) nil)
@@ -74,7 +74,7 @@
   (loop with ahead = (make-ahead)
         with next = (text-reader octets)
         for key = (read-key next)
-        while key do (press-ahead ahead key entries)
+        while key do (do-key-ahead ahead key entries)
         finally (return ahead)))
 
 (defun octets-of-ahead (ahead)
@@ -88,14 +88,14 @@
 
 ;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
-(defun obeying-terminal-p (stream)
+(defun escape-codes-p (stream)
   "True if STREAM, of this process, is a terminal that interprets escape codes."
   (and (interactive-stream-p stream)
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
 (defun standard-output ()
   (let ((stream (text-output 1)))
-    (make-console stream (and (obeying-terminal-p stream) #'window-size))))
+    (make-console stream (and (escape-codes-p stream) #'window-size))))
 
 (defun file-for-history ()
   "Return the pathname of the history file named in the environment, or NIL."
@@ -105,7 +105,7 @@
 (defun standard-input (console plain)
   "Return the typed input of this process, edited on CONSOLE if that is possible and PLAIN is NIL."
   (let ((octets (octet-input 0)))
-    (if (and (not plain) (console-window console) (obeying-terminal-p octets))
+    (if (and (not plain) (console-window console) (escape-codes-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
                                     :history (make-history (file-for-history)))
         (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
@@ -117,11 +117,11 @@
     (funcall function))
   (:method (function (input edited-text))
     (let ((console (edited-console input)))
-      (unwind-protect (progn (tell-pastes-apart console t)
+      (unwind-protect (progn (mark-pastes console t)
                              (call-handing-over-keys function))
         (save-entry (edited-history input))
         (answered console)
-        (tell-pastes-apart console nil)))))
+        (mark-pastes console nil)))))
 
 (defgeneric keep-lines (input)
   (:documentation "Save all lines that were typed into INPUT, however this process ends.")
@@ -139,7 +139,7 @@ NIL.")
         (add-entry (edited-history input) line))))
 
 ;;; Some terminals do not mark pasted text, such as those that edit lines themselves. More than one
-;;; line at once counts as pasted, too: nobody types as fast, except while nothing was read.
+;;; line at once counts as pasted, too: no user types that fast, except ahead.
 
 (defgeneric pasted-lines-left-p (input)
   (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
@@ -172,9 +172,8 @@ What is no whole line is being typed."
         (setf (edited-put-off input) (list (ahead-text ahead) (ahead-point ahead))))
       (ahead-lines ahead))))
 
-(defgeneric swallow-key (input)
-  (:documentation "Take the key that was pressed in INPUT; but leave it to be read if more was typed
-or pasted with it.")
+(defgeneric discard-key (input)
+  (:documentation "Discard the key pressed in INPUT, unless more was typed or pasted with it.")
   (:method (input) (clear-input input))
   (:method ((input edited-text))
     (let* ((octets (octets-come input)) (next (text-reader (coerce octets 'string))))
@@ -192,22 +191,22 @@ or pasted with it.")
 ;;; A window passes on keys, and shows the line on a console of its own. All else is as at a
 ;;; terminal: keys, history, Tab. The terminal's state is not affected.
 
-(defclass handed-text (edited-text) ()
+(defclass window-text (edited-text) ()
   (:default-initargs :by-hand-p t)
-  (:documentation "The text that somebody types in a window."))
+  (:documentation "The text that is typed in a window."))
 
-(defun make-handed-text (console)
+(defun make-window-text (console)
   "Return input that is typed elsewhere, with its line shown on CONSOLE. It shares the history of
 the prompt at the terminal."
-  (make-instance 'handed-text :console console :history (make-history (file-for-history))
-                              :octets (make-instance 'handed-octets)))
+  (make-instance 'window-text :console console :history (make-history (file-for-history))
+                              :octets (make-instance 'queued-octets)))
 
-(defmethod take-keys ((stream handed-text) &key interrupts)
+(defmethod take-keys ((stream window-text) &key interrupts)
   (declare (ignore interrupts)))
 
-(defmethod stop-here ((stream handed-text)))
+(defmethod suspend-prompt ((stream window-text)))
 
-(defmethod call-typing (function (stream handed-text))
+(defmethod call-typing (function (stream window-text))
   (unwind-protect (funcall function)
     (save-entry (edited-history stream))
     (answered (edited-console stream))))
@@ -216,20 +215,20 @@ the prompt at the terminal."
   "True if a line is being typed into STREAM: no running line has to end first."
   (and (line-of stream) t))
 
-(defmethod keep-ahead ((stream handed-text))
+(defmethod keep-ahead ((stream window-text))
   (let ((octets (coerce (take-all-octets (edited-ahead stream)) 'string)))
     (revise-octets (typed-octets stream) (lambda (left) (concatenate 'string octets left)))))
 
 (defun ahead-of (stream octets)
   (ahead-in octets (history-entries (edited-history stream))))
 
-(defun press-key (stream key)
+(defun send-key (stream key)
   "Pass KEY, as in keys.lisp, to the reader of STREAM. Until STREAM reads, it is type-ahead."
   (flet ((with-key (octets)
            (if (being-typed-p stream)
                (uiop:strcat octets (octets-of-key key))
                (let ((ahead (ahead-of stream octets)))
-                 (press-ahead ahead key (history-entries (edited-history stream)))
+                 (do-key-ahead ahead key (history-entries (edited-history stream)))
                  (octets-of-ahead ahead)))))
     (revise-octets (typed-octets stream) #'with-key)))
 
@@ -237,12 +236,12 @@ the prompt at the terminal."
 
 (defun typed-ahead (stream)
   "Return how many lines of STREAM wait, the text being typed after them, and the cursor's place."
-  (let ((ahead (ahead-of stream (handed-left (typed-octets stream)))))
+  (let ((ahead (ahead-of stream (unread-octets (typed-octets stream)))))
     (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
             (ahead-text ahead)
             (ahead-point ahead))))
 
-(defmethod take-waiting ((stream handed-text))
+(defmethod take-waiting ((stream window-text))
   (let ((lines '()))
     (revise-octets (typed-octets stream)
                    (lambda (octets)

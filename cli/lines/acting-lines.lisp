@@ -23,7 +23,7 @@
 (define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)
     "Let the robot find its way to X, Y, through doorways and round obstacles."
-  (let ((errand (make-errand :name "GO-TO" :verdict-p t))
+  (let ((job (make-job :name "GO-TO" :verdict-p t))
         (simulation (current-simulation))
         (point (format nil "~A ~A" (amount-text x) (amount-text y)))
         (account (session-account session)))
@@ -34,8 +34,8 @@
                        (if (eq simulation (latest simulation))
                            (tell-arrival err robot point)
                            (tell-rewound point simulation)))
-                     (end-errand errand err))))
-    (push errand (session-errands session))))
+                     (end-job job err))))
+    (push job (session-jobs session))))
 
 ;;;; MANIPULATE
 
@@ -81,7 +81,7 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
                 (nthcdr (+ count extra) data))))))
 
 (defun send-manipulation (session manipulation data)
-  (let ((robot (session-robot)) (errand (make-errand)))
+  (let ((robot (session-robot)) (job (make-job)))
     (apply #'run-manipulation (manipulation-name manipulation)
            (append (or (some (lambda (method) (arguments-for method data robot))
                              (manipulation-methods manipulation))
@@ -89,8 +89,8 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
                                      and parts." (manipulation-usages manipulation)))
                    (list (lambda (code value)
                            (declare (ignore value))
-                           (end-errand errand code)))))
-    (push errand (session-errands session))))
+                           (end-job job code)))))
+    (push job (session-jobs session))))
 
 (define-choices :manipulation (mapcar #'manipulation-name (all-manipulations)))
 

@@ -27,16 +27,16 @@ the plans. HELP name describes a command, a plan, or anything else with a name; 
 searches. The beginning of a command's name is enough. A line in parentheses is Lisp. HELP KEYS
 lists the keys that edit a line. Scroll up in your terminal for what has left the screen." 0))
 
-(defun slot-help (slot)
-  (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (slot-name slot)
-          (remove "" (remove-duplicates (list (slot-text slot) (slot-words slot)) :test #'string=)
-                  :test #'string=)
-          (slot-optional-p slot)))
+(defun line-parameter-help (parameter)
+  (let ((texts (list (line-parameter-text parameter) (line-parameter-words parameter))))
+    (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (line-parameter-name parameter)
+            (remove "" (remove-duplicates texts :test #'string=) :test #'string=)
+            (line-parameter-optional-p parameter))))
 
 (defun write-help (line)
   (format t "~A~%" (usage line))
   (write-filled (line-sentence line) 2)
-  (dolist (slot (line-parameters line)) (write-filled (slot-help slot) 4))
+  (dolist (parameter (line-parameters line)) (write-filled (line-parameter-help parameter) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
 
 (defun write-help-on (name)
@@ -105,6 +105,6 @@ place types, attributes, error codes, names of Lisp. HELP shows the whole descri
       (unless (or named others) (reject-line "Nothing has ~A in it." word))
       (write-topics named)
       (when others
-        (format t "~:[Said of it~;Also said of it~]:~%" named)
+        (format t "~:[In the description~;Also in the description~]:~%" named)
         (write-topics (subseq others 0 (min *most-topics* (length others)))))
       (when (plusp more) (format t "  and ~D more.~%" more)))))

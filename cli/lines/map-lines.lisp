@@ -13,7 +13,7 @@
       (values (or (size-said "COLUMNS") columns)
               (and lines (or (size-said "LINES") lines))))))
 
-;;; What of it.
+;;; Which part, and which layers.
 
 (defun words-of-map ()
   "Return the words that MAP accepts: its own, and PICTURE's names for the same layers."
@@ -24,7 +24,7 @@
 BAD-LINE if there is none; TAKES is a control string that says what LINE takes besides WORDS."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
-      (reject-line "~A does not know ~A.~@[ Did you mean ~A?~] It takes ~?." line text
+      (reject-line "~A does not take ~A.~@[ Did you mean ~A?~] It takes ~?." line text
                    (nearest-name text words) takes (list words)))
     (make-keyword word)))
 
@@ -99,7 +99,7 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
 
 (defun time-passes-p (session simulation)
   (and (live-p simulation)
-       (null (session-visit session))
+       (null (session-trial session))
        (not (paused-p simulation))))
 
 (defun idle-here-p (session simulation)
@@ -149,8 +149,8 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
 (defun watch-screen (session simulation count options)
-  "Show maps of SIMULATION in place until COUNT ticks have passed, or no more will, if COUNT is not
-NIL, or a key is pressed, or there is something else to be done. True if it was a key."
+  "Show maps of SIMULATION in place, until a key is pressed or a program breaks; or until COUNT
+ticks have passed or no more will, or without COUNT until a line is typed. True if it was a key."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
         do (write-at-once (over-screen (frame session simulation options)) console)
@@ -170,7 +170,7 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
                        (lambda () (watch-screen session simulation count options))
                        (session-console session))
           (user-interrupt () nil))
-    (swallow-key (session-input session)))
+    (discard-key (session-input session)))
   (format t "~A~%" (time-text session simulation)))
 
 ;;; The line.
@@ -185,15 +185,15 @@ NIL, or a key is pressed, or there is something else to be done. True if it was 
 
 (defun check-watchable (session simulation count)
   "Signal BAD-LINE if WATCH would show nothing, or for ever."
-  (cond ((session-visit session)
+  (cond ((session-trial session)
          (reject-line "In a trial time passes between lines only. STEP and MAP show it tick by ~
                        tick."))
         (count)
         ((not (screen-p session))
          (reject-line "There is no key here that would end this. WATCH n shows n ticks."))
         ((not (time-passes-p session simulation))
-         (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME lets it go ~
-                       on.~]"
+         (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME ~
+                       continues.~]"
                       (live-p simulation)))))
 
 (define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))

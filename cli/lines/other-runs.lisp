@@ -2,22 +2,22 @@
 
 (in-package :ars-magna.cli)
 
-;;; After a rewind the running plans are others than those that the prompt waited for. It drops the
-;;; old ones without a message and waits for the new ones, also when the rewind comes from Lisp.
+;;; A rewind replaces the running plans. The prompt drops the old ones without a message and waits
+;;; for the new ones, also when the rewind comes from Lisp.
 
-(defun let-errands-go (old new)
-  "Report no ends of the plans of OLD that prompts wait for, as NEW replaces it."
+(defun forget-jobs (old new)
+  "Stop reporting to prompts how the plans of OLD end, as NEW replaces it."
   (declare (ignore new))
-  (dolist (errand (with-lock (*plan-errands-lock*)
-                    (remove old *plan-errands* :key #'plan-errand-simulation :test-not #'eq)))
-    (setf (plan-errand-let-go-p errand) t
-          (session-after-rewind (plan-errand-session errand)) #'take-up-plans)))
+  (dolist (job (with-lock (*plan-jobs-lock*)
+                 (remove old *plan-jobs* :key #'plan-job-simulation :test-not #'eq)))
+    (setf (plan-job-forgotten-p job) t
+          (session-after-rewind (plan-job-session job)) #'take-up-plans)))
 
-(attend *rewind-hooks* let-errands-go)
+(attend *rewind-hooks* forget-jobs)
 
 (defun check-rewindable (session)
   (check-run)
-  (when (session-visit session)
+  (when (session-trial session)
     (reject-line "A trial cannot be rewound. TRIAL starts it again, at tick 0.")))
 
 (defun rewind-and-tell (session ticks)
@@ -53,7 +53,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Which trial is meant.
 
 (defun experiment-names (start)
-  "Return the names of the experiments that begin with START; of the very one if there is that."
+  "Return the names of the experiments that begin with START, or only START if that is one."
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
@@ -89,88 +89,88 @@ command, such as that of GO-TO, receive :INTERRUPT."
         for number from 1
         do (put-line "  ~3D  ~A" number (condition-name condition))))
 
-(defun visit-name (visit)
-  (format nil "trial ~D of ~(~A~), ~A" (visit-trial visit)
-          (experiment-name (visit-experiment visit))
-          (condition-name (visit-condition visit))))
+(defun open-trial-name (trial)
+  (format nil "trial ~D of ~(~A~), ~A" (open-trial-number trial)
+          (experiment-name (open-trial-experiment trial))
+          (condition-name (open-trial-condition trial))))
 
 (defun say-here (session control &rest arguments)
   "Write a line formatted from CONTROL and ARGUMENTS, as it fits the window of SESSION."
   (format t "~&~A~%" (fitted (apply #'format nil control arguments) (session-console session))))
 
-(defun write-visit (session visit)
-  (say-here session "~@(~A~).~%~A" (visit-name visit) (time-text session *simulation*))
-  (when (visit-changed visit)
+(defun write-open-trial (session trial)
+  (say-here session "~@(~A~).~%~A" (open-trial-name trial) (time-text session *simulation*))
+  (when (open-trial-changed trial)
     (say-here session "Since tick ~D this is no longer the experiment's run."
-              (visit-changed visit))))
+              (open-trial-changed trial))))
 
 ;;; Its end.
 
-(defun measures-text (visit result)
+(defun measures-text (trial result)
   (format nil "~:{~(~A~) ~A~:^, ~}"
-          (loop for (name value) in (measured (visit-experiment visit) result)
+          (loop for (name value) in (measured (open-trial-experiment trial) result)
                 collect (list name (case value ((t) "yes") ((nil) "no") (:none "none")
                                      (t (format-briefly nil "~A" value)))))))
 
-(defun write-result (session visit result)
+(defun write-result (session trial result)
   (say-here session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]" (result-ticks result)
             (result-outcome result)
             (and (string/= "" (result-reason result)) (result-reason result))
-            (let ((text (measures-text visit result))) (and (string/= "" text) text)))
+            (let ((text (measures-text trial result))) (and (string/= "" text) text)))
   (when (string/= "" (result-error result))
     (say-here session "Its error: ~A" (complaint-text (result-error result))))
-  (when (visit-changed visit)
+  (when (open-trial-changed trial)
     (say-here session "This is not the experiment's result: the run was changed at tick ~D."
-              (visit-changed visit))))
+              (open-trial-changed trial))))
 
-(defun stay (session visit result parts row)
-  "Read lines of SESSION where the trial of VISIT has ended, with RESULT, until one leads out."
-  (setf (visit-result visit) result)
-  (pause-visit visit)
+(defun read-after-end (session trial result parts row)
+  "Read lines of SESSION after the end of TRIAL, with RESULT, until one leaves it."
+  (setf (open-trial-result trial) result)
+  (pause-trial trial)
   (call-aside (lambda ()
                 (show-messages session)
-                (write-result session visit result)
+                (write-result session trial result)
                 (when row
                   (say-here session
                             "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
-                            (row-differences (visit-experiment visit) result parts row
-                                             (visit-directory visit))))))
-  (loop (visit-line session visit)))
+                            (row-differences (open-trial-experiment trial) result parts row
+                                             (open-trial-directory trial))))))
+  (loop (run-line-in-trial session trial)))
 
 ;;; Going there, and out again.
 
-(defun pause-soon (session visit restart)
-  "Let VISIT pause at its next tick, and continue by RESTART what was interrupted."
-  (pause-visit visit)
-  (setf (visit-interrupted-p visit) t)
+(defun pause-soon (session trial restart)
+  "Pause TRIAL at its next tick, and continue by RESTART what was interrupted."
+  (pause-trial trial)
+  (setf (open-trial-interrupted-p trial) t)
   (write-fitted (session-console session)
                 "Interrupted: the trial pauses at its next tick. Control-C leaves it.~%")
   (finish-output (session-console session))
   (invoke-restart restart))
 
-(defun call-pausable (session visit function)
-  "Call FUNCTION. Control-C at the terminal of SESSION, while ticks pass in VISIT, pauses the trial
+(defun call-pausable (session trial function)
+  "Call FUNCTION. Control-C at the terminal of SESSION, while ticks pass in TRIAL, pauses the trial
 at the next tick. A second Control-C, if that does not come, leaves the trial."
-  (flet ((heed (condition)
+  (flet ((pause-or-leave (condition)
            (let ((restart (find-restart 'go-on condition)))
-             (if (and restart (session-terminal-p session) (not (visit-interrupted-p visit)))
-                 (pause-soon session visit restart)
-                 (setf (visit-left-p visit) t)))))
-    (handler-bind ((user-interrupt #'heed))
+             (if (and restart (session-terminal-p session) (not (open-trial-interrupted-p trial)))
+                 (pause-soon session trial restart)
+                 (setf (open-trial-left-p trial) t)))))
+    (handler-bind ((user-interrupt #'pause-or-leave))
       (funcall function))))
 
-(defun run-visit (session visit)
-  (let* ((experiment (visit-experiment visit))
-         (condition (visit-condition visit))
-         (trial (visit-trial visit))
-         (directory (visit-directory visit))
+(defun run-open-trial (session trial)
+  (let* ((experiment (open-trial-experiment trial))
+         (condition (open-trial-condition trial))
+         (number (open-trial-number trial))
+         (directory (open-trial-directory trial))
          (parts (and directory (prepare-condition experiment condition)))
-         (row (and directory (row-of-trial experiment condition trial directory)))
+         (row (and directory (row-of-trial experiment condition number directory)))
          (*trace-plans* t))
-    (run-again experiment condition trial
+    (run-again experiment condition number
                :journal t
-               :gate (visit-gate session visit)
-               :then (lambda (result) (stay session visit result parts row)))))
+               :gate (trial-gate session trial)
+               :then (lambda (result) (read-after-end session trial result parts row)))))
 
 (defun call-with-others-paused (function)
   "Call FUNCTION, while the current live simulation, if any, is paused."
@@ -180,40 +180,40 @@ at the next tick. A second Control-C, if that does not come, leaves the trial."
           (resume simulation))
         (funcall function))))
 
-(defun enter-visit (session visit)
-  "Run VISIT in SESSION until a line leads out. Return a function to call then."
+(defun enter-trial (session trial)
+  "Run TRIAL in SESSION until a line leaves it. Return a function to call then."
   (let ((*prompt-robot* nil) (left-p nil))
-    (setf (session-visit session) visit)
+    (setf (session-trial session) trial)
     (unwind-protect
-         (prog1 (catch 'left-visit
-                  (call-pausable session visit (lambda () (run-visit session visit)))
+         (prog1 (catch 'left-trial
+                  (call-pausable session trial (lambda () (run-open-trial session trial)))
                   #'values)
            (setf left-p t))
-      (setf (session-visit session) nil)
-      (drop-errands session)
+      (setf (session-trial session) nil)
+      (drop-jobs session)
       (call-by-name (robots-here))
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
 
-(defun drop-errands (session)
-  (dolist (errand (shiftf (session-errands session) '()))
-    (when (plan-errand-p errand) (close-errand errand))))
+(defun drop-jobs (session)
+  (dolist (job (shiftf (session-jobs session) '()))
+    (when (plan-job-p job) (close-job job))))
 
-(defun go-to-trial (session visit)
+(defun go-to-trial (session trial)
   (call-outside session
                 (lambda ()
                   (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
-                                     pass, TRIAL OFF leads out."
-                            (visit-name visit)
-                            (trial-seed (visit-experiment visit) (visit-trial visit))
-                            (experiment-limit (visit-experiment visit)))
-                  (unless (watched-p session) (setf (visit-rate visit) :free))
-                  (funcall (call-with-others-paused (lambda () (enter-visit session visit)))))))
+                                     pass, TRIAL OFF leaves it."
+                            (open-trial-name trial)
+                            (trial-seed (open-trial-experiment trial) (open-trial-number trial))
+                            (experiment-limit (open-trial-experiment trial)))
+                  (unless (watched-p session) (setf (open-trial-rate trial) :free))
+                  (funcall (call-with-others-paused (lambda () (enter-trial session trial)))))))
 
 (defun leave-trial (session)
-  (unless (session-visit session) (reject-line "The prompt is in no trial."))
-  (leave-visit session
-               (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
-                                  (and *simulation* (simulation-name *simulation*))))))
+  (unless (session-trial session) (reject-line "The prompt is in no trial."))
+  (leave-open-trial session
+                    (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
+                                       (and *simulation* (simulation-name *simulation*))))))
 
 (define-line "TRIAL" (session (name :experiment "the name of an experiment, or OFF" :optional)
                               (condition :token "the number of a condition, or a part of its name"
@@ -226,7 +226,8 @@ RATE let time pass; STATUS, PLAN-TREE, WHY and others show its state; SAVE-JOURN
 a terminal, RESUME runs it to its end. With DIRECTORY, its outcome is compared with its row there.
 TRIAL OFF leaves it, as do WORLD and another TRIAL. Without NUMBER, list the conditions; without
 NAME, list the experiments, or tell which trial this is."
-  (cond ((and (null name) (session-visit session)) (write-visit session (session-visit session)))
+  (cond ((and (null name) (session-trial session))
+         (write-open-trial session (session-trial session)))
         ((null name) (write-experiments))
         ((and (string-equal name "off") (null condition)) (leave-trial session))
         ((null number)
@@ -234,8 +235,8 @@ NAME, list the experiments, or tell which trial this is."
            (when condition (condition-meant experiment condition))
            (write-conditions experiment)))
         (t (let ((experiment (experiment-meant name)))
-             (go-to-trial session (make-visit experiment (condition-meant experiment condition)
-                                              number directory))))))
+             (go-to-trial session (make-open-trial experiment (condition-meant experiment condition)
+                                                   number directory))))))
 
 (define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
@@ -251,12 +252,12 @@ opens one of them."
 ;;;; FORK
 
 ;;; In a fork the prompt is in a headless run: time passes as its lines need it. The forked run
-;;; stands still meanwhile. Like a trial, a fork is entered by a line that continues until another
-;;; one leads out.
+;;; stands still meanwhile. As with a trial, the line that enters a fork runs until another line
+;;; leaves it.
 
 (defun read-in-fork (session)
   (format (session-console session)
-          "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leads back.~@[ Plans under way: ~
+          "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leaves it.~@[ Plans under way: ~
            ~{~A~^, ~}.~]~%"
           (simulation-tick *simulation*) (mapcar #'task-label (plans)))
   (loop until (session-over-p session)
@@ -264,18 +265,18 @@ opens one of them."
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
-  "Run SESSION in FORK until a line leads out. Its earlier errands do not count there."
-  (let ((errands (shiftf (session-errands session) '()))
+  "Run SESSION in FORK until a line leaves it. Its earlier jobs do not count there."
+  (let ((jobs (shiftf (session-jobs session) '()))
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
     (unwind-protect (catch 'left-fork
                       (call-in-fork fork (lambda () (read-in-fork session))))
-      (drop-errands session)
-      (setf (session-errands session) errands
+      (drop-jobs session)
+      (setf (session-jobs session) jobs
             (session-forks session) depth))))
 
 (defun go-to-fork (session seed)
-  "Run SESSION in a fork of the current run until a line leads out; then discard the fork."
+  "Run SESSION in a fork of the current run until a line leaves it; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
     (tell-others session run
@@ -297,7 +298,7 @@ opens one of them."
 SEED what it might do. The run itself is paused. FORK OFF returns to it, unchanged, and discards the
 copy."
   (check-run)
-  (cond ((session-visit session) (reject-line "A trial cannot be forked. TRIAL OFF leads out."))
+  (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))

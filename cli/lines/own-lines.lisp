@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defun circle-of (name text)
+(defun alias-circle (name text)
   "Return the aliases through which TEXT, the meaning of the alias NAME, leads back to NAME, with
 that one first and last; NIL if it does not."
   (loop with aliases = (acons name (list text) *aliases*)
@@ -15,7 +15,7 @@ that one first and last; NIL if it does not."
 
 (defun define-alias (name text)
   "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, or TEXT begins with none."
-  (let ((circle (circle-of name text)) (expansion (expand-alias text)))
+  (let ((circle (alias-circle name text)) (expansion (expand-alias text)))
     (cond ((find name (all-line-names) :test #'string=)
            (reject-line "~A is a command already; choose another name for the alias." name))
           (circle
@@ -48,7 +48,7 @@ that one first and last; NIL if it does not."
   "Return true if WORD, after the line NAME, is on, NIL if it is off. Signals BAD-LINE for another."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
-        (t (reject-line "~A does not know ~A. It is ~A ON or ~A OFF." name word name name))))
+        (t (reject-line "~A takes ON or OFF, not ~A." name word))))
 
 (define-line "ECHO" (session (setting :switch "on or off" :optional))
     (:general)
@@ -58,32 +58,32 @@ own. Without SETTING, tell which is set."
   (format t "Messages from commands of plans and programs are ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
-(defun check-time-passes (session cmd errands inbox)
-  "Signal BAD-LINE if what SESSION has issued by the line CMD waits for RESUME: one of ERRANDS, or a
+(defun check-time-passes (session cmd jobs inbox)
+  "Signal BAD-LINE if what SESSION has issued by the line CMD waits for RESUME: one of JOBS, or a
 request that was not in INBOX before."
   (when (and (waits-for-resume-p session)
-             (or (notevery #'errand-over-p errands)
+             (or (notevery #'job-over-p jobs)
                  (some #'awaited-p (set-difference (requests-waiting) inbox))))
     (reject-line "Time stands still: ~A is carried out after RESUME, and not repeated." cmd)))
 
-(defun await-repetition (session cmd errands inbox)
-  "Wait until ERRANDS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
+(defun await-repetition (session cmd jobs inbox)
+  "Wait until JOBS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
 Signals BAD-LINE if that waits for RESUME. INBOX has the requests that waited before."
-  (check-time-passes session cmd errands inbox)
-  (await-errands session errands)
+  (check-time-passes session cmd jobs inbox)
+  (await-jobs session jobs)
   ;; For what Lisp has issued, too.
   (unless (waits-for-resume-p session)
     (await-requests (lambda (request) (lisp-asker-p (request-asker request)))))
-  (check-time-passes session cmd errands inbox))
+  (check-time-passes session cmd jobs inbox))
 
 (defun repeat-once (session cmd)
   "Run CMD, a line, and wait for what it has issued, unless SESSION is in a trial."
-  (let ((before (session-errands session)) (inbox (requests-waiting)))
+  (let ((before (session-jobs session)) (inbox (requests-waiting)))
     (run-text session cmd)
-    (unless (session-visit session)
+    (unless (session-trial session)
       (await-repetition session cmd
-                        (remove-if (lambda (errand) (member errand before))
-                                   (session-errands session))
+                        (remove-if (lambda (job) (member job before))
+                                   (session-jobs session))
                         inbox))))
 
 ;; As reading 204 says.

@@ -114,7 +114,7 @@ says why."
     (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
       (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
         (write-string *how-to-get-windows*)
-        (reject-line "No window: McCLIM is not installed. How to install it is said above."))
+        (reject-line "No window: McCLIM is not installed. See above how to install it."))
       (let ((trouble (ars-magna.clx:clx-trouble)))
         (when trouble (reject-line "No window: ~A" trouble)))
       (format t "Loading McCLIM; the first time this takes some minutes.~%")

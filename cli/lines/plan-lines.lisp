@@ -54,26 +54,26 @@ package; NIL if there is none."
 
 ;;; Starting them.
 
-(defun begin-errand (errand plan arguments)
-  (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
+(defun begin-job (job plan arguments)
+  (with-lock (*plan-jobs-lock*) (push job *plan-jobs*))
   (handler-bind ((error (lambda (condition)
-                          (close-errand errand)
+                          (close-job job)
                           (when (typep condition 'program-error)
                             (reject-line "~A was given ~:[no arguments~;~:*~{~S~^ ~}~]. It is: ~
                                           PLAN ~A."
                                          (procedure-name plan) arguments (plan-usage plan))))))
-    (setf (plan-errand-task errand) (apply #'begin-plan plan arguments))))
+    (setf (plan-job-task job) (apply #'begin-plan plan arguments))))
 
 (defun send-plan (session plan arguments)
-  (let ((errand (make-plan-errand (procedure-name plan) session (current-simulation))))
+  (let ((job (make-plan-job (procedure-name plan) session (current-simulation))))
     (check-run)
     (setf (session-failure session) nil)
     (pushnew (procedure-name plan) (session-plans session))
     (let ((task (let ((*robot-to-drive* #'session-robot))
-                  (begin-errand errand plan arguments))))
-      (push errand (session-errands session))
+                  (begin-job job plan arguments))))
+      (push job (session-jobs session))
       (note-plan-of-line (session-account session) task)
-      (when (live-p (plan-errand-simulation errand)) (start-watching-plan errand))
+      (when (live-p (plan-job-simulation job)) (start-watching-plan job))
       (unless (waits-p session)
         (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
 
@@ -97,8 +97,8 @@ at once, otherwise when the plan has ended."
 ;;; Those under way.
 
 (defun call-reading-plan (name function)
-  "Call FUNCTION, which returns text with forms of the plan called NAME. Return it as who reads the
-plan would write it: few symbols have a package."
+  "Call FUNCTION, which returns text with forms of the plan called NAME. Return it with few package
+prefixes, as an author of the plan would write it."
   (let* ((plan (plan-called (string name)))
          (*package* (if plan (symbol-package (procedure-name plan)) (user-package)))
          (*print-pretty* nil)
@@ -107,7 +107,7 @@ plan would write it: few symbols have a package."
       (setf text (without prefix text)))))
 
 (defun without (word text)
-  "Return TEXT without all that is WORD, in whatever case."
+  "Return TEXT without each WORD in it, ignoring case."
   (with-output-to-string (out)
     (loop for start = 0 then (+ end (length word))
           for end = (search word text :start2 start :test #'char-equal)
@@ -220,7 +220,7 @@ OUT or CONTINUE. OFF ends this. Without a terminal or window, each stop is only 
     (unless (or on-p (string-equal off "off"))
       (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
     (step-task task on-p)
-    (format t "Task ~A ~:[goes on without stopping~;stops when it goes on~].~%" (task-text task)
+    (format t "Task ~A ~:[continues without stopping~;stops when it continues~].~%" (task-text task)
             on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)

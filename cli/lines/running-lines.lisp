@@ -13,11 +13,11 @@
 (defun time-text (session simulation &optional (tick (simulation-tick simulation)))
   "Return in words that it is TICK in SIMULATION, the run of SESSION, and how time passes there."
   (format nil "Tick ~D, ~A." tick
-          (cond ((session-visit session) (visit-text (session-visit session)))
+          (cond ((session-trial session) (trial-pace-text (session-trial session)))
                 ((simulation-over simulation) (simulation-over simulation))
                 ((plusp (session-forks session)) "in a fork: STEP lets time pass")
                 ((headless-p simulation) "headless")
-                ((not (live-p simulation)) "stopped; RESUME goes on")
+                ((not (live-p simulation)) "stopped; RESUME continues")
                 ((paused-p simulation) "paused")
                 ((idle-p simulation)
                  (format nil "idle, else ~A" (rate-text (simulation-rate simulation))))
@@ -26,8 +26,8 @@
 (define-line "PAUSE" (session) (:running)
     "Stop time until RESUME."
   (let ((simulation (current-simulation)))
-    (if (session-visit session)
-        (pause-visit (session-visit session))
+    (if (session-trial session)
+        (pause-trial (session-trial session))
         (progn (pause (live-simulation))
                ;; The tick in progress ends first.
                (asking (simulation))))
@@ -45,8 +45,8 @@
 (define-line "RESUME" (session) (:running)
     "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run it to its
 end."
-  (if (session-visit session)
-      (resume-visit (session-visit session))
+  (if (session-trial session)
+      (resume-trial (session-trial session))
       (resume-here session)))
 
 (defun step-here (session count)
@@ -62,8 +62,8 @@ end."
 (define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
-  (if (session-visit session)
-      (step-visit (session-visit session) (or n 1))
+  (if (session-trial session)
+      (step-trial (session-trial session) (or n 1))
       (step-here session (or n 1))))
 
 (defun parse-rate (text)
@@ -77,9 +77,9 @@ end."
 
 (defun later-rate-text (session simulation)
   "Return in words at what rate ticks will pass in SIMULATION, the run of SESSION, if it is paused."
-  (let ((visit (session-visit session)))
-    (cond ((and visit (not (visit-running-p visit))) (rate-text (visit-rate visit)))
-          ((and (null visit) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
+  (let ((trial (session-trial session)))
+    (cond ((and trial (not (open-trial-running-p trial))) (rate-text (open-trial-rate trial)))
+          ((and (null trial) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
 
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
@@ -87,10 +87,10 @@ end."
 while the simulator is idle: nothing moves by itself in its world, and no command was given."
   (let ((simulation (current-simulation)))
     (when x
-      (if (session-visit session)
-          (set-visit-rate (session-visit session) (parse-rate x))
+      (if (session-trial session)
+          (set-trial-rate (session-trial session) (parse-rate x))
           (set-rate (parse-rate x) (live-simulation))))
-    (format t "~A~@[ RESUME goes on at ~A.~]~%" (time-text session simulation)
+    (format t "~A~@[ RESUME continues at ~A.~]~%" (time-text session simulation)
             (and x (later-rate-text session simulation)))))
 
 (define-line "SEED" (session (n integer "the seed"))

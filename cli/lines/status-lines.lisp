@@ -56,8 +56,9 @@
 
 ;;;; STATUS and THINGS
 
-;;; The layout of STATUS is that of the session in manual E, with a line for the estimated change of
-;;; position, which the manual lists and its session leaves out. The contents are those of (status).
+;;; The layout of STATUS is that of the session in manual E. A line for the estimated change of
+;;; position is added, which the manual lists and its session omits. The contents are those of
+;;; (status).
 
 (defun write-views (cameras)
   (loop for camera in cameras
@@ -112,10 +113,10 @@
   (mapc #'write-designator (getf status :designators)))
 
 (defun write-standstill (session simulation)
-  "Tell that SIMULATION, the run of SESSION, is live but passes no ticks now, if that is so."
+  "Print how time passes if SIMULATION, the live run of SESSION, passes no ticks now."
   (when (and (live-p simulation)
              (or (paused-p simulation) (idle-p simulation))
-             (null (session-visit session)))
+             (null (session-trial session)))
     (format t "~19A~A~%" "Time:" (time-text session simulation))))
 
 (define-line "STATUS" (session)

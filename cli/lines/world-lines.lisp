@@ -3,23 +3,23 @@
 (in-package :ars-magna.cli)
 
 (defun start-robot (session robot-name)
-  (cond ((session-visit session)
+  (cond ((session-trial session)
          (call-outside session (lambda () (start-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         ((plusp (session-forks session))
-         (reject-line "A fork has one world. FORK OFF leads out of it."))
+         (reject-line "A fork has one world. FORK OFF leaves the fork."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
-(defun end-left (old)
+(defun end-run-left (old)
   (unless (simulation-over old)
     (end-simulation old "the prompt has gone elsewhere")))
 
-(defun come-from (session old robot)
-  "End the run OLD, which SESSION has left for ROBOT, and let the other prompts there follow."
+(defun end-replaced-run (session old robot)
+  "End the run OLD, which SESSION has left for ROBOT, and move the other prompts there along."
   (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot)))
-  (end-left old)
-  (dolist (other (remove-if #'session-place (remove session (sessions-hearing old))))
+  (end-run-left old)
+  (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
     (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
       (when simulation (tell-of-run other simulation name)))))
 
@@ -27,11 +27,11 @@
   "Start the world of ROBOT-NAME again, at the rate of the run of SESSION, which ends."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
-    ;; In a run that has passed no tick, that world would just continue.
-    (when (member robot-name (robots-here)) (end-left old))
+    ;; A run at tick 0 would continue instead of starting again.
+    (when (member robot-name (robots-here)) (end-run-left old))
     (let ((robot (simulator robot-name :display nil
                                        :rate (if old (simulation-rate old) *default-rate*))))
-      (when old (come-from session old robot))
+      (when old (end-replaced-run session old robot))
       (when (display-wanted-p session) (announce-display robot '()))
       (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
@@ -62,8 +62,8 @@ ends the present run."
 
 (defun reject-elsewhere (name)
   "Signal BAD-LINE that says how to get to the robot NAME, which is in another world."
-  (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, where it is ~
-                tick 0; what goes on here is over then."
+  (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at tick 0, ~
+                and ends this run."
                name (map-name (world-of name))))
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))

@@ -227,7 +227,7 @@ run (manual 3.1.1)."))
               :facts (append (when (line-full-name line)
                                (list (list "Stands for"
                                            (in-code (line-full-name line)))))
-                             (mapcar (lambda (slot) (list "" (slot-help slot)))
+                             (mapcar (lambda (slot) (list "" (line-parameter-help slot)))
                                      (line-parameters line))
                              (mapcar (lambda (detail) (list "" detail)) (line-details line)))
               :text (line-sentence line)

@@ -25,5 +25,5 @@ from what is defined in this Lisp.")
   (:import-from :ars-magna.experiment #:experiment-documentation)
   (:import-from :ars-magna.cli
                 #:all-lines #:line-name #:line-family #:line-sentence #:line-details
-                #:line-parameters #:line-full-name #:line-action #:usage #:slot-help
+                #:line-parameters #:line-full-name #:line-action #:usage #:line-parameter-help
                 #:manipulation-usages #:documentation-texts #:whole-sentence))

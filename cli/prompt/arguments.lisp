@@ -78,7 +78,7 @@ DATUM.")
     (read-from-string text t nil :start start :preserve-whitespace t)))
 
 (defun unquoted (datum)
-  "Return DATUM, without the quote that who is used to Lisp has put before it."
+  "Return DATUM without the quote that Lisp users may type before it."
   (if (typep datum '(cons (eql quote) (cons t null)))
       (second datum)
       datum))
@@ -90,13 +90,13 @@ quote before it does not matter."
                   (values (unquoted datum) end))
     (end-of-file ()
       (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
-                   (subseq text start) (takes line)))
+                   (subseq text start) (arguments-text line)))
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
                    (one-line (if (typep condition 'reader-error)
                                  (reading-trouble condition)
                                  (condition-text condition)))
-                   (takes line)))))
+                   (arguments-text line)))))
 
 (defun whole-if-whole (value)
   "Return VALUE, or the integer that it is if it is a float such as 1e3."
@@ -111,67 +111,71 @@ quote before it does not matter."
       (let ((whole (whole-if-whole value)))
         (if (argument-of-type-p whole type) whole value))))
 
-(defun check-read (value slot line)
-  (unless (argument-of-type-p value (slot-type slot))
-    (let ((trouble (trouble-with value (slot-type slot))))
-      (reject-line "~A cannot be ~S~@[: ~A~]~:[.~;~] ~A" (slot-name slot) value trouble
-                   (and trouble (eql #\? (char trouble (1- (length trouble)))))
-                   (takes line)))))
+(defun check-read (value parameter line)
+  (unless (argument-of-type-p value (line-parameter-type parameter))
+    (let ((trouble (trouble-with value (line-parameter-type parameter))))
+      (reject-line "~A cannot be ~S~@[: ~A~]~:[.~;~] ~A"
+                   (line-parameter-name parameter) value trouble
+                   (and trouble (ends-with #\? trouble))
+                   (arguments-text line)))))
 
 (deftype rest-type ()
-  "The types of arguments that are all that is left of a line."
+  "The types of arguments that take the rest of a line."
   '(member :rest :line :form :map-words))
 
 (defun token-value (type token)
   "Return what TOKEN stands for as an argument of TYPE: a file's name has the home directory for ~."
   (if (eq type :file) (native-name (path-called token)) token))
 
-(defun read-slot (slot text start line)
-  "Return what TEXT has at START for SLOT of LINE, and where that ends."
-  (typecase (slot-type slot)
+(defun read-line-parameter (parameter text start line)
+  "Return what TEXT has at START for PARAMETER of LINE, and where that ends."
+  (typecase (line-parameter-type parameter)
     (rest-type (values (string-trim " " (subseq text start)) (length text)))
-    (keyword (let ((end (token-end text start)))
-               (values (token-value (slot-type slot) (string-trim "\"" (subseq text start end)))
-                       end)))
-    (t (multiple-value-bind (datum end) (read-number-or-datum slot text start line)
-         (let ((value (fitting (read-argument (type-key (slot-type slot)) datum
+    (keyword (let* ((end (token-end text start))
+                    (token (string-trim "\"" (subseq text start end))))
+               (values (token-value (line-parameter-type parameter) token) end)))
+    (t (multiple-value-bind (datum end) (read-number-or-datum parameter text start line)
+         (let ((value (fitting (read-argument (type-key (line-parameter-type parameter)) datum
                                               (reading-robot line))
-                               (slot-type slot))))
-           (check-read value slot line)
+                               (line-parameter-type parameter))))
+           (check-read value parameter line)
            (values value end))))))
 
-(defun read-number-or-datum (slot text start line)
-  "Return the argument typed in TEXT at START for SLOT of LINE, a number in the simulator's own
+(defun read-number-or-datum (parameter text start line)
+  "Return the argument typed in TEXT at START for PARAMETER of LINE, a number in the simulator's own
 units or another datum, and where that ends."
   (multiple-value-bind (datum end) (read-datum text start line)
-    (read-quantity datum text start end (slot-type slot)
-                   (lambda (trouble) (reject-line "~A ~A" trouble (takes line))))))
+    (read-quantity datum text start end (line-parameter-type parameter)
+                   (lambda (trouble) (reject-line "~A ~A" trouble (arguments-text line))))))
 
 (defun reading-robot (line)
   "Return the robot whose parts the arguments of LINE name; NIL if they name none."
-  (and (some (lambda (slot) (by-number-p (type-key (slot-type slot))))
+  (and (some (lambda (parameter) (by-number-p (type-key (line-parameter-type parameter))))
              (line-parameters line))
        (session-robot)))
 
 (defun reject-rest (line text)
   "Signal BAD-LINE as TEXT follows the arguments of LINE; list the units if one could stand there."
-  (let* ((slot (first (last (line-parameters line))))
-         (dimension (and slot (dimension-of (slot-type slot)))))
+  (let* ((parameter (first (last (line-parameters line))))
+         (dimension (and parameter (dimension-of (line-parameter-type parameter)))))
     (if (and dimension (alpha-char-p (char text 0)))
         (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
-                     (words-for dimension) (unit-names dimension) (takes line))
-        (reject-line "~A is too much. ~A~@[ ~A~]" text (takes line)
+                     (words-for dimension) (unit-names dimension) (arguments-text line))
+        (reject-line "~A is too much. ~A~@[ ~A~]" text (arguments-text line)
                      (and (string= "GO" (line-name line)) "GO-TO x y drives to a place.")))))
 
 (defun read-arguments (line text)
-  "Return the arguments that TEXT, what follows the name of LINE, holds for it."
+  "Return the arguments in TEXT, which follows the name of LINE."
   (let ((position (skip-blanks text 0)))
     (flet ((over-p () (= position (length text)))
            (advance (value end) (setf position (skip-blanks text end)) value))
-      (prog1 (loop for slot in (line-parameters line)
-                   until (and (over-p) (slot-optional-p slot))
-                   when (over-p) do (reject-line "~A is missing. ~A" (slot-name slot) (takes line))
-                   collect (multiple-value-call #'advance (read-slot slot text position line)))
+      (prog1 (loop for parameter in (line-parameters line)
+                   until (and (over-p) (line-parameter-optional-p parameter))
+                   when (over-p)
+                     do (reject-line "~A is missing. ~A" (line-parameter-name parameter)
+                                     (arguments-text line))
+                   collect (multiple-value-call #'advance
+                             (read-line-parameter parameter text position line)))
         (unless (over-p) (reject-rest line (subseq text position)))))))
 
 ;;;; What can be typed for an argument

@@ -11,7 +11,7 @@
   "Lists (name kind new-p) of undefined names that the compiler has found in the present forms,
 newest first. NEW-P is true if the name had no value then.")
 
-(defun quiet-warning (condition)
+(defun handle-warning (condition)
   "Hide the compiler's long report of what users are about to be told. Warnings about definitions
 are messages like others."
   (typecase condition
@@ -24,7 +24,7 @@ are messages like others."
        (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
 
 (defun call-quietly (function)
-  (handler-bind ((warning #'quiet-warning)
+  (handler-bind ((warning #'handle-warning)
                  (compiler-note #'muffle-warning))
     (funcall function)))
 
@@ -51,7 +51,7 @@ still undefined at the end are reported as messages."
   (:documentation "A form in a file that is being loaded has failed; those before it have not."))
 
 (defun placed-p (condition)
-  "True if CONDITION says itself where the trouble is."
+  "True if CONDITION itself names the file and line of the error."
   (or (typep condition 'file-trouble)
       (and (typep condition 'malformed-definition)
            (malformed-definition-place condition))))
@@ -85,7 +85,7 @@ and errors in files that it compiles, are messages."
       (call-quietly (lambda () (call-as-unit function))))))
 
 (defun eval-quietly (form)
-  "Evaluate FORM. What it writes to the error output comes when it is done."
+  "Evaluate FORM. Show what it writes to the error output at its end."
   (let ((diagnostics (make-string-output-stream)))
     (unwind-protect (let ((*error-output* diagnostics)
                           (*read-default-float-format* 'single-float))
@@ -195,15 +195,15 @@ that could not be read."
 ;;; Lines of both kinds.
 
 (defun expand-alias (text &optional known)
-  "Return TEXT with the alias that it begins with, if any, replaced; again, but each only once."
+  "Return TEXT with the alias at its beginning, if any, replaced, repeatedly, but each only once."
   (multiple-value-bind (name rest) (split-line text)
     (let ((alias (assoc name *aliases* :test #'string-equal)))
       (if (and alias (not (member alias known)))
           (expand-alias (concatenate 'string (second alias) rest) (cons alias known))
           text))))
 
-(defun unhurried-p (line)
-  "True if what LINE prints is to be seen as it comes."
+(defun unbuffered-p (line)
+  "True if the output of LINE is shown at once."
   (or (line-full-name line)
       (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
               :test #'string=)))
@@ -213,11 +213,11 @@ that could not be read."
   (if (session-terminal-p session) (clamp (1- (size-of-window session)) 40 79) 79))
 
 (defun run-line (session line text)
-  "Do what LINE does with the arguments in TEXT. What it prints comes out in one piece."
+  "Run LINE with the arguments in TEXT. Its output is written in one piece."
   (let ((arguments (read-arguments line text))
         (*text-width* (text-width session))
         (*asker* (asker-for (session-account session) :typed-p t)))
-    (if (unhurried-p line)
+    (if (unbuffered-p line)
         (apply (line-action line) session arguments)
         (write-string (fitted (printing-words ()
                                 (with-output-to-string (*standard-output*)
@@ -280,7 +280,7 @@ be typed either: so signal that."
   "Return the robot that SESSION commands, and the name of the line or command that it carries out;
 NIL if it carries out none."
   (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
-         (name (and robot (or (some #'errand-name (errands-under-way session))
+         (name (and robot (or (some #'job-name (jobs-under-way session))
                               (command-carried-out robot)))))
     (and name (values robot name))))
 
@@ -291,11 +291,11 @@ During the answer to a break, return how to answer."
   (multiple-value-bind (robot command) (command-going-on session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((ways-awaited session)
-             (format nil " What has broken waits for one of ~A." (ways-awaited session)))
-            ((session-visit session) "")
+             (format nil " A break waits for one of ~A." (ways-awaited session)))
+            ((session-trial session) "")
             ((or robot plans-p)
-             (format nil "~@[ ~A goes on with ~]~@[~A; STOP ends that.~]~
-                          ~:[~; Plans go on; STOP-PLAN ends them.~]"
+             (format nil "~@[ ~A continues with ~]~@[~A; STOP ends that.~]~
+                          ~:[~; Plans continue; STOP-PLAN ends them.~]"
                      robot command plans-p))
             (t " QUIT leaves.")))))
 

@@ -207,31 +207,33 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
   (let ((end (nth-value 1 (unit-after text position))))
     (if (and end (< end (length text))) end position)))
 
-(defun slot-end (slot text start)
-  "Return where the argument for SLOT at START ends, or NIL if it may continue at the end of TEXT."
-  (let ((end (typecase (slot-type slot)
+(defun argument-end (parameter text start)
+  "Return where the argument for PARAMETER at START ends, or NIL if it may continue after TEXT."
+  (let ((end (typecase (line-parameter-type parameter)
                (rest-type nil)
                (keyword (token-end text start))
                (t (let ((*read-suppress* t))
                     (handler-case (nth-value 1 (read-data-from-string text start))
                       (error () nil)))))))
     (cond ((or (null end) (= end (length text))) nil)
-          ((dimension-of (slot-type slot)) (unit-end text end))
+          ((dimension-of (line-parameter-type parameter)) (unit-end text end))
           (t end))))
 
-(defun slot-at-end (line text start)
-  "Return which argument of LINE is being typed at the end of TEXT, or NIL if it has no more, where
-that begins, and which is before it; START is where the first one does."
-  (loop for before = nil then slot
-        for slot in (append (line-parameters line) '(nil))
+(defun argument-at-end (line text start)
+  "Return the parameter of LINE being typed at the end of TEXT, or NIL if it has no more; where its
+argument begins; and the parameter before it. START is where the first argument begins."
+  (loop for before = nil then parameter
+        for parameter in (append (line-parameters line) '(nil))
         for position = (or (position-if-not #'blank-p text :start start) (length text))
-        for end = (and slot (< position (length text)) (slot-end slot text position))
+        for end = (and parameter (< position (length text)) (argument-end parameter text position))
         unless end
-          return (values slot position before)
+          return (values parameter position before)
         do (setf start end)))
 
-(defun unit-choices (slot text start)
-  (let ((dimension (and slot (< start (length text)) (dimension-of (slot-type slot)))))
+(defun unit-choices (parameter text start)
+  (let ((dimension (and parameter
+                        (< start (length text))
+                        (dimension-of (line-parameter-type parameter)))))
     (and dimension
          (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
          (unit-names dimension))))
@@ -245,8 +247,8 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
 
 (defun argument-completions (session line text start)
   "Complete the argument of LINE at the end of TEXT; START is where the first one begins."
-  (multiple-value-bind (slot start before) (slot-at-end line text start)
-    (let ((type (and slot (type-key (slot-type slot)))))
+  (multiple-value-bind (parameter start before) (argument-at-end line text start)
+    (let ((type (and parameter (type-key (line-parameter-type parameter)))))
       (case type
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
@@ -278,15 +280,15 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
   "Return where the part to complete begins in TEXT, typed in SESSION up to POINT, all its
 completions, and what follows a single completion."
   (let* ((text (subseq text 0 point))
-         (breakage (first (session-breaks session))))
+         (break-request (first (session-breaks session))))
     (handler-case
         (cond ((starts-with-subseq "(" (string-left-trim " " text))
                (lisp-completions session text point))
-              (breakage
+              (break-request
                (values 0
                        (matching text (append '("backtrace" "quit")
                                               (mapcar #'restart-name
-                                                      (breakage-restarts breakage))))
+                                                      (break-request-restarts break-request))))
                        ""))
               (t (line-completions session text 0)))
       (ars-magna-error () nil))))

@@ -4,43 +4,42 @@
 
 (export '(*break-hooks*))
 
-;;; Only the thread of the prompt reads what is typed. When a program in it breaks, by (BREAK) or an
-;;; error that the user wants to look into, it asks how to continue before it reads the next line.
-;;; When a program in another thread breaks, such as the simulator's, that thread waits, and the
-;;; lines typed at the prompt are for it until one continues it. Without a terminal or window there
-;;; is no debugger: a break is a message. The same holds for the lines that answer a break: there is
-;;; no break in a break.
+;;; Only the prompt's thread reads what is typed. If a program in it breaks, by (BREAK) or an error
+;;; to be debugged, it asks how to continue before it reads the next line. If a program in another
+;;; thread breaks, such as the simulator's, that thread waits. Lines typed at the prompt are for it
+;;; until one continues it. Without a terminal or window there is no debugger, and a break is a
+;;; message; so is a break in a line that answers a break.
 
 ;;; What the user says.
 
-(defun hand-order (session breakage function)
-  "Make BREAKAGE's thread, another one, call FUNCTION soon, with this one's package and syntax."
-  (flet ((call-ordered ()
+(defun post-call (session break-request function)
+  "Make the other thread of BREAK-REQUEST call FUNCTION soon, with this one's package and syntax."
+  (flet ((call-posted ()
            (let* ((console (session-console session))
                   (*standard-output* console)
                   (*query-io* (make-two-way-stream (make-concatenated-stream) console)))
              (with-simple-restart (end-line "End the line.")
                (call-complaining session function)))))
-    (setf (breakage-order breakage)
-          (spread-specials #'call-ordered
+    (setf (break-request-call break-request)
+          (spread-specials #'call-posted
                            '*package* '*readtable* '*read-default-float-format*)))
-  (signal-semaphore (breakage-ordered breakage)))
+  (signal-semaphore (break-request-posted break-request)))
 
-(defun order (session breakage function)
-  "Let the thread of BREAKAGE call FUNCTION, and wait until it has done so or continues."
-  (cond ((here-p breakage) (funcall function))
-        (t (hand-order session breakage function)
-           (wait-on-semaphore (breakage-done breakage)))))
+(defun call-in-broken-thread (session break-request function)
+  "Make the thread of BREAK-REQUEST call FUNCTION, and wait until it has done so or continues."
+  (cond ((here-p break-request) (funcall function))
+        (t (post-call session break-request function)
+           (wait-on-semaphore (break-request-done break-request)))))
 
-(defun restart-called (word breakage)
+(defun restart-called (word break-request)
   "Return the restart that WORD, a number or the beginning of a name, means. Signals BAD-LINE."
   (let ((number (ignore-errors (parse-integer word)))
-        (restarts (breakage-restarts breakage)))
+        (restarts (break-request-restarts break-request)))
     (or (and number (<= 0 number) (nth number restarts))
         (find-if (lambda (restart)
                    (starts-with-subseq (string-upcase word) (string (restart-name restart))))
                  restarts)
-        (reject-line "~A is no way to go on. Give a number or name that is listed (~{~A~^, ~}), ~
+        (reject-line "~A is not one of the restarts. Give a listed number or name (~{~A~^, ~}), ~
                       BACKTRACE, PLAN-TREE, QUIT, or a form in parentheses."
                      word (mapcar #'plain-name (mapcar #'restart-name restarts))))))
 
@@ -53,104 +52,107 @@
                         '(eval-quietly call-user-code call-until-error call-with-care))
           do (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300))))))
 
-(defun debug-line (session breakage text)
+(defun debug-line (session break-request text)
   (flet ((says-p (word) (string-equal word (split-line text))))
     (cond ((comment-p text))
           ((lisp-p text) (let ((form (read-form session text)))
-                           (order session breakage
-                                  (lambda ()
-                                    (call-telling-undefined
-                                     (lambda () (evaluate session form)))))))
+                           (call-in-broken-thread session break-request
+                                                  (lambda ()
+                                                    (call-telling-undefined
+                                                     (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
-          ((says-p "backtrace") (order session breakage #'write-backtrace))
+          ((says-p "backtrace") (call-in-broken-thread session break-request #'write-backtrace))
           ((says-p "plan-tree")
-           (order session breakage (lambda () (print-plans *standard-output* t))))
+           (call-in-broken-thread session break-request
+                                  (lambda () (print-plans *standard-output* t))))
           (t (multiple-value-bind (word rest) (split-line text)
-               (choose session breakage (restart-called word breakage) rest))))))
+               (choose session break-request (restart-called word break-request) rest))))))
 
-(defun choose (session breakage restart rest)
-  "Continue BREAKAGE by RESTART. A value that it needs is REST, or else what the user types next."
-  (let* ((asks-p (and (asks-p restart) (not (here-p breakage))))
+(defun choose (session break-request restart rest)
+  "Continue BREAK-REQUEST by RESTART. If it needs a value, that is REST, or else the next line."
+  (let* ((asks-p (and (asks-p restart) (not (here-p break-request))))
          (answer (cond ((not asks-p) nil)
                        ((every #'blank-p rest) (read-input session "Value> "))
                        (t rest))))
     (unless (and asks-p (null answer))
-      (order session breakage
-             (lambda ()
+      (flet ((continue-with-answer ()
                (let ((*query-io* (if answer
                                      (make-two-way-stream (make-string-input-stream answer)
                                                           (make-broadcast-stream))
                                      *query-io*)))
-                 (invoke-restart-interactively restart)))))))
+                 (invoke-restart-interactively restart))))
+        (call-in-broken-thread session break-request #'continue-with-answer)))))
 
-(defun read-debug-line (session breakage)
+(defun read-debug-line (session break-request)
   (let ((text (read-input session "Break> ")))
     (if text
-        (debug-line session breakage text)
+        (debug-line session break-request text)
         (setf (session-over-p session) t))))
 
 ;;; How a program waits.
 
-(defun call-debugging (session breakage function)
-  "Call FUNCTION, which reads lines for BREAKAGE, of this thread; other threads' breaks come after."
-  (let* ((state (session-break-state session)) (before (shiftf (break-state-own state) breakage)))
+(defun call-debugging (session break-request function)
+  "Call FUNCTION, which reads lines for this thread's BREAK-REQUEST, before others' breaks."
+  (let* ((state (session-break-state session))
+         (before (shiftf (break-state-own state) break-request)))
     (unwind-protect (funcall function)
       (setf (break-state-own state) before)
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
         (tell-break session (first (session-breaks session)))))))
 
-(defun answer-those-before (session breakage)
-  "Read lines for breaks in other threads before BREAKAGE, which is in this one."
+(defun answer-those-before (session break-request)
+  "Read lines for breaks in other threads before BREAK-REQUEST, which is in this one."
   (let ((breaks (copy-list (session-breaks session))))
-    (when breaks (tell-waiting session breakage))
+    (when breaks (tell-waiting session break-request))
     (dolist (other breaks)
-      (unless (breakage-told-p other) (tell-break session other))
+      (unless (break-request-told-p other) (tell-break session other))
       (loop while (member other (session-breaks session))
             until (session-over-p session)
             do (call-complaining session (lambda () (read-debug-line session other)))))))
 
-(defun announce-break (session breakage)
-  "Tell of BREAKAGE, of another thread than the one of SESSION: all, if it can be answered now."
+(defun announce-break (session break-request)
+  "Report BREAK-REQUEST, of another thread than that of SESSION: all, if it can be answered now."
   (if (or (break-state-own (session-break-state session))
-          (not (eq breakage (first (session-breaks session)))))
-      (tell-waiting session breakage)
-      (tell-break session breakage)))
+          (not (eq break-request (first (session-breaks session)))))
+      (tell-waiting session break-request)
+      (tell-break session break-request)))
 
-(defun forget-break (session breakage)
-  "Release SESSION from BREAKAGE, which continues; another prompt may have answered it."
+(defun forget-break (session break-request)
+  "Release SESSION from BREAK-REQUEST, which continues; another prompt may have answered it."
   (let* ((console (session-console session)) (state (session-break-state session))
-         (first-p (eq breakage (first (break-state-others state))))
-         (left (removef (break-state-others state) breakage)))
+         (first-p (eq break-request (first (break-state-others state))))
+         (left (removef (break-state-others state) break-request)))
     (unless (or (break-state-own state) (session-over-p session))
       (cond ((and left first-p) (tell-break session (first left)))
             ((and (console-prompt console) (null left))
              (show-prompt console "Robot> "))))
-    (signal-semaphore (breakage-done breakage))))
+    (signal-semaphore (break-request-done break-request))))
 
 (defvar *own-process-p* nil "True in a process that does nothing but this program.")
 
-(defun words-for-repl (sessions breakage)
-  "Return a message for the error output if BREAKAGE is asked about in SESSIONS that are all in
-windows, as the user may wait in Lisp's own REPL; or NIL."
+(defun words-for-repl (sessions break-request)
+  "Return a message for the error output if only windows, those of SESSIONS, ask about
+BREAK-REQUEST, as the user may wait in Lisp's own REPL; or NIL."
   (and (not *own-process-p*)
        (every #'session-place sessions)
-       (format nil "~A: a window asks how it goes on." (break-line (first sessions) breakage))))
+       (format nil "~A: a window asks how to continue."
+               (break-line (first sessions) break-request))))
 
-(defun debug-elsewhere (sessions breakage)
-  "Carry out the orders of the threads of SESSIONS for BREAKAGE, until one continues it."
+(defun debug-elsewhere (sessions break-request)
+  "Make the calls that the threads of SESSIONS post for BREAK-REQUEST, until one continues it."
   (dolist (state (mapcar #'session-break-state sessions))
-    (setf (break-state-others state) (append (break-state-others state) (list breakage))))
-  (unwind-protect (progn (dolist (session sessions) (announce-break session breakage))
-                         (let ((words (words-for-repl sessions breakage)))
+    (setf (break-state-others state) (append (break-state-others state) (list break-request))))
+  (unwind-protect (progn (dolist (session sessions) (announce-break session break-request))
+                         (let ((words (words-for-repl sessions break-request)))
                            (when words (say-on-error-output words)))
                          (loop
-                           (wait-on-semaphore (breakage-ordered breakage))
-                           (funcall (breakage-order breakage))
-                           (signal-semaphore (breakage-done breakage))))
-    (dolist (session sessions) (forget-break session breakage))))
+                           (wait-on-semaphore (break-request-posted break-request))
+                           (funcall (break-request-call break-request))
+                           (signal-semaphore (break-request-done break-request))))
+    (dolist (session sessions) (forget-break session break-request))))
 
 ;; A user's window may be lost although there is another, or the terminal.
-(defun heirs-of (session)
+(defun sessions-to-answer-for (session)
   "Return the sessions whose users can answer for the user of SESSION, which is over: those in its
 run, or else all; NIL if its user has left it."
   (flet ((can-answer-p (other)
@@ -159,27 +161,28 @@ run, or else all; NIL if its user has left it."
                 (not (session-over-p other))
                 (not (session-abandoned-p other)))))
     (and (session-abandoned-p session)
-         (or (remove-if-not #'can-answer-p (sessions-hearing *simulation*))
+         (or (remove-if-not #'can-answer-p (sessions-showing *simulation*))
              (remove-if-not #'can-answer-p (sessions-at-work))))))
 
 (defun broken-here (condition sessions)
   "Return what CONDITION has broken in this thread, for the users of SESSIONS."
-  (make-breakage condition (restarts-to-offer condition) (current-thread) sessions))
+  (make-break-request condition (restarts-to-offer condition) (current-thread) sessions))
 
-(defun debug-here (session breakage)
+(defun debug-here (session break-request)
   (flet ((read-lines ()
-           (answer-those-before session breakage)
-           (tell-break session breakage)
+           (answer-those-before session break-request)
+           (tell-break session break-request)
            (loop until (session-over-p session)
-                 do (call-guarded session (lambda () (read-debug-line session breakage))))))
-    (call-debugging session breakage
+                 do (call-guarded session (lambda () (read-debug-line session break-request))))))
+    (call-debugging session break-request
                     (lambda ()
-                      (if (session-visit session)
+                      (if (session-trial session)
                           (call-aside #'read-lines)
                           (read-lines)))))
   ;; Others may say how to continue if its user no longer can.
-  (let ((heirs (heirs-of session)))
-    (when heirs (debug-elsewhere heirs (broken-here (breakage-condition breakage) heirs))))
+  (let ((others (sessions-to-answer-for session)))
+    (when others
+      (debug-elsewhere others (broken-here (break-request-condition break-request) others))))
   (invoke-restart 'end-line))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
@@ -188,10 +191,10 @@ run, or else all; NIL if its user has left it."
 until those continue."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
-      (loop for breakage = (first (session-breaks session))
-            while breakage
+      (loop for break-request = (first (session-breaks session))
+            while break-request
             do (when (session-over-p session) (invoke-restart 'end-line))
-               (call-complaining session (lambda () (read-debug-line session breakage)))))))
+               (call-complaining session (lambda () (read-debug-line session break-request)))))))
 
 (defun give-up (condition)
   "Leave what CONDITION has come up in, by the innermost restart that does."
@@ -204,9 +207,9 @@ until those continue."
   "Functions of no arguments, or their names, that are called in a thread that has broken before it
 asks how to continue: to show the state in which it stands still.")
 
-(defun others-matter-p ()
-  "True if what breaks in this thread is no matter of prompts: it is a user's own, in a Lisp that
-does other things too, and no prompt runs in it."
+(defun outside-prompts-p ()
+  "True if prompts ignore breaks of this thread: it is a user's own, without a prompt, in a Lisp
+that does other things too."
   (not (or *own-process-p*
            (own-thread-p)
            (and *session* (eq (session-thread *session*) (current-thread))))))
@@ -216,7 +219,7 @@ does other things too, and no prompt runs in it."
   ;; The question needs stack that is not there.
   (when (typep condition 'storage-condition) (give-up condition))
   (let* ((*asking-p* t) (sessions (sessions-to-ask)))
-    (cond ((others-matter-p) nil)
+    (cond ((outside-prompts-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)
              (tell-listeners *break-hooks*)
@@ -231,7 +234,7 @@ does other things too, and no prompt runs in it."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
 
-(defun end-unheard (condition)
+(defun end-for-unhandled (condition)
   "End this process, which is starting or ending, as nothing handles CONDITION."
   (when (typep condition 'user-interrupt) (end-interrupted))
   (say-on-error-output (condition-text condition))
@@ -247,11 +250,11 @@ does other things too, and no prompt runs in it."
 
 (defconstant +most-told+ 100 "How many different errors in threads of programs are reported.")
 
-(defvar *told-of-threads* '() "What has been said of threads of programs; each is said once.")
+(defvar *told-of-threads* '() "What was reported of threads of programs; each is reported once.")
 (defvar *told-lock* (make-lock "told of threads"))
 
 (defun tell-of-users-thread (condition)
-  "Say on the error output, unless that or very many others were said before, what CONDITION is."
+  "Write a message on CONDITION to the error output, once, and not after very many others."
   (let* ((text (users-thread-text condition))
          (count (with-lock (*told-lock*)
                   (unless (or (member text *told-of-threads* :test #'string=)
@@ -269,7 +272,7 @@ Lisp's debugger without a terminal or window, or while a break is being answered
   (declare (ignore hook))
   (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
         ((and *own-process-p* (users-thread-p)) (tell-of-users-thread condition))
-        (*own-process-p* (end-unheard condition)))
+        (*own-process-p* (end-for-unhandled condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
 
@@ -281,7 +284,7 @@ Lisp's debugger without a terminal or window, or while a break is being answered
 (defun tell-of-inquiry (condition asker)
   "Tell the prompts in the simulation that ASKER asks how to continue after CONDITION."
   (unless (eq 'enter-debugger (common-debugger-hook))
-    (dolist (session (remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
+    (dolist (session (remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
       (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
                               (break-words condition)
                               (words-for-thread session (current-thread))
@@ -291,22 +294,22 @@ Lisp's debugger without a terminal or window, or while a break is being answered
 
 ;;; From when to when.
 
-(defun release (session breakage)
-  "Continue BREAKAGE, which has waited for SESSION only, by the likeliest restart, and report that."
-  (let ((restart (first (breakage-restarts breakage))))
-    (hand-order session breakage
-                (lambda ()
-                  (warning-set (format nil "The prompt that asked about ~A has gone; ~A was ~
-                                            chosen"
-                                       (break-line session breakage)
-                                       (plain-name (restart-name restart))))
-                  (invoke-restart restart)))))
+(defun release (session break-request)
+  "Continue BREAK-REQUEST, which only SESSION could answer, by the likeliest restart; report that."
+  (let ((restart (first (break-request-restarts break-request))))
+    (post-call session break-request
+               (lambda ()
+                 (warning-set (format nil "The prompt that asked about ~A has gone; ~A was ~
+                                           chosen"
+                                      (break-line session break-request)
+                                      (plain-name (restart-name restart))))
+                 (invoke-restart restart)))))
 
 (defun release-all (session)
   "Continue all breaks that wait for SESSION, which is over, and for no other."
-  (dolist (breakage (session-breaks session))
-    (unless (removef (breakage-sessions breakage) session)
-      (release session breakage))))
+  (dolist (break-request (session-breaks session))
+    (unless (removef (break-request-sessions break-request) session)
+      (release session break-request))))
 
 (defun call-with-debugger (session function)
   (let ((outer *session*))

@@ -26,7 +26,7 @@
                  items))
 
 (defun reject-ambiguous (name names &optional hint)
-  "Signal BAD-LINE: NAME, as typed, may be any of NAMES."
+  "Signal BAD-LINE: NAME, as typed, may mean each of NAMES."
   (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
                names hint))
 
@@ -55,7 +55,7 @@
     (("WHERE" "POSITION" "WHEREAMI" "LS" "DIR" "LIST" "INVENTORY")
      "STATUS tells of the robot, THINGS of what there is, MAP draws it all.")
     (("UNDO") "REWIND 10 goes 10 ticks back.")
-    (("RESET" "RESTART") "WORLD name starts a world anew, REWIND 10 goes 10 ticks back.")
+    (("RESET" "RESTART") "WORLD name starts a world again, REWIND 10 goes 10 ticks back.")
     (("WAIT" "SLEEP" "TICK" "RUN-TICKS")
      "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
     (("RUN-PLAN" "BEGIN-PLAN")
@@ -63,7 +63,7 @@
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
     (("LOAD" "SOURCE" "RUN")
      "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name goes elsewhere.")
-    (("SIMULATOR" "START") "WORLD name starts a robot's world anew, RESUME lets time go on.")
+    (("SIMULATOR" "START") "WORLD name starts a robot's world again, RESUME continues.")
     (("EXPERIMENT" "EXPERIMENTS") "TRIAL lists the experiments, and runs a trial of one.")
     (("JOURNAL" "SAVE") "SAVE-JOURNAL name keeps what was done, REPLAY name repeats it.")
     (("SET" "SETQ" "SETF" "PARAM" "PARAMETER")
@@ -132,7 +132,7 @@ one whose name begins all the others. Signals BAD-LINE."
         (find name (robot-lines) :key #'line-full-name :test #'equal)
         (complete-line name))))
 
-;;; Functions that nobody has defined.
+;;; Undefined functions.
 
 (defun advice-on-function (condition)
   "Return a sentence of advice if CONDITION reports an undefined function; otherwise NIL."
@@ -174,13 +174,13 @@ one whose name begins all the others. Signals BAD-LINE."
 ;;; New variables.
 
 (defun tell-of-new-variable (name)
-  "Warn of the variable NAME, which typed Lisp has set and nobody has defined, if its name is near
-that of a defined one, or the same."
+  "Warn of the undefined variable NAME, which typed Lisp has set, if a defined one has a similar
+name, or the same."
   (let ((meant (variable-slip name)))
     (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))
-      (warning-set (format nil "~(~A~) is a new variable, as nobody has defined it before.~@[ Did ~
-                                you mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines one."
+      (warning-set (format nil "~(~A~) is a new variable; it was not defined before.~@[ Did you ~
+                                mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines one."
                            name meant)))))
 
 ;;; A second command in a line.

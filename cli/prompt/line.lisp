@@ -8,9 +8,9 @@
 ;;; DEFINE-LINE. The robot's commands come from the command layer (see below). HELP, the menus and
 ;;; messages on wrong arguments are made from these definitions. Manual E.
 
-(defstruct (parameter-of-line (:conc-name slot-) (:copier nil)
-                              (:constructor make-slot (name type text optional-p)))
-  "An argument of a line command. TYPE is an argument type of the command layer, or a keyword.
+(defstruct (line-parameter (:constructor make-line-parameter (name type text optional-p))
+                           (:copier nil))
+  "A parameter of a line command. TYPE is an argument type of the command layer, or a keyword.
 :REST, :LINE (another line) and :FORM (of Lisp) are the whole rest of the line. :TOKEN is the text
 up to the next blank; others, such as :FILE, are such texts with a meaning (see CHOICES)."
   (name "" :type string :read-only t)
@@ -23,7 +23,7 @@ up to the next blank; others, such as :FILE, are such texts with a meaning (see 
   (name "" string "what the line command is called, in upper case" :export)
   (full-name nil (or null string) "the full name of the function that it stands for, or NIL")
   (family nil symbol "where HELP lists the line command, a keyword" :export)
-  (parameters '() list "the list of the line command's arguments" :export)
+  (parameters '() list "the list of the line command's parameters" :export)
   (sentence "" string)
   (details '() list)
   (action nil function "the function of the session and the arguments that does it" :export))
@@ -51,9 +51,10 @@ DETAILS, strings, are paragraphs below the parameters."
   `(register-line
     (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
                :details (list ,@details)
-               :parameters (list ,@(loop for (variable type text optional) in parameters
-                                         collect `(make-slot ,(string-downcase variable) ',type
-                                                             ,text ,(eq optional :optional))))
+               :parameters
+               (list ,@(loop for (variable type text optional) in parameters
+                             collect `(make-line-parameter ,(string-downcase variable) ',type ,text
+                                                           ,(eq optional :optional))))
                :action (lambda (,session &optional ,@(mapcar #'first parameters))
                          (declare (ignorable ,session))
                          ,@body))))
@@ -66,18 +67,19 @@ DETAILS, strings, are paragraphs below the parameters."
 (defun usage (line)
   "Return how to type LINE, such as \"POS x y\"."
   (format nil "~A~{ ~A~}" (line-name line)
-          (loop for slot in (line-parameters line)
-                collect (format nil "~:[~A~;[~A]~]" (slot-optional-p slot) (slot-name slot)))))
+          (loop for parameter in (line-parameters line)
+                collect (format nil "~:[~A~;[~A]~]" (line-parameter-optional-p parameter)
+                                (line-parameter-name parameter)))))
 
-(defun slot-words (slot)
-  (if (keywordp (slot-type slot))
-      (slot-text slot)
-      (argument-words (slot-type slot))))
+(defun line-parameter-words (parameter)
+  (if (keywordp (line-parameter-type parameter))
+      (line-parameter-text parameter)
+      (argument-words (line-parameter-type parameter))))
 
-(defun takes (line)
+(defun arguments-text (line)
   (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
-          (loop for slot in (line-parameters line)
-                collect (slot-name slot) collect (slot-words slot))))
+          (loop for parameter in (line-parameters line)
+                collect (line-parameter-name parameter) collect (line-parameter-words parameter))))
 
 ;;; What a plan takes.
 
@@ -109,9 +111,9 @@ DETAILS, strings, are paragraphs below the parameters."
 ;;; For each command of the command layer there is a line command with the same arguments, without
 ;;; the robot. Manual E lists the exceptions; they take what a camera tracks as the designator.
 
-(defun slot-of (specification)
-  (make-slot (string-downcase (spec-name specification)) (spec-type specification)
-             (spec-text specification) nil))
+(defun line-parameter-for (specification)
+  (make-line-parameter (string-downcase (spec-name specification)) (spec-type specification)
+                       (spec-text specification) nil))
 
 (defun robot-resource-p (command)
   (same-name-p (spec-type (command-resource command)) 'robot))
@@ -151,8 +153,8 @@ DETAILS, strings, are paragraphs below the parameters."
              :full-name (string-upcase (command-name command))
              :family (part-family command)
              :parameters (append (unless (robot-resource-p command)
-                                   (list (slot-of (command-resource command))))
-                                 (mapcar #'slot-of (command-parameters command)))
+                                   (list (line-parameter-for (command-resource command))))
+                                 (mapcar #'line-parameter-for (command-parameters command)))
              :sentence (command-documentation command)
              :details (command-details command)
              :action (lambda (session &rest arguments)

@@ -20,29 +20,29 @@
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
 
-(defun tally-for (message told)
+(defun tally-for (message counts)
   (let* ((text (message-text message))
          (code (let ((item (item-at-fault message)))
                  (and item (recurring-code item))))
-         (tally (gethash text told)))
+         (tally (gethash text counts)))
     (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
            tally)
-          (t (when (< *message-limit* (hash-table-count told)) (clrhash told))
-             (setf (gethash text told) (make-tally :code code))))))
+          (t (when (< *message-limit* (hash-table-count counts)) (clrhash counts))
+             (setf (gethash text counts) (make-tally :code code))))))
 
 (defun power-of-ten-p (number)
   (or (= 1 number)
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
-(defun repeated-often-p (message told)
-  "Count MESSAGE in TOLD. True if it is one of many alike and is to be hidden."
-  (let* ((tally (tally-for message told)) (count (incf (tally-count tally))))
+(defun repeated-often-p (message counts)
+  "Count MESSAGE in COUNTS. True if it is one of many alike and is to be hidden."
+  (let* ((tally (tally-for message counts)) (count (incf (tally-count tally))))
     (setf (tally-tick tally) (tick-of message))
     (and (< 3 count) (not (power-of-ten-p count)))))
 
-(defun repetition-text (message told)
-  "Return a note on how often MESSAGE, which is shown, was reported by TOLD, or NIL."
-  (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) told)))
+(defun repetition-text (message counts)
+  "Return a note on how often MESSAGE, which is shown, was reported by COUNTS, or NIL."
+  (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
     (when (<= 3 count)
@@ -52,19 +52,19 @@
               (loop for next = 10 then (* 10 next) when (< count next) return next)
               (and item (recurring-remedy item))))))
 
-(defun count-anew (told)
-  "Forget the counts in TOLD of errors of lines."
-  (maphash (lambda (text tally) (unless (tally-code tally) (remhash text told))) told))
+(defun reset-line-error-counts (counts)
+  "Forget the counts in COUNTS of errors of lines."
+  (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
-(defun take-counts (told others)
-  "Continue the counts of TOLD from those of the table OTHERS."
+(defun merge-counts (counts others)
+  "Continue the counts of COUNTS from those of the table OTHERS."
   (maphash (lambda (text tally)
-             (let ((own (gethash text told)))
+             (let ((own (gethash text counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
-                 (setf (gethash text told) (copy-tally tally)))))
+                 (setf (gethash text counts) (copy-tally tally)))))
            others))
 
-;;; Plans may give more messages than anybody can read.
+;;; Plans may give more messages than a user can read.
 
 (define-constant +flood+ 50
   :documentation "After this many messages from others' commands, with no line between them, a
@@ -79,12 +79,12 @@ message says how to hide them.")
 (defstruct (listener (:copier nil))
   "Shows, on a console, the messages of a session's lines and of a simulation."
   (console (make-console *standard-output*) :type console :read-only t)
-  ;; Somebody sits there.
+  ;; A user can type and answer.
   (terminal-p nil :type boolean :read-only t)
   ;; Messages from commands of plans and programs are hidden.
   (quiet-p nil :type boolean)
   ;; The counts of errors, by text, as above: any thread may report, so the lock guards them.
-  (told (make-hash-table :test 'equal) :type hash-table :read-only t)
+  (error-counts (make-hash-table :test 'equal) :type hash-table :read-only t)
   ;; How many messages from others' commands were shown since the last line was read; after too
   ;; many, in all.
   (others-shown 0 :type fixnum)
@@ -97,9 +97,9 @@ message says how to hide them.")
   ;; True if there are messages that will be shown soon.
   (news-p nil)
   (errors 0 :type fixnum)
-  ;; Where its reading has got to, if that is needed; see reporting.lisp.
+  ;; Which line is being run, if that is needed; see reporting.lisp.
   (account nil :type (or null account) :read-only t)
-  ;; Its user is lost, but has not left it: others are asked what this user was to answer.
+  ;; Its user is lost, but has not left it: other users are asked instead.
   (abandoned-p nil :type boolean))
 
 (defun flood-text (listener count)
@@ -107,10 +107,10 @@ message says how to hide them.")
   (let ((before (listener-others-shown listener)))
     (and (< before +flood+)
          (<= +flood+ (incf (listener-others-shown listener) count))
-         (format nil "ECHO OFF hushes what comes of the commands that plans and programs ~
-                      give.~%"))))
+         (format nil "ECHO OFF hides messages from commands that plans and programs ~
+                      issue.~%"))))
 
-(defun begin-flood-anew (listener)
+(defun reset-flood (listener)
   "Start counting again in LISTENER, unless there were too many."
   (when (< (listener-others-shown listener) +flood+)
     (setf (listener-others-shown listener) 0)))
@@ -196,13 +196,13 @@ command; and with the place of its line, if it is an error or warning in a scrip
       (count-error listener message)))
   (remove-if (lambda (message) (and (eq :error (message-kind message))
                                     (listener-terminal-p listener)
-                                    (repeated-often-p message (listener-told listener))))
+                                    (repeated-often-p message (listener-error-counts listener))))
              (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
 
 (defun texts-about (listener messages)
   "Return notes for LISTENER on MESSAGES, which it has shown: that some repeat, or are very many."
   (remove nil (append (loop for message in messages
-                            collect (repetition-text message (listener-told listener)))
+                            collect (repetition-text message (listener-error-counts listener)))
                       (and (listener-terminal-p listener)
                            (list (flood-text listener (count-if #'others-p messages)))))))
 

@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (export '(*whereabouts-hooks* tell-first-messages go-to-run run-after tell-of-run run-of-robot
-          words-for-run away-p way-in pace-of))
+          words-for-run in-trial-or-fork-p trial-or-fork-text pace-of))
 
 ;;; Each session has a thread, a robot and a current simulation of its own. Messages of a simulation
 ;;; are shown by all sessions in it, and each of them can answer a break in its thread.
@@ -19,20 +19,20 @@
 (defun sessions-at-work ()
   (with-lock (*sessions-lock*) (copy-list *sessions*)))
 
-(defun hears-p (session simulation)
-  "True if SESSION shows messages of SIMULATION, or of the run that it was before a rewind."
-  (let ((heard (session-simulation session)))
-    (and heard (eq (latest heard) (latest simulation)))))
+(defun shows-run-p (session simulation)
+  "True if SESSION shows messages of SIMULATION, or of the run that it replaced by a rewind."
+  (let ((run (session-simulation session)))
+    (and run (eq (latest run) (latest simulation)))))
 
-(defun sessions-hearing (simulation)
+(defun sessions-showing (simulation)
   (and simulation
-       (remove-if-not (lambda (session) (hears-p session simulation)) (sessions-at-work))))
+       (remove-if-not (lambda (session) (shows-run-p session simulation)) (sessions-at-work))))
 
 (defun session-with-queue (queue)
   "Return a running session that shows the messages of a run, which come in QUEUE, or NIL."
   (find-if (lambda (session)
-             (let ((heard (session-simulation session)))
-               (and heard (eq queue (simulation-messages heard)))))
+             (let ((run (session-simulation session)))
+               (and run (eq queue (simulation-messages run)))))
            (with-lock (*sessions-lock*) *sessions*)))
 
 (defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
@@ -44,22 +44,22 @@ message. Prints as TEXT. SESSION shows the message, whatever run it is in."
 (defmethod print-object ((verdict verdict) stream)
   (write-string (verdict-text verdict) stream))
 
-(defun hearers (message session)
+(defun receivers (message session)
   "Return the sessions that show MESSAGE, which SESSION has taken: the one that it is for, and those
-in its run; or if there is none, SESSION."
+in its run; or SESSION if there is none."
   (or (union (let* ((item (first (message-items message)))
                     (meant (and (verdict-p item) (verdict-session item))))
                (and meant (member meant (sessions-at-work)) (list meant)))
-             (sessions-hearing (or (message-run message) (session-simulation session))))
+             (sessions-showing (or (message-run message) (session-simulation session))))
       (list session)))
 
-(defun tell-hearers (session messages)
+(defun deliver-messages (session messages)
   "Show MESSAGES, which SESSION has taken, in those sessions that they are for."
-  (let ((hearers (mapcar (lambda (message) (hearers message session)) messages)))
-    (dolist (hearer (remove-duplicates (cons session (apply #'append hearers))))
-      (tell-messages hearer (loop for message in messages
-                                  for those in hearers
-                                  when (member hearer those) collect message)))))
+  (let ((receivers (mapcar (lambda (message) (receivers message session)) messages)))
+    (dolist (receiver (remove-duplicates (cons session (apply #'append receivers))))
+      (tell-messages receiver (loop for message in messages
+                                    for those in receivers
+                                    when (member receiver those) collect message)))))
 
 ;;; Output of users' programs in a simulator's thread, as of continuations, goes to the terminal and
 ;;; to the windows of that simulation.
@@ -68,7 +68,7 @@ in its run; or if there is none, SESSION."
   (when (and *simulation*
              (rest *sessions*)
              (not (find (current-thread) (sessions-at-work) :key #'session-thread)))
-    (remove console (mapcar #'session-console (sessions-hearing *simulation*)))))
+    (remove console (mapcar #'session-console (sessions-showing *simulation*)))))
 
 (defvar *showing-p* nil
   "True while this thread shows messages; what the showing itself reports is left for later.")
@@ -82,7 +82,7 @@ session without a user leaves them to others."
     (with-lock (*showing-lock*)
       (unless (session-abandoned-p session)
         (let ((*showing-p* t))
-          (tell-hearers session (take-all-messages)))))))
+          (deliver-messages session (take-all-messages)))))))
 
 ;;; Messages about a world's file, while it is loaded, come before there is a run.
 
@@ -95,7 +95,7 @@ session without a user leaves them to others."
 
 ;;; Listening to a simulation.
 
-(defun hear (session simulation)
+(defun handle-message (session simulation)
   "Show the messages of SIMULATION, of which one is new."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ;; Its tick ends when a user says how to continue, who may need these messages.
@@ -106,11 +106,11 @@ session without a user leaves them to others."
            (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
         (t (setf (session-news-p session) t)
            ;; The tick may have ended just now, without this message.
-           (unless (simulation-ticking-p simulation) (look session)))))
+           (unless (simulation-ticking-p simulation) (show-if-pending session)))))
 
-(defun look (session)
+(defun show-if-pending (session)
   "Show what has not been shown at the end of a tick."
-  (when (or (session-news-p session) (spoilt-p (session-console session)))
+  (when (or (session-news-p session) (overwritten-p (session-console session)))
     (show-messages session)))
 
 (defun observer-for (session)
@@ -119,20 +119,20 @@ another, so that no thread waits for the end of the tick, which may never come."
   (let ((observer nil))
     (setf observer (lambda (simulation)
                      (if (eq observer (session-observer session))
-                         (look session)
+                         (show-if-pending session)
                          (remove-observer observer simulation))))))
 
 (defun set-listener (session simulation)
   "Notify SESSION, or no session if that is NIL, when SIMULATION has messages."
   (setf (message-queue-listener (simulation-messages simulation))
-        (and session (lambda () (hear session simulation)))))
+        (and session (lambda () (handle-message session simulation)))))
 
 (defun listen-to (session simulation)
   ;; A new window does not know what others have shown often.
-  (dolist (other (remove session (sessions-hearing simulation)))
+  (dolist (other (remove session (sessions-showing simulation)))
     (let ((counts (make-hash-table :test 'equal)))
-      (with-lock ((session-lock other)) (take-counts counts (session-told other)))
-      (with-lock ((session-lock session)) (take-counts (session-told session) counts))))
+      (with-lock ((session-lock other)) (merge-counts counts (session-error-counts other)))
+      (with-lock ((session-lock session)) (merge-counts (session-error-counts session) counts))))
   (setf (session-simulation session) simulation)
   (set-listener session simulation)
   (keep-history simulation)
@@ -145,7 +145,7 @@ another, so that no thread waits for the end of the tick, which may never come."
   (let ((simulation (shiftf (session-simulation session) nil)))
     (setf (session-observer session) nil)
     (when simulation
-      (let ((next (or (first (sessions-hearing simulation))
+      (let ((next (or (first (sessions-showing simulation))
                       (session-with-queue (simulation-messages simulation)))))
         (set-listener next (if next (session-simulation next) simulation))))))
 
@@ -165,43 +165,44 @@ present run, perhaps the same; NIL for none. They are called in its thread befor
 while a headless run stands still.")
 
 (defun tell-whereabouts (session)
-  "Tell the functions that follow sessions in which run SESSION is."
+  "Call *WHEREABOUTS-HOOKS* with the run that SESSION is in."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
     (tell-listeners *whereabouts-hooks* session old *simulation*)))
 
 ;;;; In which run each session is
 
 (defun words-for-run (simulation)
-  "Return in words where those are who are in SIMULATION: in a fork, a trial, or a map."
-  (let* ((visitor (visitor-of simulation)) (visit (and visitor (session-visit visitor))))
+  "Return in words what SIMULATION is: a fork, a trial, or the run in a map."
+  (let* ((session (session-entered simulation)) (trial (and session (session-trial session))))
     (cond ((timeline-fork-p (timeline-of simulation))
            (format nil "a fork of ~A at tick ~D" (simulation-name simulation)
                    (simulation-tick simulation)))
-          (visit (trial-words (visit-experiment visit) (visit-condition visit) (visit-trial visit)))
+          (trial (trial-words (open-trial-experiment trial) (open-trial-condition trial)
+                              (open-trial-number trial)))
           ((and *trial-replayed* (headless-p simulation)) *trial-replayed*)
           (t (simulation-name simulation)))))
 
-(defun away-p (session)
+(defun in-trial-or-fork-p (session)
   "True if SESSION is in a trial or a fork."
-  (or (session-visit session) (plusp (session-forks session))))
+  (or (session-trial session) (plusp (session-forks session))))
 
-(defun visitor-of (simulation)
+(defun session-entered (simulation)
   "Return the session that has come into SIMULATION by TRIAL or FORK and is there, or NIL."
   (find-if (lambda (session)
-             (and (eq simulation (session-whereabouts session)) (away-p session)))
+             (and (eq simulation (session-whereabouts session)) (in-trial-or-fork-p session)))
            (sessions-at-work)))
 
-(defun way-in (simulation)
+(defun trial-or-fork-text (simulation)
   "Return in words how a prompt has come into SIMULATION, if by TRIAL or FORK, or NIL."
-  (let ((session (visitor-of simulation)))
-    (and session (if (session-visit session) "a trial" "a fork"))))
+  (let ((session (session-entered simulation)))
+    (and session (if (session-trial session) "a trial" "a fork"))))
 
 (defun pace-of (simulation)
   "Return how time passes in SIMULATION, if a prompt is there by TRIAL or FORK: :RUNNING, :PAUSED,
 :ENDED or :FORKED, and at what rate, or NIL. Else return NIL."
-  (let ((session (visitor-of simulation)))
+  (let ((session (session-entered simulation)))
     (cond ((null session) nil)
-          ((session-visit session) (pace-of-visit (session-visit session)))
+          ((session-trial session) (pace-of-trial (session-trial session)))
           (t :forked))))
 
 ;;; One prompt may end the run that others are in: by WORLD, or by starting a robot again in Lisp.
@@ -220,8 +221,8 @@ there, in a list.")
     (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
 
 (defun run-after (simulation robot-name)
-  "Return the live run in which a prompt continues that has commanded the robot ROBOT-NAME of
-SIMULATION, which is over, and the name of the robot that it commands there; NIL if there is none."
+  "Return the live run in which a prompt for ROBOT-NAME continues after SIMULATION, which is over,
+and the name of the robot that it commands there; NIL if there is none."
   (let ((own (run-of-robot robot-name))
         (next (gethash simulation *replacements*)))
     (cond (own (values own robot-name))
@@ -240,7 +241,7 @@ SIMULATION, which is over, and the name of the robot that it commands there; NIL
 
 (defun tell-others (session simulation text)
   "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions there."
-  (dolist (other (remove session (sessions-hearing simulation)))
+  (dolist (other (remove session (sessions-showing simulation)))
     (say-in other text)))
 
 (defun tell-of-run (session simulation robot-name)
@@ -259,7 +260,7 @@ show messages from there. Do nothing if it does so already. Any thread may ask."
   (setf *simulation* simulation
         *world* (simulation-world simulation)))
 
-(defun move-on (session)
+(defun continue-in-next-run (session)
   "If the run of SESSION, in whose thread this is, is over, continue in another if there is one."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)

@@ -85,8 +85,8 @@ condition, or of NIL."
     (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))
 
 (defun line-of-stumble (condition stream start)
-  "Return the line on which the reader gave up in STREAM, with CONDITION; or the line of START,
-where the form begins, if the form does not end."
+  "Return the line on which the reader failed in STREAM, with CONDITION; or the line of START, where
+the form begins, if the form does not end."
   (line-at (grown-text stream)
            (if (typep condition 'end-of-file)
                start

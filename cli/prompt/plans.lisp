@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; A plan is an errand like a command to the robot. Live, a thread watches each plan and reports
+;;; A plan is an job like a command to the robot. Live, a thread watches each plan and reports
 ;;; its end. Now and then, between two reactions of the plans, it checks whether they can still
 ;;; continue; a plan that cannot is ended if the session waits for it. Headless, the prompt checks
 ;;; after each tick.
@@ -10,8 +10,8 @@
 ;;; A plan should recover from errors of its commands. So a session that waits for a plan does not
 ;;; count those errors, only the plan's own failure: see VERDICT.
 
-(defstruct (plan-errand (:include errand) (:copier nil)
-                        (:constructor make-plan-errand (plan session simulation)))
+(defstruct (plan-job (:include job) (:copier nil)
+                     (:constructor make-plan-job (plan session simulation)))
   "A plan that the prompt has started. STUCK is a list of two texts, what keeps it from ever
 continuing and what could be done, or NIL."
   (plan nil :type symbol :read-only t)
@@ -21,19 +21,19 @@ continuing and what could be done, or NIL."
   (asker *asker* :read-only t)
   (task nil)
   ;; Its end is not to be reported, as the run has been rewound.
-  (let-go-p nil)
+  (forgotten-p nil)
   (stuck nil :type list)
   ;; The last message on that.
   (told-stuck nil :type list)
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
 
-(defvar *plan-errands* '() "The plans that the prompt has started and whose ends it has not reported
+(defvar *plan-jobs* '() "The plans that the prompt has started and whose ends it has not reported
 yet.")
-(defvar *plan-errands-lock* (make-lock "plans of prompts"))
+(defvar *plan-jobs-lock* (make-lock "plans of prompts"))
 
-(defun plan-over-p (errand)
-  (let ((task (plan-errand-task errand)))
+(defun plan-over-p (job)
+  (let ((task (plan-job-task job)))
     (and task (task-over-p task))))
 
 (defun plan-runner-now ()
@@ -43,16 +43,16 @@ yet.")
 
 (defun note-plan-end (task)
   "Notify the waiting sessions that TASK, a plan, is over. True if the prompt has started it."
-  (flet ((started-p (errand)
-           (if (plan-errand-task errand)
-               (eq task (plan-errand-task errand))
-               (eq (task-name task) (plan-errand-plan errand)))))
-    (let ((errand (with-lock (*plan-errands-lock*)
-                    (let ((errand (find-if #'started-p *plan-errands*)))
-                      (when errand (setf (plan-errand-task errand) task))
-                      errand))))
-      (when errand
-        (signal-semaphore (plan-errand-over errand))
+  (flet ((started-p (job)
+           (if (plan-job-task job)
+               (eq task (plan-job-task job))
+               (eq (task-name task) (plan-job-plan job)))))
+    (let ((job (with-lock (*plan-jobs-lock*)
+                 (let ((job (find-if #'started-p *plan-jobs*)))
+                   (when job (setf (plan-job-task job) task))
+                   job))))
+      (when job
+        (signal-semaphore (plan-job-over job))
         t))))
 
 (attend *plan-end-hooks* note-plan-end)
@@ -77,65 +77,65 @@ yet.")
               (mapcar #'safe-text (failure-data failure)))
       (condition-text failure)))
 
-(defun verdict-of (errand control &rest arguments)
-  (make-verdict (format nil "~(~A~) ~?" (plan-errand-plan errand) control arguments)
-                (plan-errand-session errand)))
+(defun verdict-of (job control &rest arguments)
+  (make-verdict (format nil "~(~A~) ~?" (plan-job-plan job) control arguments)
+                (plan-job-session job)))
 
-(defmacro with-messages-to ((errand) &body body)
-  "Run BODY, whose messages belong to the simulation of ERRAND and to its line."
-  `(let ((*message-queue* (simulation-messages (plan-errand-simulation ,errand)))
-         (*told-of* (plan-errand-asker ,errand)))
+(defmacro with-messages-to ((job) &body body)
+  "Run BODY, whose messages belong to the simulation of JOB and to its line."
+  `(let ((*message-queue* (simulation-messages (plan-job-simulation ,job)))
+         (*told-of* (plan-job-asker ,job)))
      ,@body))
 
 (defun waiting-for-plan-p (session)
   (and (session-patient-p session)
-       (with-lock (*plan-errands-lock*)
-         (find session *plan-errands* :key #'plan-errand-session))))
+       (with-lock (*plan-jobs-lock*)
+         (find session *plan-jobs* :key #'plan-job-session))))
 
 ;; Errors in a trial belong to the trial. Those of commands issued by a plan, GO-TO or a program
 ;; that gets them belong to that.
 (defmethod error-counts-p (message (session session))
-  (and (null (session-visit session))
+  (and (null (session-trial session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)
                     (and (waiting-for-plan-p session) (not (of-line-p message)))
                     (and (others-p message)
-                         (some #'errand-verdict-p (errands-under-way session))))))))
+                         (some #'job-verdict-p (jobs-under-way session))))))))
 
-(defun note-failure (errand failure)
-  "Make PLANS report FAILURE, of the plan of ERRAND, in each session that shows it."
-  (dolist (session (adjoin (plan-errand-session errand)
-                           (sessions-hearing (plan-errand-simulation errand))))
-    (setf (session-failure session) (list failure (plan-errand-plan errand)))))
+(defun note-failure (job failure)
+  "Make PLANS report FAILURE, of the plan of JOB, in each session that shows it."
+  (dolist (session (adjoin (plan-job-session job)
+                           (sessions-showing (plan-job-simulation job))))
+    (setf (session-failure session) (list failure (plan-job-plan job)))))
 
-(defun tell-end (errand)
-  (let ((result (task-result (plan-errand-task errand))))
-    (with-messages-to (errand)
-      (case (task-state (plan-errand-task errand))
-        (:succeeded (message-set (verdict-of errand "succeeded: ~A"
+(defun tell-end (job)
+  (let ((result (task-result (plan-job-task job))))
+    (with-messages-to (job)
+      (case (task-state (plan-job-task job))
+        (:succeeded (message-set (verdict-of job "succeeded: ~A"
                                              (user-text #'safe-text result))))
-        (:failed (note-failure errand result)
-                 (error-set (verdict-of errand "failed: ~A. PLANS tells more."
+        (:failed (note-failure job result)
+                 (error-set (verdict-of job "failed: ~A. PLANS tells more."
                                         (string-right-trim "." (user-text #'reason-text result)))))
-        (t (message-set (verdict-of errand "was stopped.")))))))
+        (t (message-set (verdict-of job "was stopped.")))))))
 
-(defun tell-stuck (errand)
-  "Queue a message that says what the plan of ERRAND waits for in vain, and what could be done."
-  (with-messages-to (errand)
-    (destructuring-bind (waits advice) (plan-errand-stuck errand)
-      (if (session-patient-p (plan-errand-session errand))
-          (error-set (verdict-of errand "is in a deadlock: it ~A, which nothing will bring about; ~
-                                         it was stopped.~@[ ~A~]" waits advice))
-          (warning-set (verdict-of errand "~A, which neither the robot nor time will bring about, ~
-                                           but you may. STOP-PLAN ends it.~@[ ~A~]"
+(defun tell-stuck (job)
+  "Queue a message on what the plan of JOB waits for forever, and what could be done."
+  (with-messages-to (job)
+    (destructuring-bind (waits advice) (plan-job-stuck job)
+      (if (session-patient-p (plan-job-session job))
+          (error-set (verdict-of job "is in a deadlock: it ~A, which nothing will bring about; ~
+                                      it was stopped.~@[ ~A~]" waits advice))
+          (warning-set (verdict-of job "~A, which neither the robot nor time will bring about, ~
+                                        but you may. STOP-PLAN ends it.~@[ ~A~]"
                                  waits advice))))))
 
-(defun close-errand (errand)
-  (with-lock (*plan-errands-lock*) (removef *plan-errands* errand))
+(defun close-job (job)
+  (with-lock (*plan-jobs-lock*) (removef *plan-jobs* job))
   ;; There is no task if the plan has not begun.
-  (let ((task (plan-errand-task errand)))
-    (end-errand errand (not (and task (eq :succeeded (task-state task))))))
-  (signal-semaphore (plan-errand-told errand)))
+  (let ((task (plan-job-task job)))
+    (end-job job (not (and task (eq :succeeded (task-state task))))))
+  (signal-semaphore (plan-job-told job)))
 
 ;;; Deadlocks.
 
@@ -150,82 +150,82 @@ ever continue; else NIL. Call it while no plan reacts."
             (let ((advice (one-line (in-user-words (lambda () (advice-on-stillness tasks))))))
               (and (string/= "" advice) (cut advice 1000)))))))
 
-(defun note-if-stuck (errand runner)
-  (setf (plan-errand-stuck errand) (stuck-texts runner (plan-errand-task errand))))
+(defun note-if-stuck (job runner)
+  (setf (plan-job-stuck job) (stuck-texts runner (plan-job-task job))))
 
 ;;; Live.
 
-(defun tell-if-stuck (errand runner)
-  "Find out whether the plan of ERRAND is stuck; report it, unless it was reported last. Return the
+(defun tell-if-stuck (job runner)
+  "Find out whether the plan of JOB is stuck; report it, unless it was reported last. Return the
 answer to the last check."
-  (let ((stuck (plan-errand-stuck errand)))
-    (unless (or (null stuck) (equal stuck (plan-errand-told-stuck errand)))
-      (setf (plan-errand-told-stuck errand) stuck)
-      (tell-stuck errand)
-      (when (session-patient-p (plan-errand-session errand))
-        (stop-plan runner (plan-errand-task errand))))
-    (ars-magna.rpl:post runner (lambda () (note-if-stuck errand runner)))
+  (let ((stuck (plan-job-stuck job)))
+    (unless (or (null stuck) (equal stuck (plan-job-told-stuck job)))
+      (setf (plan-job-told-stuck job) stuck)
+      (tell-stuck job)
+      (when (session-patient-p (plan-job-session job))
+        (stop-plan runner (plan-job-task job))))
+    (ars-magna.rpl:post runner (lambda () (note-if-stuck job runner)))
     stuck))
 
-(defun watch-plan (errand runner)
+(defun watch-plan (job runner)
   (loop with stuck = nil
-        until (or (plan-over-p errand) (plan-errand-let-go-p errand))
-        do (cond ((wait-on-semaphore (plan-errand-over errand) 0.2))
-                 ((and (live-p (plan-errand-simulation errand)) (eq runner (plan-runner-now)))
-                  (setf stuck (tell-if-stuck errand runner)))
+        until (or (plan-over-p job) (plan-job-forgotten-p job))
+        do (cond ((wait-on-semaphore (plan-job-over job) 0.2))
+                 ((and (live-p (plan-job-simulation job)) (eq runner (plan-runner-now)))
+                  (setf stuck (tell-if-stuck job runner)))
                  (t (return)))
-        finally (unless (or (plan-errand-let-go-p errand)
-                            (and stuck (session-patient-p (plan-errand-session errand))))
-                  (tell-end errand)))
-  (close-errand errand))
+        finally (unless (or (plan-job-forgotten-p job)
+                            (and stuck (session-patient-p (plan-job-session job))))
+                  (tell-end job)))
+  (close-job job))
 
-(defun start-watching-plan (errand)
+(defun start-watching-plan (job)
   (let ((runner (plan-runner-now)))
     ;; The thread would see the run of the terminal's prompt; this may be that of a window.
     (start-thread (lambda ()
-                    (let* ((*simulation* (plan-errand-simulation errand))
+                    (let* ((*simulation* (plan-job-simulation job))
                            (*world* (simulation-world *simulation*)))
-                      (watch-plan errand runner)))
-                  (format nil "prompt's watch of ~A" (plan-errand-plan errand)))))
+                      (watch-plan job runner)))
+                  (format nil "prompt's watch of ~A" (plan-job-plan job)))))
 
 ;;; Headless.
 
-(defun await-plan-headless (errand)
+(defun await-plan-headless (job)
   (let ((runner (plan-runner-now)))
-    (await (lambda () (or (plan-over-p errand) (note-if-stuck errand runner))))
-    (let ((finished-p (cond ((plan-over-p errand) (tell-end errand) t)
-                            ((plan-errand-stuck errand)
-                             (tell-stuck errand)
-                             (end-plan (plan-errand-task errand))
+    (await (lambda () (or (plan-over-p job) (note-if-stuck job runner))))
+    (let ((finished-p (cond ((plan-over-p job) (tell-end job) t)
+                            ((plan-job-stuck job)
+                             (tell-stuck job)
+                             (end-plan (plan-job-task job))
                              t))))
-      (close-errand errand)
+      (close-job job)
       (unless finished-p
-        (reject-line "~(~A~) has not ended within ~D ticks; it goes on."
-                     (plan-errand-plan errand) *patience*)))))
+        (reject-line "~(~A~) has not ended within ~D ticks; it continues."
+                     (plan-job-plan job) *patience*)))))
 
-(defmethod await-errand ((errand plan-errand))
-  (cond ((live-p (plan-errand-simulation errand))
-         (loop until (or (wait-a-while (plan-errand-told errand) 0.2)
-                         (held-up-p (plan-errand-simulation errand))))
-         (show-messages (plan-errand-session errand)))
-        (t (await-plan-headless errand))))
+(defmethod await-job ((job plan-job))
+  (cond ((live-p (plan-job-simulation job))
+         (loop until (or (wait-a-while (plan-job-told job) 0.2)
+                         (held-up-p (plan-job-simulation job))))
+         (show-messages (plan-job-session job)))
+        (t (await-plan-headless job))))
 
 ;;; A run that was rewound has other running plans.
 
 (defun take-up-plan (session task)
-  "Let SESSION wait for TASK, a running plan, as if its PLAN had just started that."
-  (let ((errand (make-plan-errand (task-name task) session *simulation*)))
-    (setf (plan-errand-task errand) task)
-    (with-lock (*plan-errands-lock*) (push errand *plan-errands*))
-    (push errand (session-errands session))
-    (when (live-p *simulation*) (start-watching-plan errand))))
+  "Make SESSION wait for TASK, a running plan, as if its PLAN had just started that."
+  (let ((job (make-plan-job (task-name task) session *simulation*)))
+    (setf (plan-job-task job) task)
+    (with-lock (*plan-jobs-lock*) (push job *plan-jobs*))
+    (push job (session-jobs session))
+    (when (live-p *simulation*) (start-watching-plan job))))
 
 (defun take-up-plans (session)
   "Make SESSION wait for the plans that have replaced its own, whose run was rewound."
-  (flet ((let-go-p (errand) (and (plan-errand-p errand) (plan-errand-let-go-p errand))))
-    (mapc #'close-errand (remove-if-not #'let-go-p (session-errands session)))
-    (setf (session-errands session) (remove-if #'let-go-p (session-errands session))))
+  (flet ((forgotten-p (job) (and (plan-job-p job) (plan-job-forgotten-p job))))
+    (mapc #'close-job (remove-if-not #'forgotten-p (session-jobs session)))
+    (setf (session-jobs session) (remove-if #'forgotten-p (session-jobs session))))
   (dolist (task (plans))
     (when (and (member (task-name task) (session-plans session))
-               (not (find task *plan-errands* :key #'plan-errand-task)))
+               (not (find task *plan-jobs* :key #'plan-job-task)))
       (take-up-plan session task))))

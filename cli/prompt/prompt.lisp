@@ -5,27 +5,27 @@
 (export '(run-session prompt run-session-apart interrupt-session end-session enter-line
           at-work-on abandon-session asked-of-others-p))
 
-(defun waits-for-time-p (session errands inbox)
+(defun waits-for-time-p (session jobs inbox)
   "True if something was requested that waits for time to pass, while time stands still, since
-SESSION had ERRANDS, and the simulation INBOX."
+SESSION had JOBS, and the simulation INBOX."
   (and *simulation*
        (if (live-p *simulation*) (paused-p *simulation*) (not (headless-p *simulation*)))
-       (null (session-visit session))
-       (not (and (eq errands (session-errands session)) (eq inbox (requests-waiting))))
+       (null (session-trial session))
+       (not (and (eq jobs (session-jobs session)) (eq inbox (requests-waiting))))
        (requests-waiting)
        t))
 
 (defun do-telling-of-time (session text)
   "Run TEXT, a line of SESSION. If it requests something that cannot begin, since time stands still,
 say so to a user at a terminal or window."
-  (let ((errands (session-errands session)) (inbox (requests-waiting))
-        (breakage (first (session-breaks session))))
-    (if breakage
-        (debug-line session breakage text)
+  (let ((jobs (session-jobs session)) (inbox (requests-waiting))
+        (break-request (first (session-breaks session))))
+    (if break-request
+        (debug-line session break-request text)
         (run-text session text))
-    (when (and (session-terminal-p session) (waits-for-time-p session errands inbox))
+    (when (and (session-terminal-p session) (waits-for-time-p session jobs inbox))
       (write-fitted (session-console session)
-                    "Time stands still. RESUME lets it go on, STEP 10 for 10 ticks.~%"))))
+                    "Time stands still. RESUME continues, STEP 10 passes 10 ticks.~%"))))
 
 (defun begin-line-of (session text)
   (note-line-begun (session-account session) (if (comment-p text) nil text)
@@ -46,23 +46,23 @@ outline, and the condition that says so."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
-(defun find-place (session)
+(defun find-run-and-robot (session)
   "Make SESSION command its robot, in a run that continues, and show messages of that run."
-  (unless (away-p session)
+  (unless (in-trial-or-fork-p session)
     (when (session-place session) (funcall (session-place session)))
-    (move-on session))
+    (continue-in-next-run session))
   (setf (session-robot-name session) *prompt-robot*)
   (follow-simulation session))
 
 (defun next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
   (tell-whereabouts session)
-  (find-place session)
+  (find-run-and-robot session)
   (when (session-account session) (account-for-last session))
   (multiple-value-bind (text trouble) (unless (stopped-p session) (read-next session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
-           (unless (session-breaks session) (find-place session))
+           (unless (session-breaks session) (find-run-and-robot session))
            (do-telling-of-time session (begin-next session text trouble)))
           (t (setf (session-over-p session) t
                    (reader-ended-p (session-reader session))
@@ -85,7 +85,7 @@ waits, since time stands still."
   (catch-up session)
   (show-messages session)
   (note-line-ended (session-account session) (session-errors session)
-                   (end-of-errands session)))
+                   (end-of-jobs session)))
 
 (defun run-lines (session)
   "Run the files and lines of SESSION until it is over, or continues with another robot."
@@ -98,13 +98,13 @@ waits, since time stands still."
            (call-guarded session (lambda () (show-messages session))))
   (when (session-account session) (call-guarded session (lambda () (account-for-last session))))
   (unless (or (session-terminal-p session) (session-next-robot session))
-    (tell-of-unended session)))
+    (report-unfinished session)))
 
-(defun tell-of-unended (session)
+(defun report-unfinished (session)
   "Report if SESSION, without a user, has requested something that waits since time stands still."
-  (when (and (unended-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
-    (complain session (format nil "Time stands still, so not all that was asked for has ended. ~
-                                   RESUME lets it go on."))
+  (when (and (unfinished-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
+    (complain session (format nil "Time stands still, so not all requests have ended. RESUME ~
+                                   continues."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))
 
 (defun call-with-streams (session function)
@@ -132,11 +132,11 @@ waits, since time stands still."
 
 ;; A stream of WITH-OUTPUT-TO-STRING lies on this thread's stack: written to by the simulator's
 ;; thread after its extent, it would spoil whatever is there then.
-(defun let-go-of-streams (session output)
-  "Write nothing more for SESSION, which is over, to OUTPUT, which its user may close now. Other
-sessions show its pending messages."
+(defun release-streams (session output)
+  "Stop writing for SESSION, which is over, to OUTPUT, which its user may close now. Other sessions
+show its pending messages."
   (with-lock (*showing-lock*) (setf (session-abandoned-p session) t))
-  (unless (eq output (session-console session)) (let-go (session-console session))))
+  (unless (eq output (session-console session)) (discard-output (session-console session))))
 
 (defun prompt (&rest options &key input (output *standard-output*) batch patient echo lines color)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
@@ -148,7 +148,7 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
   (let ((session (apply #'make-session options)))
     (in-any-case
       (run-session session)
-      (let-go-of-streams session output)))
+      (release-streams session output)))
   (values))
 
 ;;;; Several prompts at once
@@ -156,8 +156,8 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
 ;;; Each has a thread, a robot and a current simulation of its own.
 
 (defun run-session-apart (session simulation robot-name)
-  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, beside
-other sessions, until QUIT or the end of its input. Return SESSION."
+  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, until
+QUIT or the end of its input, beside other sessions. Return SESSION."
   (let ((*session* nil)
         (*prompt-robot* robot-name)
         (*simulation* simulation)
@@ -169,19 +169,19 @@ other sessions, until QUIT or the end of its input. Return SESSION."
       (user-interrupt () nil)))
   session)
 
-;;; What other users than those who type do to it.
+;;; What other threads do to a session.
 
-(defun heed-in-session ()
+(defun interrupt-own-line ()
   "End the running line of this thread's session, if there is one. A break in a session whose user
 is lost is not ended: others are asked, as soon as the session is over."
   (when (and *session* (not (and *asking-p* (session-abandoned-p *session*))))
-    (heed-interrupt)))
+    (handle-interrupt)))
 
 (defun interrupt-session (session)
   "Act as Control-C in SESSION, from another thread: clear the typed line or end the running one."
-  (cond ((being-typed-p (session-input session)) (press-key (session-input session) :control-c))
+  (cond ((being-typed-p (session-input session)) (send-key (session-input session) :control-c))
         ((session-thread session)
-         (interrupt-thread (session-thread session) #'heed-in-session)))
+         (interrupt-thread (session-thread session) #'interrupt-own-line)))
   (values))
 
 (defun abandon-session (session)
@@ -193,7 +193,7 @@ others get its questions and its run's messages. Return nothing."
 
 (defun asked-of-others-p (session)
   "True if others can answer a break in the thread of SESSION, which is lost."
-  (and (break-state-own (session-break-state session)) (heirs-of session) t))
+  (and (break-state-own (session-break-state session)) (sessions-to-answer-for session) t))
 
 (defun end-session (session)
   "End SESSION, from another thread. A running line is interrupted; a line being typed, or typed
@@ -204,7 +204,7 @@ ahead, is not run."
 
 (defun enter-line (session text)
   "Enter TEXT as a line of SESSION; the line being typed stays."
-  (press-key (session-input session) (list :entry text)))
+  (send-key (session-input session) (list :entry text)))
 
 (defun at-work-on (session)
   "True if a line runs in SESSION: none is being typed."

@@ -120,9 +120,9 @@ REJECT, a function, with a message on what was SAID, in words."
     (* number factor)))
 
 (defun read-quantity (datum text start end type reject)
-  "Return the value of DATUM, a number read in TEXT from START to END, and of a unit that may follow
-it, as an argument of TYPE, and where that ends. Return DATUM if it is no quantity, or TYPE has
-none. REJECT is called with a message if the unit is wrong."
+  "Return the quantity that begins with DATUM, read in TEXT from START to END, as an argument of
+TYPE, and where it ends. Return DATUM if it is no quantity, or TYPE has none. REJECT is called with
+a message if the unit is wrong."
   (let ((dimension (dimension-of type)))
     (multiple-value-bind (number unit)
         (cond ((null dimension) nil)

@@ -4,7 +4,7 @@
 
 (export '(tell-asking))
 
-;;; The next typed line is then for the program, and for the prompt only after that.
+;;; While a program reads, the next typed line is for it, and not for the prompt.
 
 (defgeneric tell-asking (console)
   (:documentation "Tell the user of CONSOLE that a program reads the next line.")
@@ -62,8 +62,8 @@ those."
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (answered console)))
-        (count-anew (session-told session))
-        (begin-flood-anew session))
+        (reset-line-error-counts (session-error-counts session))
+        (reset-flood session))
       line)))
 
 ;;; Forms that cannot be read.
@@ -101,7 +101,7 @@ those."
 (defun read-outline (session text)
   "Return the next line of SESSION, which continues TEXT, or the outline of one that is too long and
 the condition that says so; NIL at the end."
-  (handler-case (read-input session +going-on+ text)
+  (handler-case (read-input session +continuation-prompt+ text)
     (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun skip-forms (stream)
@@ -142,7 +142,7 @@ the condition that says so; NIL at the end."
 (defun read-growing (session text start)
   "Return the values of READ-FORM for a form that continues after TEXT."
   (flet ((read-more (text)
-           (or (read-input session +going-on+ text)
+           (or (read-input session +continuation-prompt+ text)
                (reject-line "The form is not complete: ~A" (one-line text)))))
     (let* ((stream (text-stream text start #'read-more))
            (form (skipping-rest (session (grown-text stream) start)

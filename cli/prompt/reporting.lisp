@@ -51,8 +51,8 @@ of the faulty line in a running form, or NIL if that is not known."
   (and account (account-text account) (line-under-way account)))
 
 (defun line-of-trouble (account)
-  "Return the number of the line that makes no sense, of the form or line that is being done; or
-NIL: ACCOUNT may be NIL, or between lines."
+  "Return the number of the invalid line, of the form or line that is being run; or NIL: ACCOUNT may
+be NIL, or between lines."
   (let ((line (line-done-now account)))
     (and line (or (account-trouble-line account) line))))
 
@@ -68,8 +68,8 @@ NIL: ACCOUNT may be NIL, or between lines."
 ;;; Lines.
 
 (defun note-line-begun (account text line errors)
-  "Note that TEXT, that of the line with the number LINE, which was read last, or NIL if there is
-nothing to do in it, is about to be done, and that there were ERRORS so far."
+  "Note that the line with the number LINE begins, after ERRORS errors. TEXT is what it says, or
+NIL if it does nothing."
   (when account
     (setf (account-line account) line
           (account-text account) text

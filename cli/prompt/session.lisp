@@ -5,19 +5,19 @@
 (export '(session make-session session-robot session-errors session-input session-quiet-p
           *prompt-robot*))
 
-(defstruct (breakage (:constructor make-breakage (condition restarts thread sessions))
-                     (:copier nil))
+(defstruct (break-request (:constructor make-break-request (condition restarts thread sessions))
+                          (:copier nil))
   "A program that has broken and waits in THREAD until the user of one of SESSIONS says how to
-continue. ORDER is the function that it is to call next."
+continue. CALL is the function that it is to call next."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
   (sessions '() :type list)
-  (order nil :type (or null function))
+  (call nil :type (or null function))
   ;; The ways to continue have been shown.
   (told-p nil :type boolean)
-  (ordered (make-semaphore "order") :read-only t)
-  (done (make-semaphore "order done") :read-only t))
+  (posted (make-semaphore "call posted") :read-only t)
+  (done (make-semaphore "call done") :read-only t))
 
 (defun restarts-within (condition)
   "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
@@ -46,8 +46,8 @@ continue. ORDER is the function that it is to call next."
   (stable-sort (restarts-within condition)
                #'< :key (lambda (restart) (rank restart condition))))
 
-(defun here-p (breakage)
-  (eq (breakage-thread breakage) (current-thread)))
+(defun here-p (break-request)
+  (eq (break-request-thread break-request) (current-thread)))
 
 (defun break-words (condition)
   "Return the text of CONDITION: on a line, unless a plan has stopped, with its stack."
@@ -59,7 +59,7 @@ continue. ORDER is the function that it is to call next."
   "The breaks that wait for the user of THREAD: OWN has broken in that thread, which reads lines for
 it, or is NIL; OTHERS in other threads, the oldest first."
   (thread nil)
-  (own nil :type (or null breakage))
+  (own nil :type (or null break-request))
   (others '() :type list))
 
 ;;;; Sessions
@@ -105,14 +105,14 @@ it, or is NIL; OTHERS in other threads, the oldest first."
   ;; The run that it was in when it last read a line; see TELL-WHEREABOUTS.
   (whereabouts nil)
   ;; The trial that it is in, or NIL, and how many nested forks it is in.
-  (visit nil)
+  (trial nil)
   (forks 0 :type fixnum)
   ;; The names of the plans that it has started; those of a rewound run are its own, too.
   (plans '() :type list)
   ;; The failure of the last plan, if it failed, and the plan's name, in a list.
   (failure nil)
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
-  (errands '() :type list)
+  (jobs '() :type list)
   (lisp-p nil)
   ;; After a rewind of a run whose plans it waits for: the function to call first, with this
   ;; session.
@@ -164,14 +164,14 @@ a terminal, unless the environment has NO_COLOR."
   "Return the breaks that wait for SESSION, the one that is asked about first."
   (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
     (cond ((null own) others)
-          ((breakage-told-p own) (cons own others))
+          ((break-request-told-p own) (cons own others))
           (t (append others (list own))))))
 
 (defun check-run ()
   (when (and *simulation* (simulation-over *simulation*))
     (let ((name (simulation-name *simulation*)))
       (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;~
-                    WORLD ~:*~(~A~) starts it anew~]."
+                    WORLD ~:*~(~A~) starts it again~]."
                    name (simulation-over *simulation*)
                    (and (find-map name nil) name)))))
 
@@ -194,7 +194,7 @@ or NIL. Where Lisp at the prompt runs a simulation of its own, that has perhaps 
 (defun watched-p (session)
   "True if SESSION has a user at a terminal or window, and can check for typed input."
   (and (session-terminal-p session)
-       (typep (source-of (session-input session)) '(or descriptor-stream handed-octets))))
+       (typep (source-of (session-input session)) '(or descriptor-stream queued-octets))))
 
 (defun display-wanted-p (session)
   "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY says so."

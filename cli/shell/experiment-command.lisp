@@ -109,7 +109,7 @@ UNDER-WAY says which trial took long, or is NIL."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
-        (say "stopped with ~D row~:P in ~A~@[; ~A~]. To go on:~%  ~A" (or rows 0) out under-way
+        (say "stopped with ~D row~:P in ~A~@[; ~A~]. To continue:~%  ~A" (or rows 0) out under-way
              (uiop:escape-sh-command (append (program-words) (list command) arguments)))
         (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 

@@ -142,7 +142,7 @@ E. A batch with plans to run does not wait for lines."
           *terminal-io* both)))
 
 (defun check-window (options)
-  "Signal USAGE-ERROR if OPTIONS ask for a window of a run that has none, or none is to be had."
+  "Signal USAGE-ERROR if OPTIONS ask for a window where none can be shown."
   (when (option-value :window options)
     (when (and (or (option-value :batch options) (option-value :script options)
                    (option-value :json options))
@@ -236,7 +236,7 @@ E. A batch with plans to run does not wait for lines."
   (catch 'leave
     (handler-case
         (call-until-interrupted
-         (lambda () (let ((*leave-unheard-p* t)) (call-open-to-interrupts function)))
+         (lambda () (let ((*leave-without-output-p* t)) (call-open-to-interrupts function)))
          (lambda ()
            (say-on-error-output "stopped.")
            130))
@@ -276,8 +276,8 @@ only asks whether the core starts."
   ;; The core may have been saved where the environment names another.
   (uiop:setup-temporary-directory)
   (die-of-termination)
-  (mind-interrupts)
-  (call-on-continuing #'take-terminal-again)
+  (accept-interrupts)
+  (call-on-continuing #'resume-terminal)
   (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~
                              return; at the prompt, QUIT leaves."))
   ;; An interrupt that still waits at the end is ignored.

@@ -59,7 +59,7 @@ four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
              (unless (eql count seen) (setf seen count looks 0))
              (when (and whose count (= 4 (incf looks)))
                (say-where session
-                          (format nil "~A has not returned for ~D s and goes on. Control-C ends ~
+                          (format nil "~A has not returned for ~D s. Control-C ends ~
                                        the batch, and so does the option --time-limit SECONDS."
                                   whose *hog-patience*))))))
 
@@ -87,7 +87,7 @@ it cannot be ended, end this process."
   "Make Control-C report whose code runs in SESSION, by CALLS, before it ends that at once."
   (setf *before-ending-at-once*
         (lambda ()
-          (say-stopped session (call-under-way session calls) "control C has come again"))))
+          (say-stopped session (call-under-way session calls) "Control-C was pressed again"))))
 
 (defun call-with-watchers (session options function)
   "Call FUNCTION, which runs SESSION. Without a terminal, name code that does not return. The time

@@ -38,7 +38,7 @@ true if the prompt edits typed lines, TYPED the drawn-line that is being typed, 
 the question shown to the user, or NIL; OVERWRITTEN-P is true if something was written after it.
 ASKED-P is true while a program, not the prompt, reads typed input, ASKING-TOLD-P if the user has
 been told so since the last prompt. TROUBLE is the condition that output could not be delivered,
-:OVER after LET-GO, or NIL. COLORED-P is true if messages and prompts have colours. While
+:OVER after DISCARD-OUTPUT, or NIL. COLORED-P is true if messages and prompts have colours. While
 HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest first."))
 
 (setf (documentation 'console-line 'function)
@@ -50,7 +50,7 @@ HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest firs
   "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
-(defvar *leave-unheard-p* nil
+(defvar *leave-without-output-p* nil
   "True in the thread that ends this process, when no output is needed any more.")
 
 (defun try-to-write (function console)
@@ -60,7 +60,7 @@ HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest firs
       (handler-case (progn (funcall function (console-stream console)) nil)
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
 
-(defun let-go (console)
+(defun discard-output (console)
   "Discard further output to CONSOLE: the stream below may be gone. Output of another thread in
 progress is finished first."
   (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
@@ -68,7 +68,7 @@ progress is finished first."
 (defun call-with-console (function console)
   "Call FUNCTION with the stream below CONSOLE, unless it has failed before."
   (when (and (call-holding-interrupts (lambda () (try-to-write function console)))
-             *leave-unheard-p*)
+             *leave-without-output-p*)
     (throw 'leave 1)))
 
 (defmacro with-console ((stream console) &body body)
@@ -188,7 +188,7 @@ shown.")
     (finish-output stream)))
 
 (defgeneric clear-screen (console stream)
-  (:documentation "Let nothing stand on the screen.")
+  (:documentation "Clear the screen.")
   (:method ((console console) stream)
     (write-string (window-cleared) stream)))
 
@@ -213,7 +213,7 @@ shown.")
 ;;; Writing.
 
 (defun put-now (string console stream start end)
-  "Write STRING from START to END to STREAM, below CONSOLE, where the line being typed is not."
+  "Write STRING from START to END to STREAM, below CONSOLE, while the line being typed is erased."
   ;; The cursor is there already.
   (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
     (begin-row console)
@@ -315,13 +315,13 @@ broken between words.")
   "True if a prompt is shown and nothing has been written after it."
   (and (console-prompt console) (not (console-overwritten-p console))))
 
-(defun spoilt-p (console)
+(defun overwritten-p (console)
   "True if a prompt is shown and something has been written after it."
   (and (console-prompt console) (console-overwritten-p console)))
 
 (defun restore-prompt (console)
   "Show the prompt again if something was written after it, and flush the output."
-  (when (spoilt-p console)
+  (when (overwritten-p console)
     (show-prompt console (console-prompt console)))
   (finish-output console))
 

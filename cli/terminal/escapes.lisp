@@ -41,8 +41,8 @@
     (and ink (make-keyword (car ink)))))
 
 (defun painted-spans (text)
-  "Return TEXT, a line that PAINT has been at, as a list of lists (text ink); INK is a keyword, or
-NIL where nothing was painted."
+  "Return TEXT, a line coloured by PAINT, as a list of lists (text ink); INK is a keyword, or NIL
+where nothing was painted."
   (let ((spans '()) (ink nil) (start 0))
     (loop
       (let ((escape (position +escape+ text :start start)))
@@ -54,10 +54,10 @@ NIL where nothing was painted."
                 start (1+ end)))))))
 
 (defun unpainted-text (text)
-  "Return TEXT without what PAINT has put into it."
+  "Return TEXT without the colours of PAINT."
   (format nil "~:{~A~}" (painted-spans text)))
 
-;;; Is it wanted?
+;;; Are colours wanted?
 
 (define-constant +color-settings+ '("auto" "always" "never") :test #'equal
   :documentation "What --color takes.")
@@ -86,11 +86,11 @@ a terminal unless the environment has NO_COLOR."
   (escape "K"))
 
 (defun cleared-below ()
-  "Return what wipes out all from the cursor on."
+  "Return the code that erases everything from the cursor on."
   (escape "J"))
 
 (defun window-cleared ()
-  "Return what wipes out all, and moves the cursor to the upper left."
+  "Return the code that erases everything and moves the cursor to the upper left."
   (format nil "~A~A" (escape "H") (escape "2J")))
 
 ;;; What is pasted.

@@ -59,8 +59,8 @@ read."))
         (and (blank-p last) (not (blank-p char))))))
 
 (defun read-octets (octets)
-  "Return the characters of the stream OCTETS up to and with the next newline, but not many more
-than a line has at most, and no more than its outline behind those; and whether there were more."
+  "Return a line of the stream OCTETS, with its newline, and whether it was too long: then its end
+is only an outline."
   (let* ((count 0)
          (line (with-output-to-string (out)
                  (handler-case
@@ -136,8 +136,9 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
-;; A user may have typed too much; a script or another program means what it says. But the rest of a
-;; line that a program has begun to read, as Y-OR-N-P reads "yes", is no line for the prompt.
+;; Only what a user has typed is cleared; what a script or another program sends is kept. But the
+;; rest of a line that a program has begun to read, as Y-OR-N-P reads "yes", is no line for the
+;; prompt.
 (defmethod stream-clear-input ((stream typed-text))
   (when (or (typed-by-hand-p stream)
             (plusp (typed-position stream)))
@@ -169,63 +170,63 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 ;;; A terminal's keys are read from a file, those of a window from such a stream: each character is
 ;;; an octet.
 
-(defclass handed-octets (fundamental-character-input-stream)
-  ((lock :initform (make-lock "octets") :reader handed-lock)
-   (ready :initform (make-semaphore "octets") :reader handed-ready)
+(defclass queued-octets (fundamental-character-input-stream)
+  ((lock :initform (make-lock "octets") :reader queued-lock)
+   (ready :initform (make-semaphore "octets") :reader queued-ready)
    ;; The last octets, how many of them have been read, and whether more may come.
-   (octets :initform "" :accessor handed-string)
-   (start :initform 0 :accessor handed-start)
-   (over-p :initform nil :accessor handed-over-p))
+   (octets :initform "" :accessor queued-string)
+   (start :initform 0 :accessor queued-start)
+   (over-p :initform nil :accessor queued-over-p))
   (:documentation "An input stream of the octets that REVISE-OCTETS leaves; it waits for them."))
 
-(defun handed-left (stream)
-  (subseq (handed-string stream) (handed-start stream)))
+(defun unread-octets (stream)
+  (subseq (queued-string stream) (queued-start stream)))
 
 (defun leave-octets (stream octets)
   "Make OCTETS, a string, all that is left to be read of STREAM, whose lock is held."
-  (setf (handed-string stream) octets
-        (handed-start stream) 0))
+  (setf (queued-string stream) octets
+        (queued-start stream) 0))
 
 (defun revise-octets (stream function)
   "Replace the unread octets of STREAM, a string, by what FUNCTION returns for them, undisturbed."
-  (with-lock ((handed-lock stream))
-    (leave-octets stream (funcall function (handed-left stream))))
-  (signal-semaphore (handed-ready stream))
+  (with-lock ((queued-lock stream))
+    (leave-octets stream (funcall function (unread-octets stream))))
+  (signal-semaphore (queued-ready stream))
   (values))
 
 (defun end-octets (stream)
-  (with-lock ((handed-lock stream)) (setf (handed-over-p stream) t))
-  (signal-semaphore (handed-ready stream))
+  (with-lock ((queued-lock stream)) (setf (queued-over-p stream) t))
+  (signal-semaphore (queued-ready stream))
   (values))
 
-(defun next-handed (stream)
+(defun next-queued (stream)
   "Return the next octet of STREAM, :EOF at its end, or NIL if none has come yet."
-  (with-lock ((handed-lock stream))
-    (cond ((listen stream) (prog1 (char (handed-string stream) (handed-start stream))
-                             (incf (handed-start stream))))
-          ((handed-over-p stream) :eof))))
+  (with-lock ((queued-lock stream))
+    (cond ((listen stream) (prog1 (char (queued-string stream) (queued-start stream))
+                             (incf (queued-start stream))))
+          ((queued-over-p stream) :eof))))
 
-(defmethod stream-read-char-no-hang ((stream handed-octets))
-  (next-handed stream))
+(defmethod stream-read-char-no-hang ((stream queued-octets))
+  (next-queued stream))
 
-(defmethod stream-read-char ((stream handed-octets))
-  (loop (let ((char (next-handed stream)))
+(defmethod stream-read-char ((stream queued-octets))
+  (loop (let ((char (next-queued stream)))
           (when char (return char)))
-        (wait-on-semaphore (handed-ready stream))))
+        (wait-on-semaphore (queued-ready stream))))
 
-(defmethod stream-unread-char ((stream handed-octets) char)
-  (with-lock ((handed-lock stream))
-    (leave-octets stream (uiop:strcat (string char) (handed-left stream))))
+(defmethod stream-unread-char ((stream queued-octets) char)
+  (with-lock ((queued-lock stream))
+    (leave-octets stream (uiop:strcat (string char) (unread-octets stream))))
   nil)
 
-(defmethod stream-listen ((stream handed-octets))
-  (< (handed-start stream) (length (handed-string stream))))
+(defmethod stream-listen ((stream queued-octets))
+  (< (queued-start stream) (length (queued-string stream))))
 
-(defmethod stream-clear-input ((stream handed-octets))
-  (with-lock ((handed-lock stream)) (leave-octets stream ""))
+(defmethod stream-clear-input ((stream queued-octets))
+  (with-lock ((queued-lock stream)) (leave-octets stream ""))
   nil)
 
-(defmethod octets-within-p ((stream handed-octets) seconds)
+(defmethod octets-within-p ((stream queued-octets) seconds)
   ;; What has been read already may have left its signals.
-  (loop until (or (listen stream) (handed-over-p stream))
-        always (wait-on-semaphore (handed-ready stream) seconds)))
+  (loop until (or (listen stream) (queued-over-p stream))
+        always (wait-on-semaphore (queued-ready stream) seconds)))

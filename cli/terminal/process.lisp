@@ -7,7 +7,7 @@
 
 (defun end-process (status)
   "End this process with STATUS, at once: nothing is flushed and no thread is waited for."
-  (restore-manner)
+  (restore-terminal-mode)
   (call-allowing-exits (lambda () (uiop:quit status nil))))
 
 ;;; Streams.
@@ -19,7 +19,8 @@ so.")
     (input-within-p stream seconds)))
 
 (defun say-on-error-output (text)
-  "Write TEXT to the error output as a line that names the program, whatever state streams are in."
+  "Write TEXT to the error output as a line that names the program, whatever state the streams are
+in."
   (flet ((write-to (output)
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
@@ -31,44 +32,44 @@ so.")
 ;;; prompt catches it, so that it ends only what the user wants to end: see RUN-SESSION.
 
 (defvar *interrupts-while-ending* nil
-  "How often control C has come since one began to end this process; NIL while none has.")
+  "How often Control-C was pressed since one began to end this process; NIL while none has.")
 
 (defconstant +patience-of-users+ 3
-  "How often control C may come while this process ends before it ends at once.")
+  "How often Control-C may be pressed while this process ends, before it ends at once.")
 
 (defun end-interrupted ()
   (say-on-error-output "stopped.")
   (end-process 130))
 
-(defun heed-interrupt ()
-  "Let the handlers of this thread end what it does, or continue by the restart GO-ON."
+(defun handle-interrupt ()
+  "Signal the interrupt to this thread's handlers; the restart GO-ON continues."
   (allowing-interrupts
     (with-simple-restart (go-on "Go on.")
       (signal-user-interrupt))))
 
 ;; After Control-C, cleanup must finish before this process ends; Control-C often comes twice.
 (defun take-interrupt ()
-  "Heed that control C has come, unless it has already begun to end this process."
-  (cond ((null *interrupts-while-ending*) (heed-interrupt))
+  "Handle Control-C, unless it has already begun to end this process."
+  (cond ((null *interrupts-while-ending*) (handle-interrupt))
         ((< (incf *interrupts-while-ending*) +patience-of-users+))
         (t (end-interrupted))))
 
-(defvar *hearer* nil "The stream that has this thread's error output until it begins to end.")
+(defvar *diagnostics* nil "The stream that has this thread's error output until it begins to end.")
 
 (defun begin-to-end (condition)
-  "Suppress other output between CONDITION, an interrupt, and the message on it: the compiler would
-report that it has been left."
+  "Suppress other output between CONDITION, an interrupt, and its message: the compiler would
+report that it was left."
   (declare (ignore condition))
   (setf *interrupts-while-ending* 0
-        *hearer* (make-broadcast-stream)))
+        *diagnostics* (make-broadcast-stream)))
 
 (defun call-until-interrupted (function then)
-  "Call FUNCTION and return its values. If control C ends it, this process is ending: return the
+  "Call FUNCTION and return its values. If Control-C ends it, this process is ending: return the
 values of THEN, another function, which is not interrupted."
-  (let ((*hearer* *error-output*))
+  (let ((*diagnostics* *error-output*))
     (handler-case
         (handler-bind ((user-interrupt #'begin-to-end))
-          (let ((*error-output* (make-synonym-stream '*hearer*)))
+          (let ((*error-output* (make-synonym-stream '*diagnostics*)))
             (funcall function)))
       (user-interrupt () (funcall then)))))
 
@@ -79,20 +80,20 @@ values of THEN, another function, which is not interrupted."
   "A function of no arguments to call before Control-C ends this process at once; NIL at a terminal
 or window, where the user may press it any number of times.")
 
-(defvar *interrupt-times* '() "When control C came, in seconds, newest first.")
+(defvar *interrupt-times* '() "When Control-C was pressed, in seconds, newest first.")
 
 (defparameter *interrupt-span* 5
-  "Within how many seconds control C has to come again to end this process at once.")
+  "Within how many seconds Control-C must be pressed again to end this process at once.")
 
 (defun ends-at-once-p (now times)
-  "True if control C, which comes at NOW and has come at TIMES, is to end this process at once: the
-third time, or, unless it came twice for once, the second if the first has had no effect."
+  "True if Control-C, pressed at NOW and at TIMES, is to end this process at once: the third time;
+or the second if the first had no effect, unless both come from one press."
   (and times
        (or (rest times)
            (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
 
 (defun note-interrupt ()
-  "Note that control C has come. End this process if it has done so too often."
+  "Record a Control-C. End this process if there were too many."
   (let* ((now (seconds-now))
          (times (remove-if (lambda (time) (< time (- now *interrupt-span*))) *interrupt-times*)))
     (setf *interrupt-times* (cons now times))
@@ -100,7 +101,7 @@ third time, or, unless it came twice for once, the second if the first has had n
       (funcall *before-ending-at-once*)
       (end-process 130))))
 
-(defun mind-interrupts ()
+(defun accept-interrupts ()
   "Let Control-C interrupt this thread, the process's first."
   (let ((thread (current-thread)))
     (call-on-interrupt (lambda ()
@@ -114,60 +115,60 @@ third time, or, unless it came twice for once, the second if the first has had n
 ;;; Control-C works in two ways: while a line runs, it is a signal; while one is typed, it is a key
 ;;; like others, so that the order of keys is kept.
 
-(defvar *first-manner* nil "The manner of the terminal before the prompt changed it, or NIL.")
-(defvar *keys-interrupt-p* nil "True if control C and its like are signals, as said last.")
+(defvar *original-mode* nil "The mode of the terminal before the prompt changed it, or NIL.")
+(defvar *keys-interrupt-p* nil "True if Control-C and the like are signals, as last set.")
 (defvar *continued-p* nil "True if this process was stopped and continues, and this has not been
 noticed yet.")
 
-(defun manner ()
+(defun terminal-mode ()
   "Return the mode of the terminal, as the system keeps it, or NIL if there is no terminal."
   (ignore-errors (sb-posix:tcgetattr 0)))
 
-(defun set-manner (manner)
-  "Set the mode of the terminal to MANNER. Do nothing if it is gone."
-  (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow manner)))
+(defun set-terminal-mode (terminal-mode)
+  "Set the mode of the terminal to TERMINAL-MODE. Do nothing if it is gone."
+  (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow terminal-mode)))
 
 (defun hand-over-keys (&key interrupts)
-  "Let the terminal pass on keys as they are pressed, without echo. If INTERRUPTS is true, Control-C
-and the like are signals instead, which let pending output reach the screen. Only within
+  "Make the terminal pass on keys as they are pressed, without echo; if INTERRUPTS, Control-C and
+the like are signals instead, which let pending output reach the screen. Only within
 CALL-HANDING-OVER-KEYS."
   (setf *keys-interrupt-p* interrupts)
-  (let ((manner (manner))
-        (line-manner (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
-    (when (and manner *first-manner*)
-      (setf (sb-posix:termios-lflag manner)
-            (logior (logandc2 (sb-posix:termios-lflag manner) line-manner)
+  (let ((terminal-mode (terminal-mode))
+        (line-flags (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
+    (when (and terminal-mode *original-mode*)
+      (setf (sb-posix:termios-lflag terminal-mode)
+            (logior (logandc2 (sb-posix:termios-lflag terminal-mode) line-flags)
                     (if interrupts (logior sb-posix:isig sb-posix:noflsh) 0))
-            (aref (sb-posix:termios-cc manner) sb-posix:vmin) 1
-            (aref (sb-posix:termios-cc manner) sb-posix:vtime) 0)
-      (set-manner manner))))
+            (aref (sb-posix:termios-cc terminal-mode) sb-posix:vmin) 1
+            (aref (sb-posix:termios-cc terminal-mode) sb-posix:vtime) 0)
+      (set-terminal-mode terminal-mode))))
 
-(defun restore-manner ()
-  "Let the terminal pass on lines again, if the prompt had begun to edit them."
-  (when *first-manner* (set-manner *first-manner*)))
+(defun restore-terminal-mode ()
+  "Make the terminal pass on whole lines again, if the prompt has begun to edit them."
+  (when *original-mode* (set-terminal-mode *original-mode*)))
 
 (defun call-handing-over-keys (function)
-  (setf *first-manner* (manner))
+  (setf *original-mode* (terminal-mode))
   (unwind-protect (progn (hand-over-keys :interrupts t)
                          (funcall function))
-    (restore-manner)
-    (setf *first-manner* nil)))
+    (restore-terminal-mode)
+    (setf *original-mode* nil)))
 
-(defun stop-for-a-while ()
+(defun suspend-process ()
   "Give the terminal to the parent process, as Control-Z does, until this process continues."
-  (restore-manner)
+  (restore-terminal-mode)
   (sb-posix:kill 0 sb-posix:sigtstp)
   (hand-over-keys))
 
 ;; Another program, such as a shell, may have changed the mode of the terminal meanwhile.
-(defun take-terminal-again ()
-  "Let the terminal pass on keys again, as this process continues after a stop."
+(defun resume-terminal ()
+  "Make the terminal pass on keys again, after this process was suspended."
   (hand-over-keys :interrupts *keys-interrupt-p*)
   (setf *continued-p* t))
 
 (defun quit-by-signal ()
   "End this process as Control-\\ does when keys are not passed on."
-  (restore-manner)
+  (restore-terminal-mode)
   (sb-posix:kill (process-number) sb-posix:sigquit))
 
 ;;; How large the window is.

@@ -39,7 +39,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
 ;;; A line that shows progress.
 
 (defstruct (progress-line (:constructor make-progress-line (console)) (:copier nil))
-  "A line of CONSOLE that says how far something has come, once that takes a while."
+  "A line of CONSOLE that shows progress, once something takes long."
   (console nil :type console :read-only t)
   (due (+ (seconds-now) 0.5d0) :type double-float)
   (width 0 :type fixnum))

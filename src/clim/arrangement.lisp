@@ -35,7 +35,7 @@
   :test #'equal
   :documentation "The parts of the window that can be dragged to make others larger.")
 
-(defstruct wishes
+(defstruct preferences
   "The user's preferences for an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
 pixels, or NIL for what suits the window. FOLDED lists sections that show only their title.
 MAGNIFICATION is how many screen pixels wide one of these pixels is, or NIL for what suits the
@@ -49,38 +49,39 @@ screen."
 (defun title-name (section)
   (intern (format nil "~A-TITLE" (symbol-name section)) :ars-magna.clim))
 
-(defun plan-column-p (wishes width)
+(defun plan-column-p (preferences width)
   "True if plans have a column of their own in a window WIDTH pixels wide."
-  (and (>= width +wide+) (not (member 'plan (wishes-folded wishes)))))
+  (and (>= width +wide+) (not (member 'plan (preferences-folded preferences)))))
 
-(defun column-sections (wishes width)
-  (if (plan-column-p wishes width) (remove 'plan +sections+) +sections+))
+(defun column-sections (preferences width)
+  (if (plan-column-p preferences width) (remove 'plan +sections+) +sections+))
 
-(defun usual-details-width (wishes width)
+(defun usual-details-width (preferences width)
   "Return the width of the column of sections, unless the user has set one, in a window WIDTH pixels
 wide: wider if it shows plans, which have long lines."
-  (if (or (member 'plan (wishes-folded wishes)) (plan-column-p wishes width))
+  (if (or (member 'plan (preferences-folded preferences)) (plan-column-p preferences width))
       (clamp (floor width 3) 200 360)
       (clamp (floor (* 9 width) 20) 200 400)))
 
-(defun details-width (wishes width)
+(defun details-width (preferences width)
   "Return how wide the column of sections is in a window WIDTH pixels wide."
-  (let ((wish (or (wishes-details-width wishes) (usual-details-width wishes width))))
-    (clamp (round wish) 120 (max 120 (- width 160)))))
+  (let ((wanted (or (preferences-details-width preferences)
+                    (usual-details-width preferences width))))
+    (clamp (round wanted) 120 (max 120 (- width 160)))))
 
-(defun plan-width (wishes width)
+(defun plan-width (preferences width)
   "Return how wide the column of plans is in a window WIDTH pixels wide; 0 if there is none."
-  (let ((details (details-width wishes width)))
-    (if (plan-column-p wishes width)
-        (clamp (round (or (wishes-plan-width wishes) (+ details 60)))
+  (let ((details (details-width preferences width)))
+    (if (plan-column-p preferences width)
+        (clamp (round (or (preferences-plan-width preferences) (+ details 60)))
                120 (max 120 (- width details 160)))
         0)))
 
-(defun transcript-height (wishes height)
+(defun transcript-height (preferences height)
   "Return how high the transcript, with its title, is in a window HEIGHT pixels high."
-  (let ((wish (or (wishes-transcript-height wishes) (clamp (floor height 5) 80 260)))
+  (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
         (fixed (+ +menus-height+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
-    (clamp (round wish) 40 (max 40 (- height fixed 120)))))
+    (clamp (round wanted) 40 (max 40 (- height fixed 120)))))
 
 ;;; Sections.
 
@@ -110,12 +111,12 @@ least half if it needs that, since a tree of few lines is useless; the others ge
   "Return shares of HEIGHT, which is not enough for NEEDS: sections that need less than the others
 get it, the others equally many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
-         (modest (remove-if (lambda (need) (> (second need) fair)) needs))
-         (greedy (remove-if (lambda (need) (member need modest)) needs)))
-    (if (null modest)
+         (small (remove-if (lambda (need) (> (second need) fair)) needs))
+         (large (remove-if (lambda (need) (member need small)) needs)))
+    (if (null small)
         (share-lines needs fair height)
-        (append modest
-                (share-fairly greedy (- height (reduce #'+ modest :key #'second)))))))
+        (append small
+                (share-fairly large (- height (reduce #'+ small :key #'second)))))))
 
 (defun share-lines (needs fair height)
   "Return shares of HEIGHT: each of NEEDS gets the whole lines that FAIR holds; the first get the
@@ -132,10 +133,10 @@ lines that are left, the last the pixels."
 (defun give-rest (shares height)
   "Return SHARES with what they leave of HEIGHT added to one of them."
   (let ((rest (- height (reduce #'+ shares :key #'second)))
-        (heir (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
-                  (first (last shares)))))
+        (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
+                      (first (last shares)))))
     (loop for share in shares
-          collect (if (eq share heir) (list (first share) (+ (second share) rest)) share))))
+          collect (if (eq share receiver) (list (first share) (+ (second share) rest)) share))))
 
 (defun place-section (section left top width height)
   "Return the places of the title of SECTION and, below it, of its display, HEIGHT pixels high."
@@ -157,27 +158,28 @@ lines that are left, the last the pixels."
 
 ;;; The whole.
 
-(defun place-plan-column (wishes width left top height down)
+(defun place-plan-column (preferences width left top height down)
   "Return the places of the column of plans, which begins at LEFT, and of the splitter behind it,
 which is DOWN pixels high."
-  (let ((plan (plan-width wishes width)))
+  (let ((plan (plan-width preferences width)))
     (if (plusp plan)
         (append (place-section 'plan left top plan (- height +title-height+))
                 (list (list 'plan-splitter (+ left plan) top +splitter+ down)))
         (list (list 'plan-splitter left top 0 0)))))
 
-(defun place-displays (wishes needs width top height down)
+(defun place-displays (preferences needs width top height down)
   "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high; the
 column of sections, DOWN pixels."
-  (let* ((column (details-width wishes width))
-         (own-p (plan-column-p wishes width))
-         (plan (if own-p (+ (plan-width wishes width) +splitter+) 0))
+  (let* ((column (details-width preferences width))
+         (own-p (plan-column-p preferences width))
+         (plan (if own-p (+ (plan-width preferences width) +splitter+) 0))
          (world (- width column plan +splitter+))
          (left (+ world +splitter+)))
     (append (place-section 'world 0 top world (- height +title-height+))
             (list (list 'side-splitter world top +splitter+ (if own-p height down)))
-            (place-plan-column wishes width left top height down)
-            (place-sections (column-sections wishes width) needs (wishes-folded wishes)
+            (place-plan-column preferences width left top height down)
+            (place-sections (column-sections preferences width) needs
+                            (preferences-folded preferences)
                             (+ left plan) top column down))))
 
 (defun place-low (width top bottom)
@@ -193,21 +195,21 @@ it has so much room: a little of that stays."
          +prompt-height+
          (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
 
-(defun arrange (wishes needs width height &optional (rows +prompt-rows+))
-  "Return the places of all parts of a window of WIDTH times HEIGHT pixels, as WISHES want it. NEEDS
-is a function from a section to how many pixels high it would like to be. What is typed has ROWS,
-and takes the room of those beyond the usual from the transcript."
+(defun arrange (preferences needs width height &optional (rows +prompt-rows+))
+  "Return the places of all parts of a window of WIDTH times HEIGHT pixels by PREFERENCES. NEEDS is
+a function from a section to its wanted height in pixels. What is typed has ROWS; those beyond the
+usual number take room from the transcript."
   (let* ((top (+ +menus-height+ +bar-height+))
          (strip (- height +strip-height+))
-         (transcript (transcript-height wishes height))
+         (transcript (transcript-height preferences height))
          (typed (prompt-height rows transcript))
          (prompt (- strip typed))
          (splitter (- strip +prompt-height+ transcript +splitter+))
          (down-p (< height +low+))
-         (column (+ (details-width wishes width) +splitter+)))
+         (column (+ (details-width preferences width) +splitter+)))
     (append (list (list 'menus 0 0 width +menus-height+)
                   (list 'bar 0 +menus-height+ width +bar-height+))
-            (place-displays wishes needs width top (- splitter top)
+            (place-displays preferences needs width top (- splitter top)
                             (- (if down-p prompt splitter) top))
             (place-low (if down-p (- width column) width) splitter prompt)
             (list (list 'interactor 0 prompt width typed)

@@ -65,7 +65,7 @@ function of the window, and LIT-P is one or NIL."
           do (setf x (+ 4 (draw-button canvas button text lit-p x 3 width
                                        (- +bar-height+ 7)))))))
 
-(defmethod click ((pane bar-pane) mouse-button x y)
+(defmethod handle-click ((pane bar-pane) mouse-button x y)
   (declare (ignore mouse-button))
   (let ((button (subject-at (pane-subjects pane) x y)))
     (when button (funcall (button-command button)))))
@@ -92,7 +92,8 @@ function of the window, and LIT-P is one or NIL."
   "Return in words how many programs wait for an answer at the prompt of WINDOW, or NIL."
   (let ((count (length (ars-magna.cli:awaited-answers (window-session window)))))
     (when (plusp count)
-      (format nil "the prompt asks how ~:[~R programs go~;a program goes~] on" (= count 1) count))))
+      (format nil "the prompt asks how to continue ~:[~R programs~;a program~]"
+              (= count 1) count))))
 
 (defun time-text (window)
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
@@ -117,7 +118,7 @@ function of the window, and LIT-P is one or NIL."
   (declare (ignore x y))
   "Click to have all of the line above among the commands")
 
-(defmethod click ((pane strip-pane) button x y)
+(defmethod handle-click ((pane strip-pane) button x y)
   (declare (ignore button x y))
   (let ((window (window-of pane)))
     (say-in-window window "~A~%" (time-text window))))

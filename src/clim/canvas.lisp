@@ -87,8 +87,8 @@
                       :line-thickness (thickness canvas gcontext)))
 
 (defun outline-box (x y width height thickness)
-  "Return the box through whose sides the middle of a line of THICKNESS has to run, so that all of
-it is inside the box X, Y, WIDTH, HEIGHT of pixels."
+  "Return the box for the middle of a line of THICKNESS, so that the line lies inside the box X, Y,
+WIDTH, HEIGHT of pixels."
   (let ((inset (/ (1- thickness) 2)))
     (values (+ x inset) (+ y inset)
             (max 1 (- width thickness)) (max 1 (- height thickness)))))
@@ -195,13 +195,13 @@ wide.")
         (let ((box (seen-part canvas (shifted canvas left top right bottom))))
           (when box (push (cons subject box) (canvas-subjects canvas))))))))
 
-(defconstant +aim+ 3 "By how many pixels a click may miss a subject.")
+(defconstant +subject-slack+ 3 "By how many pixels a click may miss a subject.")
 
 (defun subjects-at (subjects x y)
   "Return what was drawn at X, Y, or near it, the smallest first. SUBJECTS are those of a canvas."
   (let ((found (loop for (subject left top right bottom) in subjects
-                     when (and (<= (- left +aim+) x (+ right +aim+))
-                               (<= (- top +aim+) y (+ bottom +aim+)))
+                     when (and (<= (- left +subject-slack+) x (+ right +subject-slack+))
+                               (<= (- top +subject-slack+) y (+ bottom +subject-slack+)))
                        collect (cons (* (- right left) (- bottom top)) subject))))
     (cl:map 'list #'cdr (stable-sort found #'< :key #'car))))
 

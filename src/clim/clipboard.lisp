@@ -98,7 +98,7 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 
 ;;; Holding.
 
-(defstruct (held (:constructor make-held (octets)) (:copier nil))
+(defstruct (shared (:constructor make-shared (octets)) (:copier nil))
   "A text that is offered to others, as a string of OCTETS. TRANSFERS are lists (window property
 start) of texts that go in pieces: START is where the next piece begins."
   (octets "" :type string :read-only t)
@@ -108,27 +108,27 @@ start) of texts that go in pieces: START is where the next piece begins."
 (defun put-octets (window property octets)
   (xlib:change-property window property octets :utf8_string 8 :transform #'char-code))
 
-(defun begin-pieces (held window property)
+(defun begin-pieces (shared window property)
   (setf (xlib:window-event-mask window) '(:property-change))
-  (push (list window property 0) (held-transfers held))
-  (xlib:change-property window property (list (length (held-octets held))) :incr 32))
+  (push (list window property 0) (shared-transfers shared))
+  (xlib:change-property window property (list (length (shared-octets shared))) :incr 32))
 
-(defun hand-next-piece (held window property)
+(defun hand-next-piece (shared window property)
   "Put the next piece into PROPERTY of WINDOW if one is awaited there; an empty one at the end."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))
-                           (held-transfers held))))
+                           (shared-transfers shared))))
     (when transfer
-      (let* ((octets (held-octets held))
+      (let* ((octets (shared-octets shared))
              (start (third transfer))
              (end (min (length octets) (+ start +piece+))))
         (put-octets window property (subseq octets start end))
         (setf (third transfer) end)
-        (when (= start end) (removef (held-transfers held) transfer))))))
+        (when (= start end) (removef (shared-transfers shared) transfer))))))
 
-(defun hand-over (held window target property)
-  "Put what HELD has into PROPERTY of WINDOW as TARGET. True if it can be had so."
+(defun hand-over (shared window target property)
+  "Put the text of SHARED into PROPERTY of WINDOW as TARGET. True if it can be had as that."
   (case target
     (:targets (xlib:change-property window property '(:targets :utf8_string :string) :atom 32
                                     :transform (lambda (name)
@@ -136,55 +136,55 @@ start) of texts that go in pieces: START is where the next piece begins."
                                                                    name)))
      t)
     ((:utf8_string :string :text)
-     (if (< +piece+ (length (held-octets held)))
-         (begin-pieces held window property)
-         (put-octets window property (held-octets held)))
+     (if (< +piece+ (length (shared-octets shared)))
+         (begin-pieces shared window property)
+         (put-octets window property (shared-octets shared)))
      t)))
 
-(defun answer-request (held window selection target property time)
+(defun answer-request (shared window selection target property time)
   (let ((property (or property target)))
     (xlib:send-event window :selection-notify nil
                      :window window :event-window window :selection selection :target target
-                     :property (and (hand-over held window target property) property)
+                     :property (and (hand-over shared window target property) property)
                      :time time)))
 
-(defun serve (held display)
-  "Answer programs that ask on DISPLAY for HELD, until another program offers its selections, and
+(defun serve (shared display)
+  "Answer programs that ask on DISPLAY for SHARED, until another program offers its selections, and
 all transfers are complete or given up."
-  (loop while (or (held-selections held) (held-transfers held))
+  (loop while (or (shared-selections shared) (shared-transfers shared))
         always
-           (xlib:event-case (display :timeout (if (held-selections held)
+           (xlib:event-case (display :timeout (if (shared-selections shared)
                                                   nil
                                                   +patience-with-others+)
                                      :discard-p t :force-output-p t)
              (:selection-request (requestor selection target property time)
-               (answer-request held requestor selection target property time)
+               (answer-request shared requestor selection target property time)
                t)
              (:property-notify (window atom state)
-               (when (eq state :deleted) (hand-next-piece held window atom))
+               (when (eq state :deleted) (hand-next-piece shared window atom))
                t)
              (:selection-clear (selection)
-               (removef (held-selections held) selection)
+               (removef (shared-selections shared) selection)
                t))))
 
-(defun serve-until-over (held display)
+(defun serve-until-over (shared display)
   ;; The X server may go; the receiver may vanish before it gets an answer.
   (setf (xlib:display-error-handler display) (constantly nil))
-  (unwind-protect (ignore-errors (serve held display))
+  (unwind-protect (ignore-errors (serve shared display))
     (ignore-errors (xlib:close-display display :abort t))))
 
-(defun hold (held display selections)
+(defun claim-selections (shared display selections)
   (let ((mailbox (make-mailbox display)))
     (dolist (selection selections)
       (xlib:set-selection-owner display selection mailbox nil)
       (when (xlib:window-equal mailbox (xlib:selection-owner display selection))
-        (push selection (held-selections held))))))
+        (push selection (shared-selections shared))))))
 
-(defgeneric hold-text (port text selections)
+(defgeneric share-text (port text selections)
   (:documentation "Offer TEXT to other programs on the X server of PORT, by each of SELECTIONS,
 :PRIMARY or :CLIPBOARD, until one of them copies something.")
   (:method (port text selections) (declare (ignore port text selections)))
   (:method ((port clim-clx:clx-port) text selections)
-    (let ((display (connect port)) (held (make-held (encoded text))))
-      (hold held display selections)
-      (start-thread (lambda () (serve-until-over held display)) "what was copied"))))
+    (let ((display (connect port)) (shared (make-shared (encoded text))))
+      (claim-selections shared display selections)
+      (start-thread (lambda () (serve-until-over shared display)) "what was copied"))))

@@ -41,7 +41,7 @@
       (tell-to-answer (window-conversation window) "Step")
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
-(defun let-rate-be (window rate)
+(defun change-rate-to (window rate)
   "Set the rate of the run of WINDOW to RATE, if its ticks pass by themselves."
   (let ((simulation (window-simulation window)))
     (cond ((live-p simulation)
@@ -58,7 +58,7 @@
   (let ((rate (rate-set (window-simulation window))))
     (if (eq rate :free)
         (say-in-window window "Ticks pass as fast as they can; RATE sets how many a second.~%")
-        (let-rate-be window (clamp (* (or rate 1) factor) 1/8 100000)))))
+        (change-rate-to window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
   (change-rate window 2))
@@ -67,10 +67,10 @@
   (change-rate window 1/2))
 
 (define-window-command (com-default-rate "Default rate") (window)
-  (let-rate-be window *default-rate*))
+  (change-rate-to window *default-rate*))
 
 (define-window-command (com-free "As fast as possible") (window)
-  (let-rate-be window :free))
+  (change-rate-to window :free))
 
 (define-window-command (com-interrupt "Interrupt") (window)
   (ars-magna.cli:interrupt-session (window-session window)))

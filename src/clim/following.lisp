@@ -8,14 +8,14 @@
 ;;; cannot ask it for a snapshot between ticks, and it may have no journal that records changes. So
 ;;; the window looks at the effects of each line before the next is read.
 
-(defun goes-along-p (window old)
+(defun follows-prompt-p (window old)
   "True if WINDOW follows the prompt of this thread, which was in OLD."
   (let ((thread (conversation-thread (window-conversation window))))
     (if thread
         (eq thread (current-thread))
         (eq old (watcher-simulation (window-watcher window))))))
 
-(defun robot-to-take-along (window new)
+(defun robot-after-switch (window new)
   "Return the name of the robot of NEW that WINDOW is to show after following: the one that its
 prompt commands, or that it shows, or else another. NIL if other windows show all of them."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
@@ -26,9 +26,9 @@ prompt commands, or that it shows, or else another. NIL if other windows show al
                      (list (shown-robot window) ars-magna.cli:*prompt-robot*)
                      names))))
 
-(defun take-along (window new)
-  "Let WINDOW show NEW from now on, if it has a robot to show."
-  (let ((name (robot-to-take-along window new)))
+(defun switch-window (window new)
+  "Make WINDOW show NEW from now on, if it has a robot to show."
+  (let ((name (robot-after-switch window new)))
     (when name
       (note-shown window name)
       (watch-simulation (window-watcher window) new)
@@ -36,15 +36,15 @@ prompt commands, or that it shows, or else another. NIL if other windows show al
       (request-refresh window))))
 
 (defun follow-prompt (session old new)
-  "Let the windows that follow SESSION, which was in the run OLD, show its present run NEW."
+  "Make the windows that follow SESSION, which was in the run OLD, show its present run NEW."
   (declare (ignore session))
   (when new
     (dolist (window (open-windows))
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
                (unless (live-p new) (publish watcher new)))
-              ((and old (not (eq old new)) (goes-along-p window old))
-               (take-along window new)))))))
+              ((and old (not (eq old new)) (follows-prompt-p window old))
+               (switch-window window new)))))))
 
 (attend ars-magna.cli:*whereabouts-hooks* follow-prompt)
 
@@ -53,7 +53,7 @@ prompt commands, or that it shows, or else another. NIL if other windows show al
 ;;; A plan of a live run breaks in a thread of its own, while ticks pass.
 
 (defun show-as-it-stands ()
-  "Let the windows on the run whose plans or ticks this thread runs show the present state."
+  "Make the windows on the run whose plans or ticks this thread runs show the present state."
   (dolist (window (open-windows))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
       (when simulation

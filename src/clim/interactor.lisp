@@ -31,7 +31,7 @@
 (defun asked-text (answers)
   "Return the text above the line being typed while ANSWERS, texts, are awaited; or NIL."
   (when answers
-    (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How does it go on? ~A"
+    (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How to continue? ~A"
             (and (rest answers) (length (rest answers))) (first answers))))
 
 (defun row-above (conversation text)
@@ -131,7 +131,7 @@
 (defun copy-text (window)
   "Offer the selection in the transcript of WINDOW, or else all of it, to other programs."
   (let ((pane (pane-named window 'transcript)))
-    (hold-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
+    (share-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
     (unless (selection pane)
       (hint window "Nothing is selected: everything in the commands was copied."))))
 
@@ -162,10 +162,10 @@
       (ars-magna.cli:interrupt-session (window-session window))
       (give-key (window-conversation window) key)))
 
-(defun press-in-window (window event)
+(defun do-key-in-window (window event)
   "Do what the key of EVENT does in the line being typed. True if it does anything."
   (let ((action (own-action event)) (key (key-of event)))
-    (cond ((press-in-popup window (clim:keyboard-event-key-name event)) t)
+    (cond ((do-key-in-popup window (clim:keyboard-event-key-name event)) t)
           (action (funcall action window) t)
           (key (take-key window key) t))))
 
@@ -212,14 +212,14 @@
   (focus-on pane)
   (repaint-if-changed pane))
 
-(defmethod click ((pane interactor-pane) button x y)
+(defmethod handle-click ((pane interactor-pane) button x y)
   (declare (ignore x y))
   (type-into pane)
   (when (eq button :middle)
     (with-guarded-command ((window-of pane) "Pasting") (paste-text (window-of pane) :primary))))
 
-(defmethod wheel ((pane interactor-pane) steps x y)
-  (wheel (pane-named (window-of pane) 'transcript) steps x y))
+(defmethod handle-wheel ((pane interactor-pane) steps x y)
+  (handle-wheel (pane-named (window-of pane) 'transcript) steps x y))
 
-(defmethod click :after ((pane transcript-pane) button x y)
-  (click (pane-named (window-of pane) 'interactor) button x y))
+(defmethod handle-click :after ((pane transcript-pane) button x y)
+  (handle-click (pane-named (window-of pane) 'interactor) button x y))

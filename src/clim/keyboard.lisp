@@ -39,7 +39,7 @@
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (line-shown (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow key-name)
-      (cond ((press-in-popup window key-name) t)
+      (cond ((do-key-in-popup window key-name) t)
             ((eq key-name :f10) (open-first-menu window) t)
             ((and (or (window-typing-p window) (and shown (string/= "" (second shown))))
                   character
@@ -65,7 +65,7 @@
   (let ((window (window-of pane)))
     (with-guarded-command (window "That key")
       (if (or (typep pane 'interactor-pane) (modified-p event))
-          (press-in-window window event)
+          (do-key-in-window window event)
           (do-key window (clim:keyboard-event-key-name event)
             (clim:keyboard-event-character event))))))
 

@@ -17,7 +17,7 @@
    (shown :initform nil :accessor pane-shown))
   (:documentation "The pane that holds all parts of the window."))
 
-(defun pane-wishes (layout) (window-wishes (clim:pane-frame layout)))
+(defun pane-preferences (layout) (window-preferences (clim:pane-frame layout)))
 
 (define-constant +first-size+ '(1180 820)
   :test #'equal
@@ -50,10 +50,10 @@
 
 (defun needs-now (layout)
   "Return lists (section pixels): the wanted height of each open section in LAYOUT's column."
-  (let* ((window (clim:pane-frame layout)) (wishes (pane-wishes layout))
-         (width (pane-size layout)) (column (details-width wishes width)))
-    (loop for section in (column-sections wishes width)
-          unless (member section (wishes-folded wishes))
+  (let* ((window (clim:pane-frame layout)) (preferences (pane-preferences layout))
+         (width (pane-size layout)) (column (details-width preferences width)))
+    (loop for section in (column-sections preferences width)
+          unless (member section (preferences-folded preferences))
             collect (list section
                           (section-need (pane-named window section) section column)))))
 
@@ -63,7 +63,7 @@
 
 (defun arranged (layout needs)
   "Return where all parts of LAYOUT belong if its sections need NEEDS."
-  (multiple-value-call #'arrange (pane-wishes layout) (need-in needs) (pane-size layout)
+  (multiple-value-call #'arrange (pane-preferences layout) (need-in needs) (pane-size layout)
     (rows-typed layout)))
 
 (defun rows-typed (layout)
@@ -92,7 +92,7 @@ if only that leaves enough for all, what they need now."
           most))))
 
 (defun places (layout)
-  "Return the places of all parts of the window, as the preferences of LAYOUT, their pane, say."
+  "Return the places of all parts of the window, by the preferences of LAYOUT, their pane."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -164,16 +164,16 @@ pixels wide.")
 ;;; Folding.
 
 (defun folded-p (window section)
-  (and (member section (wishes-folded (window-wishes window))) t))
+  (and (member section (preferences-folded (window-preferences window))) t))
 
 (defun fold (window section &optional (folded-p t))
   "Show only the title of SECTION in WINDOW; or, if FOLDED-P is false, all of it."
   (unless (eq folded-p (folded-p window section))
-    (let ((wishes (window-wishes window)))
-      (setf (wishes-folded wishes)
+    (let ((preferences (window-preferences window)))
+      (setf (preferences-folded preferences)
             (if folded-p
-                (cons section (wishes-folded wishes))
-                (remove section (wishes-folded wishes)))))
+                (cons section (preferences-folded preferences))
+                (remove section (preferences-folded preferences)))))
     (rearrange window)))
 
 ;;; Bars between parts of the window that can be dragged.
@@ -182,25 +182,25 @@ pixels wide.")
   (:default-initargs :background clim:+gray75+)
   (:documentation "A bar between two parts of the window that can be dragged."))
 
-(defgeneric drag-splitter (name wishes layout x y)
-  (:documentation "Change WISHES so that the splitter NAME is at X, Y of the pane LAYOUT.")
-  (:method ((name (eql 'side-splitter)) wishes layout x y)
+(defgeneric drag-splitter (name preferences layout x y)
+  (:documentation "Change PREFERENCES so that the splitter NAME is at X, Y of the pane LAYOUT.")
+  (:method ((name (eql 'side-splitter)) preferences layout x y)
     (declare (ignore y))
     (let* ((width (pane-size layout)) (right (max 120 (- width x +splitter+))))
-      (if (plan-column-p wishes width)
-          (setf (wishes-plan-width wishes)
-                (max 120 (- right (details-width wishes width) +splitter+)))
-          (setf (wishes-details-width wishes) right))))
-  (:method ((name (eql 'plan-splitter)) wishes layout x y)
+      (if (plan-column-p preferences width)
+          (setf (preferences-plan-width preferences)
+                (max 120 (- right (details-width preferences width) +splitter+)))
+          (setf (preferences-details-width preferences) right))))
+  (:method ((name (eql 'plan-splitter)) preferences layout x y)
     (declare (ignore y))
     ;; The world keeps its size: what one of the columns gains the other loses.
     (let* ((width (pane-size layout))
-           (both (+ (plan-width wishes width) (details-width wishes width))))
-      (setf (wishes-details-width wishes) (clamp (- width x +splitter+) 120 (- both 120))
-            (wishes-plan-width wishes) (- both (wishes-details-width wishes)))))
-  (:method ((name (eql 'low-splitter)) wishes layout x y)
+           (both (+ (plan-width preferences width) (details-width preferences width))))
+      (setf (preferences-details-width preferences) (clamp (- width x +splitter+) 120 (- both 120))
+            (preferences-plan-width preferences) (- both (preferences-details-width preferences)))))
+  (:method ((name (eql 'low-splitter)) preferences layout x y)
     (declare (ignore x))
-    (setf (wishes-transcript-height wishes)
+    (setf (preferences-transcript-height preferences)
           (max 40 (- (nth-value 1 (pane-size layout))
                      y +splitter+ +prompt-height+ +strip-height+)))))
 
@@ -208,7 +208,7 @@ pixels wide.")
 
 (defmethod paint ((pane splitter-pane)) (clear pane))
 
-(defmethod press ((pane splitter-pane) button x y)
+(defmethod handle-press ((pane splitter-pane) button x y)
   (declare (ignore button x y))
   (setf (pane-drag pane) t))
 
@@ -216,10 +216,10 @@ pixels wide.")
   (declare (ignore x y))
   "Drag to make the parts on either side larger or smaller")
 
-(defmethod drag ((pane splitter-pane) x y)
+(defmethod handle-drag ((pane splitter-pane) x y)
   (let ((layout (clim:sheet-parent pane)))
     (multiple-value-bind (x y) (place-outside pane x y)
-      (drag-splitter (clim:pane-name pane) (pane-wishes layout) layout x y)
+      (drag-splitter (clim:pane-name pane) (pane-preferences layout) layout x y)
       (rearrange (window-of pane)))))
 
 ;;;; Titles
@@ -236,7 +236,7 @@ pixels wide.")
   (let ((map (and (window-snapshot window) (window-map window)))
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))
-            (and simulation (ars-magna.cli:way-in simulation))
+            (and simulation (ars-magna.cli:trial-or-fork-text simulation))
             (and (rest (window-robots window)) (shown-robot window))
             (length (window-robots window)))))
 
@@ -270,7 +270,7 @@ pixels wide.")
     (transcript "")
     (t "Click to fold this display or to unfold it")))
 
-(defmethod click ((pane title-pane) button x y)
+(defmethod handle-click ((pane title-pane) button x y)
   (declare (ignore button))
   (let ((window (window-of pane)) (section (pane-section pane)))
     (cond ((foldable-p section)

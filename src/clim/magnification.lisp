@@ -58,7 +58,7 @@ pixels.")
 (defun window-magnification (window)
   "Return how many screen pixels wide a pixel of WINDOW is: by its user's choice, or else by the
 screen's resolution."
-  (or (wishes-magnification (window-wishes window)) (window-usual-magnification window)))
+  (or (preferences-magnification (window-preferences window)) (window-usual-magnification window)))
 
 (defun most-magnified (width height)
   "Return the largest magnification for a screen of WIDTH times HEIGHT pixels, or NIL for what is
@@ -80,5 +80,5 @@ per inch; NIL stands for what is not known."
             magnification)
          (say-in-window window "Larger than that not all would fit on this screen.~%"))
         ((/= magnification (window-magnification window))
-         (setf (wishes-magnification (window-wishes window)) magnification)
+         (setf (preferences-magnification (window-preferences window)) magnification)
          (rearrange window))))

@@ -132,13 +132,13 @@ and NIL for a gap."
 
 (defun menu-at (pane x y) (subject-at (pane-subjects pane) x y))
 
-(defmethod click ((pane menu-pane) button x y)
+(defmethod handle-click ((pane menu-pane) button x y)
   (declare (ignore button))
   (let ((menu (menu-at pane x y)))
     (when menu (open-menu-of-bar pane menu))))
 
-(defmethod press-past-popup ((pane menu-pane) button x y opener)
-  (unless (eq opener (menu-at pane x y)) (click pane button x y)))
+(defmethod handle-press-past-popup ((pane menu-pane) button x y opener)
+  (unless (eq opener (menu-at pane x y)) (handle-click pane button x y)))
 
 ;;; Keys in the menu or list on top of the window, and the key that opens it.
 
@@ -177,7 +177,7 @@ and NIL for a gap."
       (choose-row popup row)
       t)))
 
-(defun press-in-popup (window name)
+(defun do-key-in-popup (window name)
   "Do what the key called NAME does in the menu or list on top of WINDOW. True if anything."
   (let ((popup (window-popup window)))
     (when (popup-open-p window)

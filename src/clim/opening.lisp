@@ -2,56 +2,57 @@
 
 (in-package :ars-magna.clim)
 
-;;; Kept as long as this Lisp runs. The window that was closed last determines the preferences. A
-;;; new window of a robot gets the transcript of its last one.
+;;; Kept until this Lisp ends. A new window gets the preferences of the window that was closed last,
+;;; and the transcript of its robot's last window.
 
-(defvar *habits-lock* (make-lock "habits"))
-(defvar *habits* '()
+(defvar *last-settings-lock* (make-lock "settings"))
+(defvar *last-settings* '()
   "A list of layers, colour or not, and preferences of the window that was closed last; or NIL.")
 
 (defstruct (legacy (:copier nil))
   "What a window leaves to the next window of its robot: its LINES, newest first; what had been
-TYPED, or NIL; AWAY-P if it was in a trial or fork, which it has left; QUIET-P if its prompt hid
+TYPED, or NIL; LEFT-RUN-P if it was in a trial or fork, which it has left; QUIET-P if its prompt hid
 messages from commands of plans."
   (lines '() :type list :read-only t)
   (typed nil :type (or null string) :read-only t)
-  (away-p nil :read-only t)
+  (left-run-p nil :read-only t)
   (quiet-p nil :read-only t))
 
-(defvar *said* '()
+(defvar *legacies* '()
   "An alist from the names of robots to what their last windows have left.")
 
 (defun take-legacy (window legacy)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
     (setf (ars-magna.cli:session-quiet-p (window-session window)) (legacy-quiet-p legacy))
     (go-on-from transcript (legacy-lines legacy))
-    (when (legacy-away-p legacy)
+    (when (legacy-left-run-p legacy)
       (say transcript (format nil "From here on: ~A in ~A.~%" (shown-robot window)
                               (ars-magna.cli:words-for-run (window-simulation window)))))
     (when (legacy-typed legacy) (give-key conversation (legacy-typed legacy)))))
 
-(defun keep-habits (window)
-  (let* ((habits (list (window-layers window) (window-color-p window) (window-wishes window)))
+(defun keep-settings (window)
+  (let* ((settings (list (window-layers window) (window-color-p window)
+                         (window-preferences window)))
          (session (window-session window))
          (legacy (make-legacy :lines (transcript-lines (window-transcript window))
                               :typed (being-typed (window-conversation window))
-                              :away-p (and (ars-magna.cli:away-p session) t)
+                              :left-run-p (and (ars-magna.cli:in-trial-or-fork-p session) t)
                               :quiet-p (ars-magna.cli:session-quiet-p session))))
-    (with-lock (*habits-lock*)
-      (setf *habits* habits)
+    (with-lock (*last-settings-lock*)
+      (setf *last-settings* settings)
       (dolist (name (window-robots-shown window))
-        (setf *said* (acons name legacy (remove name *said* :key #'first)))))))
+        (setf *legacies* (acons name legacy (remove name *legacies* :key #'first)))))))
 
-(defun take-habits (window)
-  "Apply the user's earlier choices to WINDOW, which is new, and continue the earlier transcript."
-  (destructuring-bind (habits legacy)
-      (with-lock (*habits-lock*)
-        (list *habits* (rest (assoc (shown-robot window) *said*))))
-    (when habits
-      (destructuring-bind (layers color-p wishes) habits
+(defun take-settings (window)
+  "Apply the settings of earlier windows to WINDOW, which is new, and continue their transcript."
+  (destructuring-bind (settings legacy)
+      (with-lock (*last-settings-lock*)
+        (list *last-settings* (rest (assoc (shown-robot window) *legacies*))))
+    (when settings
+      (destructuring-bind (layers color-p preferences) settings
         (setf (window-layers window) layers
               (window-color-p window) color-p
-              (window-wishes window) (copy-wishes wishes))))
+              (window-preferences window) (copy-preferences preferences))))
     (if legacy
         (take-legacy window legacy)
         (ars-magna.cli:tell-first-messages (window-session window)))))
@@ -90,19 +91,19 @@ messages from commands of plans."
 (defun window-session (window)
   (conversation-session (window-conversation window)))
 
-(defun take-work-left (window)
+(defun clear-lost-prompt (window)
   "Clear the prompt of WINDOW, which is lost: the running line, waiting lines, a break. Return in
 words what was cleared, to follow a sentence."
   (let* ((session (window-session window))
          (line (busy-with (window-conversation window)))
-         (place (and (ars-magna.cli:away-p session)
+         (place (and (ars-magna.cli:in-trial-or-fork-p session)
                      (ars-magna.cli:words-for-run (window-simulation window))))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
     (ars-magna.cli:abandon-session session)
     (format nil "~@[. Its prompt was in ~A, which has been left~]~
                  ~@[. The line under way there was ended: ~A~]~
                  ~@[. These waited there and were not done: ~{~A~^; ~}~]~
-                 ~:[~;. What has broken there waits for an answer at another prompt~]"
+                 ~:[~;. The break there waits for an answer at another prompt~]"
             place
             (and line (cut (one-line line) 200))
             (loop for line in lines repeat 10 collect (cut (one-line line) 200))
@@ -110,19 +111,19 @@ words what was cleared, to follow a sentence."
 
 (defun run-to-tell (window)
   "Return the run whose messages report that WINDOW has closed: the run that it shows, or, for a
-trial or fork, which nobody watches any more, the run outside."
+trial or fork, which is no longer shown, the run outside."
   (let ((simulation (window-simulation window)))
-    (if (ars-magna.cli:away-p (window-session window))
+    (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
         (or (ars-magna.cli:run-of-robot (shown-robot window))
             (global-value '*simulation*)
             simulation)
         simulation)))
 
 (defun words-for-closing (window condition)
-  "Return a message that CONDITION, or a reason in words, has closed WINDOW: whether the run
+  "Return the message that CONDITION, or a reason in words, has closed WINDOW: whether the run
 continues, and how to see it again."
-  (format nil "The window of ~A has closed: ~A~:[~;. The run goes on; the ~
-               line WINDOW opens it anew~]"
+  (format nil "The window of ~A has closed: ~A~:[~;. The run continues; the ~
+               line WINDOW opens another~]"
           (shown-robot window)
           (one-line (text-of-condition condition))
           (and (window-simulation window) (not (over-p window)))))
@@ -132,7 +133,7 @@ continues, and how to see it again."
   (when (forget-window window)
     (let* ((simulation (run-to-tell window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
-      (warning-set (words-for-closing window condition) (take-work-left window)))))
+      (warning-set (words-for-closing window condition) (clear-lost-prompt window)))))
 
 ;;; Which robot a window shows.
 
@@ -188,9 +189,9 @@ prompt in that case, or another of the same run if another window shows that one
            (close-window window))
           (t (stay-when-over window reason)))))
 
-(defun agree-on-robot (window)
-  "Make the prompt of WINDOW, in whose thread this is, command the robot shown there; or, if its
-user has chosen another one of the same run, show that one."
+(defun match-robot (window)
+  "Make the prompt of WINDOW, whose thread this is, command the robot shown there; or, if its user
+has chosen another one of the same run, show that one."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
       (when reason (leave-run window reason)))
@@ -233,7 +234,7 @@ user has chosen another one of the same run, show that one."
            (error (condition) (warn-of-closing window condition))
            (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
       (warn-of-closing window "its thread was ended")
-      (keep-habits window)
+      (keep-settings window)
       (ars-magna.cli:end-session (window-session window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.
@@ -261,7 +262,7 @@ user has chosen another one of the same run, show that one."
                           :usual-magnification (multiple-value-call #'usual-magnification
                                                  (screen-resolution port)
                                                  (graft-size (clim:find-graft :port port)))))
-    (take-habits window)
+    (take-settings window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window window))
@@ -272,14 +273,14 @@ user has chosen another one of the same run, show that one."
   (find (current-thread) (open-windows)
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
-(defun windows-to-lead ()
+(defun switchable-windows ()
   "Return the open windows that this thread may switch to another run, its own first; no other
 windows whose prompts are in a trial or fork."
   (let ((own (own-window)))
     (append (and own (list own))
             (remove-if (lambda (window)
                          (or (eq window own)
-                             (ars-magna.cli:away-p (window-session window))))
+                             (ars-magna.cli:in-trial-or-fork-p (window-session window))))
                        (open-windows)))))
 
 (defun over-p (window)
@@ -288,13 +289,13 @@ windows whose prompts are in a trial or fork."
 
 (defun window-for (robot)
   "Return the open window that is to show ROBOT, as OPEN-WINDOW says, or NIL."
-  (let ((windows (windows-to-lead)) (simulation (robot-simulation robot)))
+  (let ((windows (switchable-windows)) (simulation (robot-simulation robot)))
     (or (find (robot-name robot) windows :key #'shown-robot)
         (and (not (live-p simulation))
              (find simulation windows :key #'window-simulation))
         (find-if #'over-p windows))))
 
-(defun lead-window (window robot)
+(defun switch-to-robot (window robot)
   "Show ROBOT in WINDOW; its prompt says so unless it was the one that asked."
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
@@ -302,13 +303,12 @@ windows whose prompts are in a trial or fork."
       (ars-magna.cli:tell-of-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window: in the one that it has, or that shows the trial or fork that it is in, in
-one whose run is over, or else in a new one. It comes to the front. Return the window. Signals
-MISUSE if there is no X server."
+  "Show ROBOT in a window: its own, one that shows its trial or fork, one whose run is over, or
+else a new one. It comes to the front. Return the window. Signals MISUSE if there is no X server."
   (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
-               (lead-window window robot))
+               (switch-to-robot window robot))
              (call-in-window #'show-in-front window)
              window))))
 

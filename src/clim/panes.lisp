@@ -59,7 +59,7 @@
    ;; Where the mouse was clicked last, as (x y).
    (clicked :initform nil :accessor pane-clicked)
    ;; What the mouse drags, with its button down: NIL for nothing.
-   (drag :initform nil :accessor pane-drag))
+   (handle-drag :initform nil :accessor pane-drag))
   (:default-initargs :background clim:+white+)
   (:documentation "A pane that shows one of the displays."))
 
@@ -133,25 +133,25 @@ cut; record what was painted where."
 
 (defconstant +scroll-step+ (* 3 +line-height+) "How far a turn of the wheel scrolls, in pixels.")
 
-(defgeneric press (pane button x y)
+(defgeneric handle-press (pane button x y)
   (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE.")
-  (:method (pane button x y) (click pane button x y)))
+  (:method (pane button x y) (handle-click pane button x y)))
 
-(defgeneric click (pane button x y)
+(defgeneric handle-click (pane button x y)
   (:documentation "The mouse was clicked with BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE."))
 
-(defgeneric drag (pane x y)
+(defgeneric handle-drag (pane x y)
   (:documentation "The mouse moved to X, Y of PANE while what (PANE-DRAG PANE) says is dragged.")
   (:method (pane x y) (declare (ignore pane x y))))
 
-(defgeneric drop (pane x y)
+(defgeneric handle-drop (pane x y)
   (:documentation "The mouse's button, which dragged something, was released at X, Y of PANE.")
   (:method (pane x y) (declare (ignore pane x y))))
 
-(defgeneric hover (pane x y)
+(defgeneric handle-hover (pane x y)
   (:documentation "The mouse moved to X, Y of PANE with no button pressed."))
 
-(defgeneric wheel (pane steps x y)
+(defgeneric handle-wheel (pane steps x y)
   (:documentation "The mouse's wheel was turned by STEPS, down if positive, at X, Y of PANE.")
   (:method (pane steps x y)
     (declare (ignore x y))

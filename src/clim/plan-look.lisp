@@ -10,8 +10,8 @@
 (defconstant +most-rows+ 300 "Most tasks, or rows of a timeline, that are shown.")
 (defconstant +longest-trace+ 200000
   "A trace with more entries than this gets no timeline automatically.")
-(defconstant +idleness+ 9 "Plans are left alone after a look for this many times as long as the look
-took.")
+(defconstant +rest-factor+ 9
+  "After a look, plans are left alone for this many times as long as the look took.")
 
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
   "The state of looking at the plans of SIMULATION. VIEW is the display, :TREE or :TIMELINE;
@@ -104,7 +104,7 @@ reactions. Return its value, or :BUSY."
   (let ((began (seconds-now)))
     (when (see-plans look interface)
       (setf (plan-look-mark look) mark
-            (plan-look-due look) (+ (seconds-now) (* +idleness+ (- (seconds-now) began))))
+            (plan-look-due look) (+ (seconds-now) (* +rest-factor+ (- (seconds-now) began))))
       t)))
 
 (defun look-at-plans (look)

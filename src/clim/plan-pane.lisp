@@ -225,7 +225,7 @@
       (give-line (window-conversation (window-of pane)) (rewind-line tick))
       (hint (window-of pane) "That is now.")))
 
-(defmethod click ((pane plan-pane) button x y)
+(defmethod handle-click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))
     (cond ((typep subject '(or button fold-mark))
            (when (eq button :left)

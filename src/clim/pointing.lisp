@@ -14,7 +14,7 @@
     (setf (window-pointed (window-of pane)) (list pane x y text))
     (hint (window-of pane) text)))
 
-(defmethod hover ((pane display-pane) x y) (point-at-place pane x y))
+(defmethod handle-hover ((pane display-pane) x y) (point-at-place pane x y))
 
 ;; If the strip shows something else meanwhile, that stays until the mouse moves.
 (defun point-again (pane)
@@ -46,7 +46,7 @@
 (defun point-at-mouse (window)
   "Describe in the strip of WINDOW what is under the mouse now, though it has not moved."
   (multiple-value-bind (pane x y) (pane-at-mouse window)
-    (when pane (hover pane x y))))
+    (when pane (handle-hover pane x y))))
 
 (defmethod describe-subject (subject stream) (format stream "~A~%" (subject-title subject)))
 
@@ -68,17 +68,17 @@
   (select window subject)
   (describe-to window subject))
 
-(defconstant +shake+ 4 "By how many pixels the mouse may move in a click.")
+(defconstant +click-slack+ 4 "By how many pixels the mouse may move in a click.")
 
-(defun beyond-shake-p (x y from-x from-y)
-  (> (max (abs (- x from-x)) (abs (- y from-y))) +shake+))
+(defun moved-far-p (x y from-x from-y)
+  (> (max (abs (- x from-x)) (abs (- y from-y))) +click-slack+))
 
 (defun pick-next (pane x y)
   "Select what is at X, Y of PANE; after an earlier click there, the next of what overlaps."
   (let* ((window (window-of pane)) (subjects (subjects-under pane x y))
          (before (shiftf (pane-clicked pane) (list x y)))
          (picked (and before
-                      (not (apply #'beyond-shake-p x y before))
+                      (not (apply #'moved-far-p x y before))
                       (member (window-selection window) subjects
                               :key #'subject-key :test #'equal))))
     (pick window (or (second picked) (first subjects)))))
@@ -91,7 +91,7 @@
       (multiple-value-bind (x y) (place-outside pane x y)
         (offer-at window subjects x y)))))
 
-(defmethod click ((pane display-pane) button x y)
+(defmethod handle-click ((pane display-pane) button x y)
   (if (eq button :right)
       (offer pane (picked-first (window-of pane) (subjects-under pane x y)) x y)
       (pick-next pane x y)))
@@ -101,7 +101,7 @@
 
 (defclass designators-pane (detail-pane) ())
 
-(defmethod click ((pane designators-pane) button x y)
+(defmethod handle-click ((pane designators-pane) button x y)
   (cond ((eq button :middle)
          (offer pane (subjects-under pane x y) x y))
         ((not (scrollable-p pane)) (call-next-method))
@@ -116,40 +116,40 @@
           ((eql button clim:+pointer-right-button+) :right)
           (t :middle))))
 
-(defun press-somewhere (pane button x y)
+(defun route-press (pane button x y)
   "The mouse's BUTTON was pressed at X, Y of PANE: on its scroll bar, or on what it shows."
   (cond ((on-scroll-bar-p pane x)
          (setf (pane-drag pane) :scroll-bar)
          (drag-scroll-bar pane y))
-        (t (press pane button x y))))
+        (t (handle-press pane button x y))))
 
-(defgeneric press-past-popup (pane button x y opener)
+(defgeneric handle-press-past-popup (pane button x y opener)
   (:documentation "The mouse's BUTTON was pressed at X, Y of PANE, which has closed the popup that
 OPENER had opened.")
   (:method (pane button x y opener)
     (declare (ignore opener))
-    (unless (eq button :left) (press-somewhere pane button x y)))
+    (unless (eq button :left) (route-press pane button x y)))
   ;; A button opens its own panel at once, but only closes that if it is open.
   (:method ((pane bar-pane) button x y opener)
     (let ((pressed (subject-at (pane-subjects pane) x y)))
       (when (and pressed (not (eq opener (button-command pressed))))
-        (press-somewhere pane button x y)))))
+        (route-press pane button x y)))))
 
 (defun take-press (pane button x y)
   "The mouse's BUTTON was pressed at X, Y of PANE, which may not be the popup that is open."
   (take-keys pane)
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
     (if opener
-        (press-past-popup pane button x y opener)
-        (press-somewhere pane button x y))))
+        (handle-press-past-popup pane button x y opener)
+        (route-press pane button x y))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
   (multiple-value-call #'take-press pane (button-name event) (event-place pane event)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))
-  (let ((drag (pane-drag pane)))
-    (unless (member drag '(nil :scroll-bar))
-      (multiple-value-call #'drop pane (event-place pane event)))
+  (let ((dragged (pane-drag pane)))
+    (unless (member dragged '(nil :scroll-bar))
+      (multiple-value-call #'handle-drop pane (event-place pane event)))
     (setf (pane-drag pane) nil)
     (point-at-mouse (window-of pane))))
 
@@ -175,9 +175,9 @@ OPENER had opened.")
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
   (multiple-value-bind (x y) (event-place pane event)
     (case (pane-drag pane)
-      ((nil) (unless (dragging-pane (window-of pane)) (hover pane x y)))
+      ((nil) (unless (dragging-pane (window-of pane)) (handle-hover pane x y)))
       (:scroll-bar (drag-scroll-bar pane y))
-      (t (drag pane x y)))))
+      (t (handle-drag pane x y)))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
   (unless (dragging-pane (window-of pane))
@@ -189,7 +189,7 @@ OPENER had opened.")
   (let ((steps (position (clim:pointer-event-button event)
                          (list clim:+pointer-wheel-up+ nil clim:+pointer-wheel-down+))))
     (when steps
-      (multiple-value-call #'wheel pane (1- steps) (event-place pane event)))))
+      (multiple-value-call #'handle-wheel pane (1- steps) (event-place pane event)))))
 
 ;;; What is shown of the robot's parts.
 
@@ -206,18 +206,18 @@ OPENER had opened.")
            (format nil "~A is ~A: only lines take it out." name (thing-image-location image)))
           (t (format nil "~A can be dragged where it lies in the world." name)))))
 
-(defmethod press ((pane detail-pane) button x y)
+(defmethod handle-press ((pane detail-pane) button x y)
   (let ((thing (find-if (lambda (subject) (typep subject 'thing-image))
                         (subjects-under pane x y))))
     (if (and thing (eq button :left))
         (setf (pane-drag pane) (list thing x y nil))
-        (click pane button x y))))
+        (handle-click pane button x y))))
 
-(defmethod drag ((pane detail-pane) x y)
+(defmethod handle-drag ((pane detail-pane) x y)
   (destructuring-bind (thing from-x from-y moved-p) (pane-drag pane)
-    (when (and (not moved-p) (beyond-shake-p x y from-x from-y))
+    (when (and (not moved-p) (moved-far-p x y from-x from-y))
       (setf (pane-drag pane) (list thing from-x from-y t))
       (hint (window-of pane) (instead-of-dragging thing (window-of pane))))))
 
-(defmethod drop ((pane detail-pane) x y)
-  (unless (fourth (pane-drag pane)) (click pane :left x y)))
+(defmethod handle-drop ((pane detail-pane) x y)
+  (unless (fourth (pane-drag pane)) (handle-click pane :left x y)))

@@ -123,11 +123,11 @@ so, a symbol, or the menu, or T."
       (with-guarded-command (window (row-text row)) (funcall (row-action row))))
     (when (popup-open-p window) (repaint pane))))
 
-(defmethod click ((pane popup-pane) button x y)
+(defmethod handle-click ((pane popup-pane) button x y)
   (declare (ignore button x))
   (choose-row pane (row-at pane y)))
 
-(defmethod hover ((pane popup-pane) x y)
+(defmethod handle-hover ((pane popup-pane) x y)
   (declare (ignore x))
   (setf (pane-pointed pane) (row-at pane y))
   (repaint-if-changed pane))

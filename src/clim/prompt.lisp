@@ -1,4 +1,4 @@
-;;;; prompt.lisp -- each window has a prompt of its own, the same as the terminal's.
+;;;; prompt.lisp -- the prompt that each window has, the same as the terminal's.
 
 (in-package :ars-magna.clim)
 
@@ -43,7 +43,7 @@ being typed."))
                  (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)
                          (ars-magna.cli:drawn-line-text line)))))
 
-;; That is said where the line is shown, and in the strip, for as long as it is so.
+;; The interactor and the strip say so meanwhile.
 (defmethod ars-magna.cli:tell-asking ((console window-console))
   (tell-news console))
 
@@ -76,7 +76,7 @@ this thread."
                                 :stream (make-instance 'transcript-stream
                                                        :transcript transcript))))
     (make-conversation (ars-magna.cli:make-session
-                        :input (ars-magna.cli:make-handed-text console) :output console
+                        :input (ars-magna.cli:make-window-text console) :output console
                         :color :always :place place
                         :package (ars-magna.cli:package-of-caller))
                        console over)))
@@ -102,8 +102,8 @@ this thread."
 (defun restart-if-lost (conversation simulation robot-name)
   "If the thread of the prompt was ended, as a line or a program may do to any, start it again."
   (when (conversation-lost-p conversation)
-    (say-in conversation "The thread of this prompt was ended, and with it the line under way. ~
-                          It begins anew.~%")
+    (say-in conversation "The thread of this prompt was ended, and with it the running line. ~
+                          A new thread starts.~%")
     (start-conversation conversation simulation robot-name)))
 
 (defun being-typed (conversation)
@@ -118,12 +118,12 @@ this thread."
   (say (console-transcript (conversation-console conversation)) (apply #'format nil arguments)))
 
 (defun tell-to-answer (conversation what)
-  (say-in conversation "~A: first say how what has broken goes on, by one of ~A.~%"
+  (say-in conversation "~A: first answer the break, with one of ~A.~%"
           what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
 ;; While a break waits for an answer, other lines would be taken for a wrong answer.
 (defun answered-first-p (conversation line)
-  "True if the prompt waits for an answer that LINE is not; then that is said."
+  "True if the prompt waits for an answer, and LINE is none; then say so."
   (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))
              (not (ars-magna.cli:answers-break-p line)))
     (tell-to-answer conversation (string-upcase (string-right-trim " " line)))
@@ -136,8 +136,8 @@ this thread."
     (tell-news (conversation-console conversation))))
 
 (defun give-key (conversation key)
-  (ars-magna.cli:press-key (ars-magna.cli:session-input (conversation-session conversation)) key)
-  ;; Where nobody reads it yet, it is to be seen all the same.
+  (ars-magna.cli:send-key (ars-magna.cli:session-input (conversation-session conversation)) key)
+  ;; It is shown even before it is read.
   (tell-news (conversation-console conversation)))
 
 (defun begin-line-with (conversation text)

@@ -178,7 +178,7 @@ newest: no line that is no longer kept, and a whole page of them."
 (defmethod scroll-to ((pane transcript-pane) position)
   (scroll-lines pane (round (- position (scroll-state pane)))))
 
-(defmethod wheel ((pane transcript-pane) steps x y)
+(defmethod handle-wheel ((pane transcript-pane) steps x y)
   (declare (ignore x y))
   (scroll-lines pane (* 3 steps)))
 
@@ -207,20 +207,20 @@ newest: no line that is no longer kept, and a whole page of them."
                   (mapcar #'ars-magna.cli:unpainted-text
                           (latest-lines transcript (transcript-count transcript))))))))
 
-(defmethod click ((pane transcript-pane) button x y)
+(defmethod handle-click ((pane transcript-pane) button x y)
   (when (eq button :left)
     (setf (pane-drag pane) :text
           (pane-mark pane) (place-at pane x y)
           (pane-point pane) (pane-mark pane))
     (repaint-if-changed pane)))
 
-(defmethod drag ((pane transcript-pane) x y)
+(defmethod handle-drag ((pane transcript-pane) x y)
   (setf (pane-point pane) (place-at pane x y))
   (repaint-if-changed pane))
 
-(defmethod drop ((pane transcript-pane) x y)
+(defmethod handle-drop ((pane transcript-pane) x y)
   (declare (ignore x y))
-  (when (selection pane) (hold-text (clim:port pane) (selected-text pane) '(:primary))))
+  (when (selection pane) (share-text (clim:port pane) (selected-text pane) '(:primary))))
 
-(defmethod hover ((pane transcript-pane) x y)
+(defmethod handle-hover ((pane transcript-pane) x y)
   (declare (ignore x y)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.clim)
 
-;;; The thread of a window handles its mouse and its keys. If it waited in a debugger, nobody could
+;;; The thread of a window handles its mouse and its keys. If it waited in a debugger, no one could
 ;;; answer there.
 
 (defun refuse-debugger (condition hook)
@@ -23,7 +23,7 @@
       (say-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
 
 (defmacro with-guarded-command ((window title) &body body)
-  "Run BODY, the work of the command TITLE; what goes wrong is said in WINDOW."
+  "Run BODY, the work of the command TITLE; write its error, if any, into WINDOW."
   `(call-guarded-command ,window ,title (lambda () ,@body)))
 
 ;;;; The transcript
@@ -72,7 +72,7 @@
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
     (setf (transcript-lines transcript)
           (append (subseq (transcript-lines transcript) 0 (1- +transcript-length+))
-                  (list "(What was said before this is kept no longer.)"))
+                  (list "(Earlier lines are no longer kept.)"))
           (transcript-count transcript) +transcript-length+)))
 
 (defun call-changing-transcript (transcript function)
@@ -87,7 +87,7 @@
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
 (defun say-in-window (window &rest arguments)
-  "Add to what WINDOW has said the text that FORMAT makes of ARGUMENTS."
+  "Add the text that FORMAT makes of ARGUMENTS to the transcript of WINDOW."
   (say (window-transcript window) (apply #'format nil arguments)))
 
 (defun say-entered (transcript text)

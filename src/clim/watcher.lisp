@@ -10,7 +10,7 @@ number or :FREE, or NIL; REACHED in ticks a second, or NIL if that is not known.
   (rate nil :read-only t)
   (reached nil :type (or null real) :read-only t))
 
-(defstruct (pulse (:copier nil))
+(defstruct (sample (:copier nil))
   "The last look at a run: its tick and the number of calls of user code then; the tick and second
 at which measuring the rate began, and that rate."
   (last-tick 0 :type fixnum)
@@ -25,8 +25,8 @@ at which measuring the rate began, and that rate."
     (:paused "paused")
     (:still "not live: ticks pass when a program asks for them")
     (:forked "in a fork: ticks pass when lines ask for them")
-    (:ended "the trial is over: TRIAL OFF leads out")
-    (:stopped "stopped: the line RESUME goes on")
+    (:ended "the trial is over: TRIAL OFF leaves it")
+    (:stopped "stopped: the line RESUME continues")
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
     (:waiting "waiting for a plan")
@@ -46,11 +46,11 @@ at which measuring the rate began, and that rate."
 
 ;;; Looking.
 
-(defun busy-p (simulation pulse)
+(defun busy-p (simulation sample)
   "Return in words which code of users has kept SIMULATION waiting since the last look, or NIL."
   (multiple-value-bind (text calls) (users-code-under-way simulation)
-    (and (eql calls (shiftf (pulse-calls pulse) calls))
-         (= (simulation-tick simulation) (pulse-last-tick pulse))
+    (and (eql calls (shiftf (sample-calls sample) calls))
+         (= (simulation-tick simulation) (sample-last-tick sample))
          text)))
 
 (defun rate-set (simulation)
@@ -65,9 +65,9 @@ at which measuring the rate began, and that rate."
       (paused-p simulation)
       (eq :paused (ars-magna.cli:pace-of simulation))))
 
-(defun state-of (simulation pulse)
+(defun state-of (simulation sample)
   "Return the state of SIMULATION, and NIL or a text that continues its name."
-  (let ((busy (busy-p simulation pulse)))
+  (let ((busy (busy-p simulation sample)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:pace-of simulation))))
            :over)
@@ -84,33 +84,33 @@ at which measuring the rate began, and that rate."
 
 (defconstant +measure+ 10 "From how many ticks on a rate is measured.")
 
-(defun begin-measuring (pulse tick seconds)
-  (setf (pulse-tick pulse) tick
-        (pulse-seconds pulse) seconds))
+(defun begin-measuring (sample tick seconds)
+  (setf (sample-tick sample) tick
+        (sample-seconds sample) seconds))
 
-(defun measure (pulse tick seconds)
+(defun measure (sample tick seconds)
   "Return how many ticks a second have passed of late; it is TICK at SECONDS."
-  (let ((ticks (- tick (pulse-tick pulse))) (elapsed (- seconds (pulse-seconds pulse))))
+  (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
     (when (or (minusp ticks) (and (> elapsed 0.9) (or (>= ticks +measure+) (> elapsed 5))))
-      ;; Without the digits that nobody wants.
-      (setf (pulse-reached pulse)
+      ;; Rounded to useful digits.
+      (setf (sample-reached sample)
             (unless (minusp ticks)
               (let ((rate (/ ticks elapsed)))
                 (if (< rate 20) (/ (round rate 1/10) 10) (round rate)))))
-      (begin-measuring pulse tick seconds))
-    (pulse-reached pulse)))
+      (begin-measuring sample tick seconds))
+    (sample-reached sample)))
 
-(defun progress-of (simulation pulse)
-  "Return the state of time in SIMULATION; PULSE has the last look."
-  (multiple-value-bind (state more) (state-of simulation pulse)
+(defun progress-of (simulation sample)
+  "Return the state of time in SIMULATION; SAMPLE has the last look."
+  (multiple-value-bind (state more) (state-of simulation sample)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
-      (setf (pulse-last-tick pulse) tick)
+      (setf (sample-last-tick sample) tick)
       (unless (eq state :running)
-        (setf (pulse-reached pulse) nil)
-        (begin-measuring pulse tick seconds))
+        (setf (sample-reached sample) nil)
+        (begin-measuring sample tick seconds))
       (make-progress :state state :more more
                      :rate (rate-set simulation)
-                     :reached (and (eq state :running) (measure pulse tick seconds))))))
+                     :reached (and (eq state :running) (measure sample tick seconds))))))
 
 ;;;; Snapshots
 
@@ -151,7 +151,7 @@ is watched has been over for a while."
   (unpaced-p nil :type boolean)
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
-  (pulse (make-pulse) :type pulse)
+  (sample (make-sample) :type sample)
   ;; What is known of the plans.
   (plans (make-plan-look) :type plan-look :read-only t)
   ;; What GRAPHICS-SCALE* was when that was looked at last.
@@ -176,7 +176,7 @@ is watched has been over for a while."
   (funcall (watcher-news watcher)))
 
 (defun painted (watcher)
-  "Say that the last snapshot of WATCHER has been painted: the next may come."
+  "Note that the last snapshot of WATCHER was painted, so that the next may come."
   (signal-semaphore (watcher-painted watcher)))
 
 (defun fetch (watcher)
@@ -196,8 +196,8 @@ itself: it will come with the next tick."
       (fetch watcher))))
 
 ;; A run that is being started again is over for a moment.
-(defun look-whether-over (watcher)
-  "Tell of it if the run that WATCHER watches is over, and was so when it was looked for before."
+(defun check-run-over (watcher)
+  "Report, at the second look, that the run that WATCHER watches is over."
   (let* ((simulation (watcher-simulation watcher))
          (reason (and simulation (simulation-over simulation))))
     (when (and reason (watcher-over-before-p watcher))
@@ -209,7 +209,7 @@ itself: it will come with the next tick."
   (let ((simulation (watcher-simulation watcher)))
     (when simulation
       ;; The run continues meanwhile, and a look may come when something is half done.
-      (let ((new (or (ignore-errors (progress-of simulation (watcher-pulse watcher)))
+      (let ((new (or (ignore-errors (progress-of simulation (watcher-sample watcher)))
                      (watcher-progress watcher))))
         (unless (equalp new (watcher-progress watcher))
           (setf (watcher-progress watcher) new)
@@ -223,13 +223,13 @@ itself: it will come with the next tick."
   (when (look-at-plans (watcher-plans watcher))
     (funcall (watcher-news watcher))))
 
-(defun look-around (watcher)
+(defun look-for-changes (watcher)
   "Look for what no observer tells of."
   (look-for-plans watcher)
   (look-at-progress watcher)
   (look-at-scale watcher)
   (fetch-if-changed watcher)
-  (look-whether-over watcher))
+  (check-run-over watcher))
 
 (defun run-pacer (watcher)
   (loop with next = (seconds-now)
@@ -242,7 +242,7 @@ itself: it will come with the next tick."
              (when (watcher-stale-p watcher) (fetch watcher)))
            (when (<= next (seconds-now))
              (setf next (+ (seconds-now) +patience+))
-             (look-around watcher))))
+             (look-for-changes watcher))))
 
 ;;; Beginning and ending.
 
@@ -262,8 +262,8 @@ itself: it will come with the next tick."
                                          (if (watcher-wanted-p watcher)
                                              (publish watcher simulation)
                                              (setf (watcher-stale-p watcher) t)))
-            (watcher-pulse watcher) (make-pulse :last-tick tick :tick tick
-                                                :seconds (seconds-now))
+            (watcher-sample watcher) (make-sample :last-tick tick :tick tick
+                                                  :seconds (seconds-now))
             (watcher-simulation watcher) simulation)
       (leave-simulation old observer)
       (direct-look (watcher-plans watcher) simulation)

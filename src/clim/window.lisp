@@ -30,7 +30,7 @@
    (usual-magnification :initarg :usual-magnification :initform 1
                         :reader window-usual-magnification)
    ;; The user's preferences for the arrangement.
-   (wishes :initform (make-wishes) :accessor window-wishes)
+   (preferences :initform (make-preferences) :accessor window-preferences)
    (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
    ;; The names of the robots that it has shown.
@@ -88,7 +88,7 @@
           (window-conversation window)
           (begin-conversation (window-transcript window)
                               (lambda () (values-list (window-text-size window)))
-                              (lambda () (agree-on-robot window))
+                              (lambda () (match-robot window))
                               (lambda () (close-window window))))
     (push (watcher-robot watcher) (window-robots-shown window))
     (say-in-window window "Type a command below and press return, or choose one from a menu. HELP ~

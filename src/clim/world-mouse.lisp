@@ -6,7 +6,7 @@
 ;;; stands still, it drags things and robots to another place: a ghost shows where, and the prompt
 ;;; then gets the line that a user would type. (PANE-DRAG PANE) is (subject from-x from-y moved-p).
 
-(defmethod wheel ((pane world-pane) steps x y)
+(defmethod handle-wheel ((pane world-pane) steps x y)
   (zoom pane (expt 2 (- (signum steps))) x y))
 
 (defun point-at (pane x y)
@@ -30,10 +30,10 @@
     (format nil "~{~A~^; ~}"
             (cl:mapcar #'subject-text (if cell (cons cell (remove cell subjects)) subjects)))))
 
-(defmethod press ((pane world-pane) button x y)
+(defmethod handle-press ((pane world-pane) button x y)
   (if (eq button :left)
       (setf (pane-drag pane) (list (grip-at pane x y) x y nil))
-      (click pane button x y)))
+      (handle-click pane button x y)))
 
 ;;; Dragging.
 
@@ -70,9 +70,9 @@ at its middle, whatever it stands on, or the smallest subject there."
        (let ((simulation (window-simulation (window-of pane))))
          (or (paused-p simulation) (not (live-p simulation)) (idle-p simulation)))))
 
-(defmethod drag ((pane world-pane) x y)
+(defmethod handle-drag ((pane world-pane) x y)
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
-    (when (or moved-p (beyond-shake-p x y from-x from-y))
+    (when (or moved-p (moved-far-p x y from-x from-y))
       (cond ((movable-p pane subject)
              (setf (pane-drag pane) (list subject from-x from-y t))
              (show-ghost pane subject x y))
@@ -119,8 +119,8 @@ at its middle, whatever it stands on, or the smallest subject there."
         (hint window "That is not on the map."))
     (repaint-if-changed pane)))
 
-(defmethod drop ((pane world-pane) x y)
+(defmethod handle-drop ((pane world-pane) x y)
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
     (declare (ignore from-x from-y))
-    (cond ((not moved-p) (click pane :left x y))
+    (cond ((not moved-p) (handle-click pane :left x y))
           (subject (drop-subject pane subject x y)))))

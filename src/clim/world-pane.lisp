@@ -128,8 +128,8 @@
 
 ;;; Before each picture.
 
-(defun obey-scale (pane)
-  "If the user has set GRAPHICS-SCALE*, let it be the scale of the view of PANE, unless it is none."
+(defun apply-user-scale (pane)
+  "If the user has set a valid GRAPHICS-SCALE*, make it the scale of the view of PANE."
   (unless (eql graphics-scale* (shiftf (pane-scale-seen pane) graphics-scale*))
     (when (handler-case (progn (users-scale) t)
             (misuse () nil))
@@ -141,7 +141,7 @@
   "Move the view of PANE to where it should be for its next picture."
   (multiple-value-bind (width height) (pane-size pane)
     (let ((key (list width height (view-map pane) (pane-edges pane))))
-      (obey-scale pane)
+      (apply-user-scale pane)
       (cond ((pane-fitting-p pane)
              (unless (equal key (pane-fitted pane)) (fit-view pane)))
             ((and (pane-following-p pane) (off-centre-p pane))

@@ -58,7 +58,7 @@ for, or NIL.")
     (call-next-method)))
 
 (defun muffle-servers-warning (condition)
-  "If CONDITION is McCLIM's warning of what the X server could not do, say nothing of it."
+  "Muffle CONDITION if it is McCLIM's warning of what the X server could not do."
   (when (eql 0 (search "Received CLX" (princ-to-string condition)))
     (muffle-warning condition)))
 
@@ -72,7 +72,7 @@ for, or NIL.")
 ;; McCLIM warns of what the server could not do at once, such as giving the focus to a window that
 ;; is just being hidden. That is harmless and not shown at the terminal.
 (defun call-dropping-trouble (port function)
-  "Call FUNCTION, which reads an event of PORT; if that makes trouble, drop it, or lose PORT."
+  "Call FUNCTION, which reads an event of PORT; on an error, drop the event, or lose PORT."
   (handler-bind ((warning #'muffle-warning)
                  (error (lambda (condition)
                           ;; An error from one event does not mean that the connection is lost.
@@ -98,7 +98,7 @@ for, or NIL.")
   (mapc #'request-refresh (windows-on port)))
 
 (defun read-events-again (port)
-  "See to it that the events of PORT are read, if that has ended."
+  "Read the events of PORT in a new thread, if the one that did so has ended."
   (when (with-lock (*windows-lock*)
           (member port (shiftf *unread-ports* (remove port *unread-ports*))))
     (start-thread (lambda () (loop (clim:process-next-event port))) "events of windows")))

@@ -1,4 +1,4 @@
-;;;; breakage.lisp -- reporting breaks and reading programs to users, and choosing whom to ask.
+;;;; break-requests.lisp -- reporting breaks and reading programs; which users are asked.
 
 (in-package :ars-magna.cli)
 
@@ -10,9 +10,9 @@
 
 ;;; What the user sees.
 
-(defun whereabouts (session breakage)
-  "Return in words where BREAKAGE is, if not in the thread of SESSION."
-  (words-for-thread session (breakage-thread breakage)))
+(defun whereabouts (session break-request)
+  "Return in words where BREAK-REQUEST is, if not in the thread of SESSION."
+  (words-for-thread session (break-request-thread break-request)))
 
 (defun words-for-thread (session thread)
   "Return in words what THREAD is, if not that of SESSION."
@@ -25,56 +25,56 @@
   (let ((simulation (session-simulation session)))
     (and simulation (eq thread (simulation-thread simulation)))))
 
-(defun break-text (session breakage)
+(defun break-text (session break-request)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
                A number chooses. BACKTRACE, PLAN-TREE tell where it is; (...) is Lisp.~%"
-          (break-words (breakage-condition breakage))
-          (whereabouts session breakage)
-          (loop for restart in (breakage-restarts breakage)
+          (break-words (break-request-condition break-request))
+          (whereabouts session break-request)
+          (loop for restart in (break-request-restarts break-request)
                 for number from 0
                 collect (list number (plain-name (restart-name restart))
                               (complaint-text (own-text restart))))))
 
-(defun tell-break (session breakage)
+(defun tell-break (session break-request)
   "Show what has happened, and make the present prompt the debugger's."
   (let ((console (session-console session)))
-    (setf (breakage-told-p breakage) t)
-    (write-fitted console "~A" (break-text session breakage))
+    (setf (break-request-told-p break-request) t)
+    (write-fitted console "~A" (break-text session break-request))
     (if (console-prompt console)
         (show-prompt console "Break> ")
         (finish-output console))))
 
-(defun tell-waiting (session breakage)
+(defun tell-waiting (session break-request)
   (let ((console (session-console session)))
     (write-fitted console
                   "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is answered.~%"
-                  (break-words (breakage-condition breakage))
-                  (whereabouts session breakage))
+                  (break-words (break-request-condition break-request))
+                  (whereabouts session break-request))
     (restore-prompt console)))
 
-(defun break-line (session breakage)
+(defun break-line (session break-request)
   "Return on one line what has broken, and where if not in the thread of SESSION."
-  (let ((words (break-words (breakage-condition breakage))))
+  (let ((words (break-words (break-request-condition break-request))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
-            (whereabouts session breakage))))
+            (whereabouts session break-request))))
 
 (defun awaited-answers (session)
   "Return in words, as a list, the breaks that wait for the user of SESSION, the one that is asked
 about first. Any thread may ask."
-  (mapcar (lambda (breakage) (break-line session breakage)) (breaks-awaiting session)))
+  (mapcar (lambda (break-request) (break-line session break-request)) (breaks-awaiting session)))
 
 (defun ways-awaited (session)
   "Return in words the restarts that SESSION's user can choose now, or NIL. Any thread may ask."
-  (let ((breakage (first (breaks-awaiting session))))
-    (and breakage
+  (let ((break-request (first (breaks-awaiting session))))
+    (and break-request
          (format nil "~{~A~^, ~}"
-                 (loop for restart in (breakage-restarts breakage)
+                 (loop for restart in (break-request-restarts break-request)
                        for number from 0
                        collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
 
 (defun simulator-broken-p (session)
   "True if SESSION's user is asked about a break in the simulator's thread. Any thread may ask."
-  (some (lambda (breakage) (simulator-p session (breakage-thread breakage)))
+  (some (lambda (break-request) (simulator-p session (break-request-thread break-request)))
         (breaks-awaiting session)))
 
 (defun asker-of-break (simulation)
@@ -82,7 +82,7 @@ about first. Any thread may ask."
 the thread of SIMULATION; or NIL."
   (let ((debugger (debugger-asking (simulation-thread simulation))))
     (and debugger
-         (notany #'simulator-broken-p (sessions-hearing simulation))
+         (notany #'simulator-broken-p (sessions-showing simulation))
          (format nil "and ~A waits for the answer" debugger))))
 
 (defun answers-break-p (text)
@@ -93,7 +93,7 @@ the thread of SIMULATION; or NIL."
 
 ;;; Each prompt has a debugger hook for its own thread. All other threads share one, which depends
 ;;; on the running prompts, however they start and end: the debugger's if one of them can ask its
-;;; user; else the one that reports that nobody can answer. Without prompts it is the original hook.
+;;; user; else the one that reports that no user can answer; without prompts, the original hook.
 
 (defvar *hooks-at-work* '() "The hooks of the prompts that are at work, the newest first.")
 (defvar *hook-before* nil "The hook that all threads shared before the first prompt.")
@@ -164,7 +164,7 @@ for each line, or, without a terminal or window, reads from the original input."
 in its simulation, or the newest."
   (let ((own *session*))
     (cond ((and own (eq (session-thread own) (current-thread))) (list own))
-          ((remove-if-not #'session-terminal-p (sessions-hearing *simulation*)))
+          ((remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
           ((and own (session-terminal-p own)) (list own)))))
 
 (defmethod next-typed-line ((stream asking-text))

@@ -1,12 +1,13 @@
-;;;; visit.lisp -- a trial that a prompt is in: lines are read between its ticks.
+;;;; open-trial.lisp -- a trial that a prompt is in: lines are read between its ticks.
 
 (in-package :ars-magna.cli)
 
-(defstruct (visit (:constructor make-visit (experiment condition trial directory)) (:copier nil))
+(defstruct (open-trial (:constructor make-open-trial (experiment condition number directory))
+                       (:copier nil))
   "A trial that the prompt is in."
   (experiment nil :read-only t)
   (condition nil :read-only t)
-  (trial 0 :type integer :read-only t)
+  (number 0 :type integer :read-only t)
   ;; The directory of its row, or NIL.
   (directory nil :type (or null string) :read-only t)
   ;; A line has been read in it.
@@ -29,43 +30,43 @@
 
 ;;; Steering.
 
-(defun check-visit-goes-on (visit)
-  (when (visit-result visit)
-    (reject-line "The trial is over. TRIAL name condition number opens one, TRIAL OFF leads out.")))
+(defun check-trial-not-over (trial)
+  (when (open-trial-result trial)
+    (reject-line "The trial is over. TRIAL name condition number opens one, TRIAL OFF leaves it.")))
 
-(defun pause-visit (visit)
-  (setf (visit-running-p visit) nil
-        (visit-steps visit) 0))
+(defun pause-trial (trial)
+  (setf (open-trial-running-p trial) nil
+        (open-trial-steps trial) 0))
 
-(defun resume-visit (visit)
-  (check-visit-goes-on visit)
-  (setf (visit-running-p visit) t
-        (visit-due visit) (seconds-now)))
+(defun resume-trial (trial)
+  (check-trial-not-over trial)
+  (setf (open-trial-running-p trial) t
+        (open-trial-due trial) (seconds-now)))
 
-(defun set-visit-rate (visit rate)
-  (check-visit-goes-on visit)
-  (setf (visit-rate visit) rate
-        (visit-due visit) (seconds-now)))
+(defun set-trial-rate (trial rate)
+  (check-trial-not-over trial)
+  (setf (open-trial-rate trial) rate
+        (open-trial-due trial) (seconds-now)))
 
-(defun step-visit (visit count)
-  (check-visit-goes-on visit)
+(defun step-trial (trial count)
+  (check-trial-not-over trial)
   (unless (whole-p count 1)
     (reject-line "N cannot be ~D. Give a number of ticks, from 1 to 1e9." count))
-  (setf (visit-running-p visit) nil
-        (visit-stepped-p visit) t)
-  (incf (visit-steps visit) count))
+  (setf (open-trial-running-p trial) nil
+        (open-trial-stepped-p trial) t)
+  (incf (open-trial-steps trial) count))
 
-(defun visit-text (visit)
-  (cond ((visit-result visit) "over")
-        ((visit-running-p visit) (rate-text (visit-rate visit)))
+(defun trial-pace-text (trial)
+  (cond ((open-trial-result trial) "over")
+        ((open-trial-running-p trial) (rate-text (open-trial-rate trial)))
         (t "paused")))
 
-(defun pace-of-visit (visit)
-  "Return how time passes in VISIT: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL."
-  (cond ((visit-result visit) :ended)
-        ((plusp (visit-steps visit)) :running)
-        ((visit-running-p visit) (values :running (visit-rate visit)))
-        (t (values :paused (visit-rate visit)))))
+(defun pace-of-trial (trial)
+  "Return how time passes in TRIAL: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL."
+  (cond ((open-trial-result trial) :ended)
+        ((plusp (open-trial-steps trial)) :running)
+        ((open-trial-running-p trial) (values :running (open-trial-rate trial)))
+        (t (values :paused (open-trial-rate trial)))))
 
 ;;;; The prompt inside of a trial
 
@@ -75,31 +76,31 @@
 ;;; while nothing is typed. Everything that leaves the trial, be it a line, an error or Control-C,
 ;;; unwinds it; nothing else needs to be ended.
 
-(defun leave-visit (session &optional (next #'values))
+(defun leave-open-trial (session &optional (next #'values))
   "Leave the trial of SESSION; then call NEXT. The trial's messages on this are not shown."
-  (setf (visit-left-p (session-visit session)) t)
+  (setf (open-trial-left-p (session-trial session)) t)
   (stop-listening session)
-  (throw 'left-visit next))
+  (throw 'left-trial next))
 
 (defun call-outside (session function)
   "Call FUNCTION where SESSION is in no trial: if it is in one, leave that first."
-  (if (session-visit session)
-      (leave-visit session function)
+  (if (session-trial session)
+      (leave-open-trial session function)
       (funcall function)))
 
 ;;; Has a line changed the run? Then it is no longer the experiment's.
 
-(defun visit-state ()
+(defun trial-state ()
   "Return what determines the course of the current simulation: a digest, and the pending requests."
   (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
 
-(defun note-if-changed (session visit before)
-  "Say so if the run in VISIT is no longer in the state BEFORE."
-  (unless (or (visit-changed visit) (every #'eql before (visit-state)))
-    (setf (visit-changed visit) (simulation-tick *simulation*))
+(defun note-if-changed (session trial before)
+  "Say so if the run in TRIAL is no longer in the state BEFORE."
+  (unless (or (open-trial-changed trial) (every #'eql before (trial-state)))
+    (setf (open-trial-changed trial) (simulation-tick *simulation*))
     (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
                                        more~;This has no effect: the trial is over~].~%"
-            (visit-result visit))))
+            (open-trial-result trial))))
 
 ;;; Lines.
 
@@ -119,72 +120,72 @@
                     (typed-within-p (session-input session) (max 0 (min 0.05 left))))
         while (plusp left)))
 
-(defun begin-visit (session visit)
+(defun begin-trial (session trial)
   "Let users call robots by their names, and see them if there can be a window."
-  (unless (shiftf (visit-begun-p visit) t)
+  (unless (shiftf (open-trial-begun-p trial) t)
     (call-by-name (robots-here))
     (when (display-wanted-p session)
       (announce-display (session-robot) '()))))
 
-(defun visit-line (session visit)
+(defun run-line-in-trial (session trial)
   (call-aside
    (lambda ()
      (tell-whereabouts session)
-     (begin-visit session visit)
-     (let ((before (visit-state)))
+     (begin-trial session trial)
+     (let ((before (trial-state)))
        (call-guarded session (lambda ()
                                (when (watched-p session)
                                  (loop until (await-typed-line session 1)))
                                (let ((*while-typing* #'answer-others))
                                  (next-line-inside session))))
-       (note-if-changed session visit before))
+       (note-if-changed session trial before))
      (call-guarded session (lambda () (show-messages session)))
-     (when (session-over-p session) (leave-visit session)))))
+     (when (session-over-p session) (leave-open-trial session)))))
 
 ;;; Between ticks.
 
-(defun tell-stop (session visit)
-  "Say that the ticks which were to pass in VISIT have passed, or were stopped."
-  (when (shiftf (visit-interrupted-p visit) nil)
+(defun tell-stop (session trial)
+  "Say that the ticks which were to pass in TRIAL have passed, or were stopped."
+  (when (shiftf (open-trial-interrupted-p trial) nil)
     (answered (session-console session))
-    (setf (visit-stepped-p visit) t))
-  (when (and (zerop (visit-steps visit)) (shiftf (visit-stepped-p visit) nil))
-    (when (visit-progress visit) (end-progress (shiftf (visit-progress visit) nil)))
+    (setf (open-trial-stepped-p trial) t))
+  (when (and (zerop (open-trial-steps trial)) (shiftf (open-trial-stepped-p trial) nil))
+    (when (open-trial-progress trial) (end-progress (shiftf (open-trial-progress trial) nil)))
     (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
 
-(defun next-due (visit)
-  "Return when the tick after the one of VISIT that is due now will be."
-  (let ((rate (visit-rate visit)))
+(defun next-due (trial)
+  "Return when the tick after the one of TRIAL that is due now will be."
+  (let ((rate (open-trial-rate trial)))
     (if (eq :free rate)
         (seconds-now)
-        (+ (max (visit-due visit) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
+        (+ (max (open-trial-due trial) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
 
-(defun wait-for-tick (session visit)
-  "Wait until the next tick is due in VISIT. NIL if a line was typed before."
-  (let ((left (if (eq :free (visit-rate visit)) 0 (- (visit-due visit) (seconds-now)))))
+(defun wait-for-tick (session trial)
+  "Wait until the next tick is due in TRIAL. NIL if a line was typed before."
+  (let ((left (if (eq :free (open-trial-rate trial)) 0 (- (open-trial-due trial) (seconds-now)))))
     (if (watched-p session)
         (unless (call-aside (lambda () (await-typed-line session left)))
-          (setf (visit-due visit) (next-due visit))
+          (setf (open-trial-due trial) (next-due trial))
           t)
-        (progn (when (plusp left) (await-time (visit-due visit) *simulation*))
-               (setf (visit-due visit) (next-due visit))
+        (progn (when (plusp left) (await-time (open-trial-due trial) *simulation*))
+               (setf (open-trial-due trial) (next-due trial))
                t))))
 
-(defun tick-passes-p (session visit)
-  (cond ((plusp (visit-steps visit))
+(defun tick-passes-p (session trial)
+  (cond ((plusp (open-trial-steps trial))
          (when (session-terminal-p session)
-           (unless (visit-progress visit)
-             (setf (visit-progress visit) (make-progress-line (session-console session))))
-           (note-progress (visit-progress visit) "Tick ~D, ~D to go. Control-C pauses."
-                          (simulation-tick *simulation*) (visit-steps visit)))
-         (decf (visit-steps visit))
+           (unless (open-trial-progress trial)
+             (setf (open-trial-progress trial) (make-progress-line (session-console session))))
+           (note-progress (open-trial-progress trial) "Tick ~D, ~D to go. Control-C pauses."
+                          (simulation-tick *simulation*) (open-trial-steps trial)))
+         (decf (open-trial-steps trial))
          t)
-        ((visit-running-p visit) (wait-for-tick session visit))))
+        ((open-trial-running-p trial) (wait-for-tick session trial))))
 
-(defun visit-gate (session visit)
+(defun trial-gate (session trial)
   (lambda (simulation)
     (declare (ignore simulation))
-    (when (visit-left-p visit) (leave-visit session))
-    (tell-stop session visit)
-    (loop until (tick-passes-p session visit) do (visit-line session visit))
+    (when (open-trial-left-p trial) (leave-open-trial session))
+    (tell-stop session trial)
+    (loop until (tick-passes-p session trial) do (run-line-in-trial session trial))
     1))

@@ -1,17 +1,17 @@
-;;;; errands.lisp -- commands that the prompt has issued, and waiting for them.
+;;;; jobs.lisp -- commands that the prompt has issued, and waiting for them.
 
 (in-package :ars-magna.cli)
 
 ;;; A command is issued and the prompt returns at once. These wait until the continuation of the
 ;;; command is called before they read the next line: a patient session, a session with pasted lines
 ;;; left, and a session in a headless simulation. REPEAT waits in the same way. Tracking a grasp
-;;; lasts until the grasp is lost, so only its beginning is waited for. Plans are errands, too: see
+;;; lasts until the grasp is lost, so only its beginning is waited for. Plans are jobs, too: see
 ;;; plans.lisp.
 
 (defparameter *patience* 100000
   "How many ticks a headless prompt waits for one command to complete.")
 
-(defstruct (errand (:constructor make-errand (&key name verdict-p resource)) (:copier nil))
+(defstruct (job (:constructor make-job (&key name verdict-p resource)) (:copier nil))
   "A command or plan that the prompt has issued. NAME is the name of a line that gives several
 commands one after the other, or NIL; VERDICT-P is true if that line recovers from their errors and
 reports the outcome itself. RESOURCE is what carries out a single command, or NIL."
@@ -25,27 +25,27 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
   (resource nil :read-only t))
 
 ;; It belongs to the prompt, even if it leads on from a run.
-(define-shared errand)
+(define-shared job)
 
 (defun requests-waiting ()
   (and *simulation* (timeline-inbox (timeline-of *simulation*))))
 
-(defun errand-over-p (errand)
-  "True if ERRAND is done, or lasts until something happens, such as the loss of a grip."
-  (or (errand-done-p errand)
-      (and (errand-resource errand)
+(defun job-over-p (job)
+  "True if JOB is done, or lasts until something happens, such as the loss of a grip."
+  (or (job-done-p job)
+      (and (job-resource job)
            (null (requests-waiting))
-           (grip-watched-p (errand-resource errand)))))
+           (grip-watched-p (job-resource job)))))
 
-(defun end-errand (errand error-code)
-  "Mark ERRAND as done, with ERROR-CODE, or NIL if it has succeeded."
-  (setf (errand-failed-p errand) (not (member error-code '(nil :interrupt)))
-        (errand-done-p errand) t))
+(defun end-job (job error-code)
+  "Mark JOB as done, with ERROR-CODE, or NIL if it has succeeded."
+  (setf (job-failed-p job) (not (member error-code '(nil :interrupt)))
+        (job-done-p job) t))
 
 ;;; Waiting.
 
 (defun held-up-p (simulation)
-  "True if SIMULATION, which is live, is paused, and nobody can resume it."
+  "True if SIMULATION, which is live, is paused, and no one can resume it."
   (and (not *waits-while-paused-p*) (stands-still-p simulation)))
 
 (defun await-live (test simulation)
@@ -66,39 +66,39 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
 
 (defun await (test)
   "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return NIL
-if it does not within the limit, when only the waiting lets time pass."
+if it does not in time, when only this waiting lets ticks pass."
   (cond ((simulation-over *simulation*) (funcall test))
         ((simulation-gate *simulation*)
          (reject-line "In a trial time passes between lines only. STEP and RESUME let it pass."))
         ((live-p *simulation*) (await-live test *simulation*))
         (t (run-until test :limit *patience* :simulation *simulation*))))
 
-(defgeneric await-errand (errand)
-  (:documentation "Wait until ERRAND is done; signal BAD-LINE if it is not in good time.")
-  (:method (errand)
-    (unless (or (await (lambda () (errand-over-p errand)))
+(defgeneric await-job (job)
+  (:documentation "Wait until JOB is done; signal BAD-LINE if it is not in good time.")
+  (:method (job)
+    (unless (or (await (lambda () (job-over-p job)))
                 (held-up-p *simulation*))
-      (reject-line "The command has not completed within ~D ticks; it goes on." *patience*))))
+      (reject-line "The command has not completed within ~D ticks; it continues." *patience*))))
 
 (defun send (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, an errand of SESSION that is done when it completes."
-  (let ((errand (make-errand :resource resource)) (*ticks-follow-p* t))
+  "Issue COMMAND on RESOURCE with ARGUMENTS, an job of SESSION that is done when it completes."
+  (let ((job (make-job :resource resource)) (*ticks-follow-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
                                      (declare (ignore results))
-                                     (end-errand errand error-code)))))
-    (push errand (session-errands session))))
+                                     (end-job job error-code)))))
+    (push job (session-jobs session))))
 
-(defun errands-under-way (session)
-  (remove-if #'errand-over-p (session-errands session)))
+(defun jobs-under-way (session)
+  (remove-if #'job-over-p (session-jobs session)))
 
-(defun await-errands (session &optional (errands (session-errands session)))
-  "Wait until ERRANDS of SESSION, by default all, are done, or time stands still for good."
-  (unwind-protect (mapc #'await-errand (reverse errands))
-    (setf (session-errands session)
+(defun await-jobs (session &optional (jobs (session-jobs session)))
+  "Wait until JOBS of SESSION, by default all, are done, or time stands still for good."
+  (unwind-protect (mapc #'await-job (reverse jobs))
+    (setf (session-jobs session)
           (if (and *simulation* (held-up-p *simulation*))
-              (errands-under-way session)
-              (remove-if (lambda (errand) (member errand errands)) (session-errands session))))))
+              (jobs-under-way session)
+              (remove-if (lambda (job) (member job jobs)) (session-jobs session))))))
 
 ;;; Lisp may have issued commands too. Plans that it has begun run by themselves: the prompt does
 ;;; not wait for their commands, which may never end.
@@ -132,7 +132,7 @@ of patience. True if there is none."
 (defun waits-p (session)
   "True if SESSION reads the next line only after the commands issued so far have completed."
   (and *simulation*
-       (null (session-visit session))
+       (null (session-trial session))
        (null (simulation-over *simulation*))
        (if (live-p *simulation*)
            (and (or (session-patient-p session) (pasted-lines-left-p (session-input session)))
@@ -145,26 +145,26 @@ of patience. True if there is none."
   (let ((after-rewind (shiftf (session-after-rewind session) nil)))
     (when after-rewind (funcall after-rewind session)))
   (if (waits-p session)
-      (progn (await-errands session)
+      (progn (await-jobs session)
              (setf (session-lisp-p session)
                    (and (shiftf (session-lisp-p session) nil)
                         (not (await-requests))
                         (held-up-p *simulation*)))
              (tell-whereabouts session))
-      (setf (session-errands session) (errands-under-way session))))
+      (setf (session-jobs session) (jobs-under-way session))))
 
 (defun waits-for-resume-p (session)
   "True if time does not pass in the run of SESSION, as that is paused."
   (and *simulation*
-       (null (session-visit session))
+       (null (session-trial session))
        (live-p *simulation*)
        (stands-still-p *simulation*)))
 
-(defun how-ended (errands lisp-p)
-  "Return :OK or :FAILED if ERRANDS are done and, if LISP-P, what Lisp has issued is; else NIL."
-  (cond ((notevery #'errand-over-p errands) nil)
+(defun how-ended (jobs lisp-p)
+  "Return :OK or :FAILED if JOBS are done and, if LISP-P, what Lisp has issued is; else NIL."
+  (cond ((notevery #'job-over-p jobs) nil)
         ((and lisp-p (not (settled-p))) nil)
-        ((some #'errand-failed-p errands) :failed)
+        ((some #'job-failed-p jobs) :failed)
         (t :ok)))
 
 (defun lisp-goes-on-p (session)
@@ -174,19 +174,19 @@ of patience. True if there is none."
          (waits-for-resume-p session)
          (some-request-p (lambda (request) (of-lisp-in-line-p (request-asker request) account))))))
 
-(defun end-of-errands (session)
+(defun end-of-jobs (session)
   "Return NIL if what SESSION has issued last has ended, or what CATCH-UP has not waited for: a
 function that returns what HOW-ENDED does."
-  (let ((errands (remove-if #'errand-apart-p (errands-under-way session)))
+  (let ((jobs (remove-if #'job-apart-p (jobs-under-way session)))
         (lisp-p (lisp-goes-on-p session)))
-    (unless (how-ended errands lisp-p)
-      (dolist (errand errands) (setf (errand-apart-p errand) t))
-      (lambda () (how-ended errands lisp-p)))))
+    (unless (how-ended jobs lisp-p)
+      (dolist (job jobs) (setf (job-apart-p job) t))
+      (lambda () (how-ended jobs lisp-p)))))
 
-(defun unended-p (session)
+(defun unfinished-p (session)
   "True if something that SESSION or its Lisp has issued has not ended because time stands still."
   (and *simulation*
-       (or (errands-under-way session)
+       (or (jobs-under-way session)
            (and (session-lisp-p session)
                 (waits-for-resume-p session)
                 (not (settled-p))))))
