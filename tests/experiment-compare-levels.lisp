@@ -149,7 +149,7 @@
       (is (equal '((nil "metres=1" "metres=2")) (said results 1 2)) "that is the same"))
     (with-report (results '("metres") '() (grown 3 2 1))
       (is (mentions-p (said results 1 2) "1 against 2 is ambiguous"))
-      (is (mentions-p (said results 1 2) "metres=1 against metres=2. Give more")))))
+      (is (mentions-p (said results 1 2) "metres=1 against metres=2. Give a value")))))
 
 ;;; What stands above.
 

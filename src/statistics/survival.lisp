@@ -33,12 +33,12 @@
                (funcall function start end))
              (setf start end))))
 
-(defun done-between (dated start end)
+(defun count-done (dated start end)
   (count t dated :key #'second :start start :end end))
 
 ;;; The curve.
 
-(defun band (survival variance z highest)
+(defun survival-bounds (survival variance z highest)
   "Return the bounds for SURVIVAL, for which Greenwood's sum is VARIANCE. If SURVIVAL is 0, the high
 one is HIGHEST, that of the step before."
   (if (zerop survival)
@@ -63,11 +63,11 @@ then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIME
          (dated (dated times events)) (size (length dated))
          (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
     (flet ((note (start end)
-             (let* ((at-risk (- size start)) (done (done-between dated start end))
+             (let* ((at-risk (- size start)) (done (count-done dated start end))
                     (left (- at-risk done)))
                (setf survival (* survival (/ (double left) at-risk)))
                (when (plusp left) (incf variance (/ (double done) at-risk left)))
-               (multiple-value-bind (low high) (band survival variance z highest)
+               (multiple-value-bind (low high) (survival-bounds survival variance z highest)
                  (push (list (first (aref dated start)) at-risk done survival low high) steps)
                  (setf highest high)))))
       (map-moments #'note dated))
@@ -110,7 +110,7 @@ marked, and the variance."
                                       :start start :end end))
              (multiple-value-bind (mean spread)
                  (expected-and-variance (- (length dated) start) (- marked gone)
-                                        (done-between dated start end))
+                                        (count-done dated start end))
                (incf expected mean)
                (incf variance spread))))
       (map-moments #'note dated))

@@ -139,7 +139,7 @@ COMPARE-CONDITIONS. p is corrected for all tests together, separately for those 
          (base (level-called (levels results place) against))
          (pairs (pairs-differing-at results place nil base)))
     (unless pairs
-      (reject-use "No condition differs from one with ~A=~A in that alone. (In designs, such as ~
+      (reject-use "No condition differs from one with ~A=~A only in that. (In designs, such as ~
                    :sobol, all factors vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))
@@ -207,8 +207,8 @@ experiment.txt in the directories AFTER and BEFORE, which may be NIL."
            (cons "Both tables are of the same code and configuration: the fingerprints are equal."
                  (unexplained-difference-lines pairs)))
           ((null parts)
-           (list (format nil "What differs between the tables is not known: the fingerprints do, ~
-                              but no experiment.txt beside them says of what.")))
+           (list (format nil "What differs between the tables is not known: the fingerprints ~
+                              differ, but there is no experiment.txt with their parts.")))
           (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
                           (experiment-changes after before))
                      (list (parts-words parts (length changed))))))))
@@ -253,7 +253,7 @@ of conditions that only one of them has."
   (let ((names (mapcar (lambda (results)
                          (if (results-samples results)
                              (sample-experiment (first (results-samples results)))
-                             (reject-use "There are no rows in a table to be compared.")))
+                             (reject-use "One of the tables to compare has no rows.")))
                        (list before after))))
     (unless (apply #'string= names)
       (reject-use "One table is of the experiment ~A and the other of ~A. Give two of one ~

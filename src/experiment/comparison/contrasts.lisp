@@ -112,7 +112,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
              (count-left-out (mean-difference (string-downcase name) '() '())
                              (length pairs)))))))
 
-;;; The whole.
+;;; Contrasts.
 
 (defun same-row-p (first i second j)
   "True if the trials at I of FIRST and at J of SECOND have equal rows, except for fingerprints."

@@ -144,8 +144,8 @@ else whose name contains WORD."
                           (mapcar #'sample-condition samples))))))
 
 (defun reject-ambiguous (word meanings)
-  (reject-use "~A is ambiguous: it could be ~{~A~#[~; or ~:;, ~]~}. Give more of what you mean: a ~
-               value as FACTOR=VALUE, or a condition by its number or name."
+  (reject-use "~A is ambiguous: it could be ~{~A~#[~; or ~:;, ~]~}. Give a value as FACTOR=VALUE, ~
+               or the number or the whole name of a condition."
               word
               (if (nthcdr 6 meanings)
                   (append (subseq meanings 0 6)

@@ -42,7 +42,7 @@
 (defun number-writer (difference)
   "Return a function that writes the numbers of DIFFERENCE, without units."
   (cond ((eq :rate (paired-kind difference))
-         (lambda (value) (hundredths-text value (paired-trials difference))))
+         (lambda (value) (percent-text value (paired-trials difference))))
         ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
         (t (let ((decimals (if (paired-first difference) (last-useful-decimal difference) 0)))
              (lambda (value) (mean-text value decimals))))))

@@ -20,7 +20,7 @@ pictures.")
          (name (format nil "~{~A~^-~}" words)))
     (subseq name 0 (min 100 (length name)))))
 
-(defun new-name (name where names)
+(defun unused-name (name where names)
   (let ((name (file-word (format nil "~A~@[-~A~]" name where))))
     (if (member name names :test #'string=)
         (loop for number from 2
@@ -31,7 +31,7 @@ pictures.")
 (defun save-pictures (pictures directory kind)
   (let ((names '()))
     (loop for (title where chart) in pictures
-          for name = (new-name title where names)
+          for name = (unused-name title where names)
           do (push name names)
           collect (save-chart (file-in directory (format nil "~A.~(~A~)" name kind)) chart))))
 

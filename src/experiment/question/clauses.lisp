@@ -227,7 +227,7 @@ CLAUSE if it has none."
   (remove-if (lambda (name) (or (keyword-factor-p name) (parameter-called name)))
              (varied-names clauses)))
 
-;;; All of them.
+;;; Checking all clauses.
 
 (defun check-columns (definition taken clauses key)
   "Signal MALFORMED-DEFINITION if two columns of a table would have one name: those TAKEN, the

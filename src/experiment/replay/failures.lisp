@@ -21,11 +21,11 @@ error, the largest first."
                        collect (cons (reverse (gethash key known)) key))
                  #'> :key #'failure-count)))
 
-(defun failure-count (flaw)
-  (length (first flaw)))
+(defun failure-count (group)
+  (length (first group)))
 
-(defun failure-plist (flaw sample)
-  (destructuring-bind (trials outcome reason error) flaw
+(defun failure-plist (group sample)
+  (destructuring-bind (trials outcome reason error) group
     (let ((count (length trials)))
       (list :condition (sample-condition sample)
             :outcome outcome :reason reason :error error
@@ -73,30 +73,30 @@ DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
   (loop for sample in (samples-matching (designated-results results) condition)
-        append (loop for flaw in (failure-groups sample) collect (failure-plist flaw sample))))
+        append (loop for group in (failure-groups sample) collect (failure-plist group sample))))
 
 ;;; Printing.
 
-(defun word-text (text)
+(defun prompt-word (text)
   (if (find #\Space text) (format nil "\"~A\"" text) text))
 
-(defun example-text (flaw sample)
-  (format nil "trial ~A ~A ~D" (word-text (sample-experiment sample))
-          (word-text (sample-condition sample)) (first (first flaw))))
+(defun example-text (group sample)
+  (format nil "trial ~A ~A ~D" (prompt-word (sample-experiment sample))
+          (prompt-word (sample-condition sample)) (first (first group))))
 
-(defun flaw-text (flaw)
-  (destructuring-bind (outcome reason error) (rest flaw)
+(defun failure-words (group)
+  (destructuring-bind (outcome reason error) (rest group)
     (format nil "~A~@[: ~A~]~@[; ~A~]" outcome
             (and (string/= "" reason) reason) (and (string/= "" error) error))))
 
 (defun print-failure-groups (sample stream)
-  (let* ((flaws (failure-groups sample)) (count (reduce #'+ flaws :key #'failure-count)))
+  (let* ((groups (failure-groups sample)) (count (reduce #'+ groups :key #'failure-count)))
     (format stream "~A: ~D trials, ~:[~D with something wrong~;nothing wrong~]~%"
             (sample-condition sample) (length (sample-trials sample)) (zerop count) count)
-    (dolist (flaw flaws)
-      (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (failure-count flaw)
-              (* 100d0 (/ (failure-count flaw) (length (sample-trials sample))))
-              (flaw-text flaw) (example-text flaw sample)))))
+    (dolist (group groups)
+      (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (failure-count group)
+              (* 100d0 (/ (failure-count group) (length (sample-trials sample))))
+              (failure-words group) (example-text group sample)))))
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))

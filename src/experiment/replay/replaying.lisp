@@ -156,7 +156,7 @@ there is none."
                       (format nil "~A is ~:[~A~;~*empty~], and ~:[~A~;~*empty~] in the row"
                               column (string= "" now) now (string= "" then) then))))
 
-;;; The whole.
+;;; Running the trial.
 
 (defun keep-journal (journal)
   "Return the journal of the current simulation if JOURNAL is true; save it if that is a name."

@@ -159,7 +159,7 @@ too large or too small for that."
 (defun writer-for (estimates)
   (if (eq :rate (estimate-kind (first estimates)))
       (let ((trials (reduce #'max estimates :key #'estimate-count)))
-        (lambda (share) (hundredths-text share trials)))
+        (lambda (share) (percent-text share trials)))
       (number-writer-for (loop for reader in (list #'estimate-value #'estimate-low #'estimate-high)
                                append (remove nil (mapcar reader estimates))))))
 
@@ -287,8 +287,8 @@ all."
   "Write RESULTS to STREAM, in lines of at most 100 characters, and return them. For each condition:
 how often it succeeded, how often it reached the limit of ticks or had an error (if it did), the
 ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below: why trials failed and which
-errors there were, with an example of each, and which intervals these are. Rows of conditions that
-the experiment no longer has, as far as that is known, make a table of their own."
+errors there were, with an example of each, and which intervals these are. Conditions that the
+experiment no longer has, if known, are in a separate table."
   (check-argument print-results results (results-p results) "results")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
                   "an output stream")

@@ -89,9 +89,9 @@ with KEY."
 
 ;;; Numbers and counts in a cell.
 
-(defun hundredths-text (share trials)
+(defun percent-text (share trials)
   (decimal-text (* 100 share)
-              (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
+                (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 
 (defun tally-text (tally most)
   "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then others."

@@ -98,7 +98,7 @@ a function; or NIL."
 
 (defun reject-changed (changed condition directory)
   (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
-               ~A~] may be of either. ~@[~A ~]~@(~A~)."
+               ~A~] may be from before or after. ~@[~A ~]~@(~A~)."
               (remove-duplicates (mapcar #'part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
               (sharing-advice changed condition)

@@ -98,7 +98,7 @@ MISUSE for rows with other fingerprints."
                       nil store workers time-limit stream)
            (setf conditions (wide-conditions experiment conditions look width directory))))
 
-;;; The whole.
+;;; RUN-EXPERIMENT.
 
 (defparameter *most-trials* 1000000
   "The default for the most trials of a condition if :until is given.")

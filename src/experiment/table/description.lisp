@@ -108,7 +108,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
   "Return the text of experiment.txt in DIRECTORY, or NIL if it cannot be read."
   (ignore-errors (file-text (description-file directory))))
 
-(defun whole-description-p (text)
+(defun intact-description-p (text)
   (let ((place (and text (search *check-title* text :from-end t))))
     (and place
          (string= (check-line (subseq text 0 place)) (subseq text place)))))
@@ -116,7 +116,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 (defun warn-if-damaged (directory)
   (let ((file (description-file directory)))
     (unless (or (not (existing-path file))
-                (whole-description-p (description-text directory)))
+                (intact-description-p (description-text directory)))
       (warn "~A is damaged or has been changed: its last line is no check sum of the others. The ~
              rows beside it are read all the same. If you run the experiment again with that ~
              directory, the file is written anew."
@@ -169,7 +169,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
   (let ((reason (refusal-in directory)))
     (when reason
       (reject-use "The rows in ~A were refused when they were run. Delete rows.csv there, or give ~
-                   another directory. It was said then: ~A"
+                   another directory. The reason was: ~A"
                   (native-name directory) reason))))
 
 ;;; What has changed.

@@ -24,8 +24,7 @@
   "Return the path of the directory NAME, created if necessary. Signals MISUSE."
   (let ((path (directory-called name)))
     (handler-case (progn (make-directories path) path)
-      (error () (reject-use "~A cannot be made; give the name of a directory that can be."
-                            (native-name path))))))
+      (error () (reject-use "~A cannot be created. Give another directory." (native-name path))))))
 
 (defvar *stores-in-use* '() "The directories that this process writes to.")
 (defvar *stores-lock* (make-lock "directories of experiments"))
@@ -119,7 +118,7 @@ True if any lines are left. Signals DAMAGED-TABLE, and leaves FILE unchanged, if
                        (funcall finish stream))
     (stream-error (condition)
       (reject-table (pathname stream) nil
-                    "no more can be written (~A). What is there is kept; go on once there is room."
+                    "it cannot be continued (~A). Its rows are kept; continue once there is room."
                     (unwritten-reason condition)))))
 
 ;; The series is written first, so that a trial with a row has all of its series.
@@ -185,7 +184,7 @@ or of a former condition if that is NIL."
               (and (null condition)
                    (find (second texts) (experiment-conditions experiment)
                          :key #'condition-fingerprint :test #'equal)))
-      (reject-row file number "What it says of its condition does not fit together."))
+      (reject-row file number "Its condition, factors and fingerprint do not agree."))
     (unless (= (trial-seed experiment trial) (parse-integer (nth seed texts)))
       (reject-row file number "Trial ~D has the seed ~D, not ~A." trial
                   (trial-seed experiment trial) (nth seed texts)))))

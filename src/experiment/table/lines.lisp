@@ -153,7 +153,7 @@ value of each factor."
   "Call FUNCTION with a stream to a new file, then CHECK with its path; then replace the table FILE
 by it. If it cannot be written signals DAMAGED-TABLE and leaves FILE unchanged."
   (call-writing (lambda () (call-replacing-file function file :check check))
-                file "it cannot be written anew (~A). It is as it was."))
+                file "it cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a function of one of FILES and a position; it returns the line there."

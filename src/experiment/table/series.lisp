@@ -205,8 +205,8 @@ DAMAGED-TABLE."
 
 (defun reject-missing-series (rows texts seed)
   (reject-use "Trial ~A of the condition ~A has a row, but not all of its lines are in series.csv. ~
-               Run the experiment again in the directory of that row, with at least so many ~
-               trials: it runs such trials again. ~A is as it was."
+               Run the experiment again in the directory of that row, with at least as many ~
+               trials: it runs such trials again. ~A is unchanged."
               (nth (1+ seed) texts) (third texts)
               (native-name (uiop:pathname-directory-pathname rows))))
 

@@ -210,7 +210,7 @@ one at which it was loaded, or NIL."
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
           (now (reject-use "~A has been changed since it was loaded. Load it again, so that what ~
-                            runs is what it says."
+                            runs is the code in it."
                            file))
           (t 0))))
 
@@ -279,7 +279,7 @@ one at which it was loaded, or NIL."
               (loop for char across (part-text part) do (digest-add digest char)))
             (digest-value digest))))
 
-(defun note-reach (condition reach)
+(defun set-reach (condition reach)
   (setf (condition-variables condition)
         (loop for symbol in (reach-variables reach)
               collect (list symbol (global-value symbol)))
@@ -290,7 +290,7 @@ one at which it was loaded, or NIL."
   (call-plainly
    (lambda ()
      (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
-       (note-reach condition reach)
+       (set-reach condition reach)
        (setf (condition-fingerprint condition) (fingerprint-of parts))
        parts))))
 
@@ -298,8 +298,8 @@ one at which it was loaded, or NIL."
   "Set the variables of CONDITION of EXPERIMENT, but no fingerprint: its files may have changed."
   (call-plainly
    (lambda ()
-     (note-reach condition
-                 (reach-of experiment condition (definitions-in-trial experiment condition))))))
+     (set-reach condition
+                (reach-of experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
   "Call PREPARE-CONDITION for all conditions of EXPERIMENT; return a list of the values. Signals

@@ -204,7 +204,7 @@ SAMPLER keeps the first error."
       (unless (eql tick (first (first (sampler-samples sampler))))
         (take-sample sampler simulation)))))
 
-;;; All of them.
+;;; Sampling a trial.
 
 (defun sampling-gate (sampler gate)
   "Return a gate that lets one tick pass at a time, if GATE allows it, and takes samples."
