@@ -153,7 +153,8 @@ tells what is kept."
 
 (defun check-robots (definition part names)
   (when (eq 'quote (first names))
-    (reject-clause definition part "names of robots without a quote, as in (:robots ann (ann bob))"))
+    (reject-clause definition part
+                   "names of robots without a quote, as in (:robots ann (ann bob))"))
   (dolist (name names)
     (unless (and name (symbolp name)) (reject-clause definition part "names of robots"))
     (unless (find-blueprint name nil)
