@@ -53,11 +53,10 @@
   (rejected-clause (b (base:braking* 1)) (:robots ars-worlds:dot) (:run t)
     (:conditions (a (base:max-speed* 1)) (b (base:braking* 1)))))
 
-;; The values of other factors are forms.
-(test definition.says-that-names-of-robots-have-no-quote
-  (is-true (has-words-p (handler-case (define-for-test (:vary (:robots 'ars-worlds:dot)) (:run t))
+(test definition.says-that-names-of-robots-that-vary-are-quoted
+  (is-true (has-words-p (handler-case (define-for-test (:vary (:robots 1)) (:run t))
                           (base:malformed-definition (condition) (princ-to-string condition)))
-                        "without a quote")))
+                        "'(ann bob)")))
 
 (defun own-element ()
   "Return a list that is an element of itself."

@@ -82,7 +82,7 @@ that it asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
   (:robots name...)          the robots in the world of each trial, all of one map
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
-                             parameter, :ROBOTS (values are names or lists of names), :THINKING
+                             parameter, :ROBOTS (values are names or lists of names, quoted), :THINKING
                              (values are thinking modes), or a variable of the other forms; a
                              special variable is bound. (what :in form) takes the values from a
                              list. Values are numbers, symbols, strings, or lists of these.
@@ -152,11 +152,10 @@ tells what is kept."
                                   (safe-text value)))))))
 
 (defun check-robots (definition part names)
-  (when (eq 'quote (first names))
-    (reject-clause definition part
-                   "names of robots without a quote, as in (:robots ann (ann bob))"))
   (dolist (name names)
-    (unless (and name (symbolp name)) (reject-clause definition part "names of robots"))
+    (unless (and name (symbolp name))
+      (reject-clause definition part
+                     "names of robots; with a quote where they vary: (:robots 'ann '(ann bob))"))
     (unless (find-blueprint name nil)
       (reject-clause definition part
                      (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
