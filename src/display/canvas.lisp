@@ -1,4 +1,4 @@
-;;;; canvas.lisp -- what can be drawn on, and with what pen (manual B.1).
+;;;; canvas.lisp -- canvases and graphics contexts (manual B.1).
 
 (in-package :ars-magna.canvas)
 
@@ -7,8 +7,8 @@
           with-clipping call-with-origin with-origin call-with-subject with-subject subject-title
           call-on-canvas with-canvas with-dashes +character-width+ +line-height+))
 
-;;; A graphics context is changed only for the extent of a body, as WITH-GCONTEXT of CLX does.
-;;; Whatever starts to draw on a canvas binds a fresh one, so threads that draw share nothing.
+;;; A graphics context is changed only during a body, as by WITH-GCONTEXT of CLX. WITH-CANVAS binds
+;;; a new one, so that threads that draw share nothing.
 
 (deftype line-style () '(member :solid :dash :double-dash))
 
@@ -19,7 +19,7 @@
                              "Return a new graphics context: by default solid black lines, one
 pixel wide.")
                          (:copier copy-gcontext))
-  "With what to draw."
+  "The colours, lines and dashes to draw with."
   (foreground #x000000 color
               "the colour that the graphics context draws with. Can be set" :writable :export)
   (background #xFFFFFF color
@@ -39,10 +39,10 @@ instead" :writable :export))
 (public (graphics-scale* :ars))
 ;; As reading 208 says.
 (defvar graphics-scale* 8
-  "How many pixels there are to the side of a grid cell in the display of the world (manual B).
-While it is 8, the default, which is ours, pictures for which no :SCALE is given choose a scale that
-suits their map; set to another value, it counts for them, too. Where a body of :graphics or
-:draw-function runs, it is the scale of the picture.")
+  "The width of a grid cell in pixels, in the display of the world (manual B). The default is 8.
+With that value, pictures without a :SCALE choose a scale that suits their map; another value is the
+scale of these pictures too. In a body of :graphics or :draw-function, it is the scale of the
+picture.")
 
 (public in-color*)
 (defvar in-color* t
@@ -63,7 +63,7 @@ suits their map; set to another value, it counts for them, too. Where a body of 
 
 (defun call-with-gcontext (function gcontext &key foreground background line-width line-style
                                                 dashes)
-  "Call FUNCTION while GCONTEXT is as the other arguments say; NIL leaves it as it is."
+  "Call FUNCTION while GCONTEXT has the values of the other arguments that are not NIL."
   (check-pen foreground line-width line-style dashes)
   (let ((old (copy-gcontext gcontext)))
     (flet ((set-to (foreground background line-width line-style dashes)
@@ -78,8 +78,8 @@ suits their map; set to another value, it counts for them, too. Where a body of 
                 (gcontext-line-width old) (gcontext-line-style old) (gcontext-dashes old))))))
 
 (defmacro with-gcontext ((gcontext &rest options) &body body)
-  "Run BODY while GCONTEXT has the :foreground, :background, :line-width, :line-style and :dashes
-that OPTIONS give, as CLX does."
+  "Run BODY while GCONTEXT has the :foreground, :background, :line-width, :line-style and :dashes of
+OPTIONS, as CLX does."
   `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
 
 (public with-color)
@@ -106,16 +106,16 @@ in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
 
 ;;;; Canvases
 
-;;; A canvas is what the bodies of :graphics get as their window. Coordinates are pixels, x to the
-;;; right and y down. As in X, the outline of a rectangle and a line run through the middles of
-;;; pixels, so an outline W wide covers W+1 of them. Arcs are inscribed in their box; the outline of
-;;; a whole circle, too, stays within it, where X would cover one more pixel to the right and below.
-;;; Seven generic functions make a canvas: five that paint, two that narrow down where.
+;;; The bodies of :graphics get a canvas as their window. Coordinates are pixels, x to the right and
+;;; y down. As in X, lines and outlines of rectangles run through the middles of pixels, so that an
+;;; outline W wide covers W+1 of them. Arcs are inscribed in their box. The outline of a whole
+;;; circle stays within the box too, while X would cover one more pixel to the right and below. A
+;;; canvas has seven generic functions: five that paint, two that limit where.
 
 (defclass canvas ()
   ((color-p :initarg :color-p :initform t :reader canvas-color-p
             :documentation "True if the canvas shows colours."))
-  (:documentation "Something to draw on."))
+  (:documentation "An object to draw on."))
 (setf (documentation 'canvas-color-p 'function)
       "True if the canvas shows colours.")
 
@@ -146,27 +146,27 @@ within the box, however wide the line is."))
   (:documentation "Paint STRING, without new lines, its base line beginning at X, Y."))
 
 (defgeneric call-with-clipping (function canvas x y width height)
-  (:documentation "Call FUNCTION; what it paints outside the box stays invisible."))
+  (:documentation "Call FUNCTION. What it paints outside the box stays invisible."))
 
 (defgeneric call-with-origin (function canvas x y)
   (:documentation "Call FUNCTION with X, Y as the origin of all coordinates."))
 
 (defmacro with-clipping ((canvas x y width height) &body body)
-  "Run BODY; what it draws on CANVAS outside the box, in pixels, stays invisible."
+  "Run BODY. What it draws on CANVAS outside the box, in pixels, stays invisible."
   `(call-with-clipping (lambda () ,@body) ,canvas ,x ,y ,width ,height))
 
 (defmacro with-origin ((canvas x y) &body body)
   "Run BODY with X, Y, in pixels, as the origin of what it draws on CANVAS."
   `(call-with-origin (lambda () ,@body) ,canvas ,x ,y))
 
-;;; What is drawn stands for something.
+;;; Subjects: what a part of a drawing represents.
 
 (defgeneric subject-title (subject)
-  (:documentation "Return a short string that says what SUBJECT, drawn on a canvas, is.")
+  (:documentation "Return a short string that names SUBJECT, which is drawn on a canvas.")
   (:method (subject) (princ-to-string subject)))
 
 (defgeneric call-with-subject (function canvas subject)
-  (:documentation "Call FUNCTION, which paints SUBJECT; a canvas may let the user point at it.")
+  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at it.")
   (:method (function canvas subject)
     (declare (ignore canvas subject))
     (funcall function)))

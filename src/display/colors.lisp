@@ -5,18 +5,18 @@
 (export '(color shade color-called mix +least-contrast+ primaries color-of-primaries luminance
           color-contrast ink-on tinted +textures+ draw-texture))
 
-;;; A colour is an integer, as a pixel is to CLX: #xRRGGBB. Vectors run from dark to light. The
-;;; manual names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight
-;;; plain colours were chosen, by a search over hue, chroma and lightness, so that any two of them
-;;; are at least 10 apart in CIE Lab to those who see all colours, to those who miss one of the
-;;; three kinds of cones, and on a print in grey; tests/palette.lisp measures it.
+;;; A colour is an integer #xRRGGBB, like a pixel in CLX. Vectors run from dark to light. The manual
+;;; names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight plain
+;;; colours were found by a search over hue, chroma and lightness. Any two of them are at least 10
+;;; apart in CIE Lab: with full colour vision, without one of the three kinds of cones, and printed
+;;; in grey. tests/palette.lisp measures it.
 
 (deftype color ()
   "A colour as #xRRGGBB."
   '(unsigned-byte 24))
 
 (defun mix (dark light fraction)
-  "Return the colour that is FRACTION, 0 to 1, of the way from DARK to LIGHT."
+  "Return the colour at FRACTION, from 0 to 1, between DARK and LIGHT."
   (loop with color = 0
         for position in '(16 8 0)
         for low = (ldb (byte 8 position) dark)
@@ -37,13 +37,13 @@
 (defconstant +plain+ 9 "The index of the plain colour in a vector of 12 shades.")
 
 (defun shades-around (dark plain light)
-  "Return a vector of 12 colours from DARK by way of PLAIN, at +PLAIN+, to LIGHT."
+  "Return a vector of 12 colours from DARK through PLAIN, at +PLAIN+, to LIGHT."
   (concatenate 'simple-vector
                (shades (1+ +plain+) dark plain)
                (subseq (shades (- 12 +plain+) plain light) 1)))
 
 (defmacro define-shades (&rest definitions)
-  "Define each of the variables as a vector of 12 shades around a plain colour."
+  "Define variables as vectors of 12 shades. DEFINITIONS are lists (variable dark plain light hue)."
   `(progn
      ,@(loop for (variable dark plain light hue) in definitions
              collect `(public ,variable)
@@ -62,8 +62,8 @@
   (lightviolet* #x421468 #xB585DE #xE8D6F8 "light violet"))
 
 (defun color-called (name)
-  "Return the vector of shades that has the same name as NAME, the value of a :color attribute
-(a symbol or string), or NIL if NAME is no colour."
+  "Return the vector of shades with the name NAME, the value of a :color attribute (a symbol or
+string), or NIL if NAME is not a colour."
   (and (typep name '(and (or symbol string) (not null)))
        (let ((variable (find-symbol (concatenate 'string (name-string name) "*")
                                     :ars-magna.canvas)))
@@ -71,20 +71,20 @@
               (symbol-value variable)))))
 
 (defun shade (name &optional (index +plain+))
-  "Return shade INDEX (0, dark, to 11, light) of the colour NAME, the value of a :color
-attribute. Black if NAME is none (manual B; reading 212)."
+  "Return shade INDEX, from 0, dark, to 11, light, of the colour NAME, the value of a :color
+attribute; black if NAME is not a colour (manual B; reading 212)."
   (let ((shades (color-called name)))
     (if shades (aref shades index) black*)))
 
 ;;; Contrast.
 
-;;; Luminance and contrast are those of the Web Content Accessibility Guidelines 2.1: what is less
-;;; than 3 to 1 is hard to make out.
+;;; Luminance and contrast are those of the Web Content Accessibility Guidelines 2.1. A contrast of
+;;; less than 3 is hard to see.
 
 (defconstant +least-contrast+ 3 "The least contrast of what is drawn to its background.")
 
 (defun linear-light (byte)
-  "Return how much light, from 0 to 1, the value BYTE of one of the three primaries means."
+  "Return the light, from 0 to 1, of the value BYTE of one of the three primaries."
   (let ((value (/ byte 255d0)))
     (if (<= value 0.04045d0)
         (/ value 12.92d0)
@@ -97,11 +97,11 @@ attribute. Black if NAME is none (manual B; reading 212)."
                       (- (* 1.055d0 (power light (/ 2.4d0))) 0.055d0))))))
 
 (defun primaries (color)
-  "Return the light of red, green and blue in COLOR, as a list."
+  "Return a list of the light of red, green and blue in COLOR, each from 0 to 1."
   (loop for position in '(16 8 0) collect (linear-light (ldb (byte 8 position) color))))
 
 (defun color-of-primaries (primaries)
-  "Return the colour that has PRIMARIES, a list of the light of red, green and blue."
+  "Return the colour with PRIMARIES, a list of the light of red, green and blue."
   (reduce (lambda (color light) (logior (ash color 8) (byte-of-light light)))
           primaries :initial-value 0))
 
@@ -115,12 +115,12 @@ attribute. Black if NAME is none (manual B; reading 212)."
     (/ (max a b) (min a b))))
 
 (defun ink-on (color)
-  "Return that of black and white which is seen better on COLOR; its contrast is at least 4.5."
+  "Return black or white, whichever has more contrast to COLOR: at least 4.5."
   (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
 (defun tinted (grey hue fraction)
-  "Return GREY, a colour, with as much of HUE, a colour, as FRACTION says, 0 to 1, and of the same
-luminance as before; so it looks the same on a print in grey."
+  "Return the colour GREY mixed with FRACTION, from 0 to 1, of the colour HUE. The luminance stays
+the same, and so does a print in grey."
   (let* ((light (luminance grey)) (strength (luminance hue)))
     (color-of-primaries
      (loop for primary in (primaries hue)
@@ -128,9 +128,9 @@ luminance as before; so it looks the same on a print in grey."
 
 ;;;; Textures
 
-;;; A texture is a list of marks, repeated in square tiles. Where coordinates are multiples of the
-;;; size of a tile, so are the marks of areas beside each other. Lines run through all tiles of a
-;;; rectangle, so that large areas take few of them. Coordinates in a tile are from 0 to 1.
+;;; A texture is a list of marks, repeated in square tiles that begin at multiples of the size of a
+;;; tile: so the marks of adjacent areas join. Lines run through all tiles of a rectangle, so that
+;;; large areas need few of them. Coordinates in a tile are from 0 to 1.
 
 (define-constant +textures+
     '(:plain ()
@@ -149,18 +149,18 @@ luminance as before; so it looks the same on a print in grey."
 (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
 (defun tile-edges (low high tile)
-  "Return where tiles begin that lie between LOW and HIGH, at least in part."
+  "Return the beginnings of the tiles that lie, at least in part, between LOW and HIGH."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun levels (low high tile part)
-  "Return what is PART of a tile behind the edge of one, from LOW up to HIGH."
+  "Return the coordinates from LOW up to HIGH that are at PART, from 0 to 1, of a tile."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
 
 (defun slants (left top right bottom tile sign)
-  "Return diagonals through the corners of tiles, cut to the rectangle: those on which y - SIGN x is
-a multiple of TILE."
+  "Return the diagonals through corners of tiles, cut to the rectangle: on them, y - SIGN x is a
+multiple of TILE."
   (let* ((ends (list (* sign left) (* sign right)))
          (least (- top (reduce #'max ends))) (most (- bottom (reduce #'min ends))))
     (loop for c in (rest (tile-edges least most tile))
@@ -170,7 +170,7 @@ a multiple of TILE."
             append (list from (+ c (* sign from)) to (+ c (* sign to))))))
 
 (defun strokes-in-tiles (left top right bottom tile stroke)
-  "Return STROKE, x1 y1 x2 y2 in parts of a tile, in each tile of the rectangle, cut to it."
+  "Return STROKE, x1 y1 x2 y2 in parts of a tile, for each tile of the rectangle, cut to it."
   (flet ((cut-to (low value high) (clamp value low high)))
     (destructuring-bind (x1 y1 x2 y2) stroke
       (loop for y in (tile-edges top bottom tile)
@@ -181,7 +181,7 @@ a multiple of TILE."
                                       (cut-to top (+ y (* y2 tile)) bottom)))))))
 
 (defun mark-segments (mark left top right bottom tile)
-  "Return the lines x1 y1 x2 y2 ... that MARK, which is no box, is in the rectangle."
+  "Return the lines x1 y1 x2 y2 ... of MARK, which is not a box, in the rectangle."
   (ecase (first mark)
     (:across (loop for y in (levels top bottom tile (second mark)) append (list left y right y)))
     (:down (loop for x in (levels left right tile (second mark)) append (list x top x bottom)))
@@ -190,7 +190,7 @@ a multiple of TILE."
     (:stroke (strokes-in-tiles left top right bottom tile (rest mark)))))
 
 (defun mark-boxes (mark left top right bottom tile)
-  "Return the boxes x y width height ... that MARK is in the rectangle."
+  "Return the boxes x y width height ... of MARK, a box, in the rectangle."
   (destructuring-bind (x y width height) (rest mark)
     (loop for (x1 y1 x2 y2) on (strokes-in-tiles left top right bottom tile
                                                  (list x y (+ x width) (+ y height)))

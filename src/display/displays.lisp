@@ -4,9 +4,9 @@
 
 (export '(draw-display display-title +displays+))
 
-;;; Each function of a display draws from 0, 0 and is given the image of the robot and how wide to
-;;; draw; it returns how many pixels down it has drawn. (In these loops Y steps before the parts run
-;;; out, so that it ends below the last.) Manual B.
+;;; The function of a display (manual B) gets the image of the robot and the width. It draws from 0,
+;;; 0 and returns its height. (In the loops, Y steps before the parts run out, and so ends below the
+;;; last part.)
 
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
@@ -14,7 +14,7 @@
 (defconstant +largest-unit+ 8 "The most pixels of width for each unit of a thing's size.")
 
 (defun characters-in (width)
-  "Return how many characters fit into WIDTH pixels; at least one does."
+  "Return how many characters fit into WIDTH pixels, at least 1."
   (max 1 (floor width +character-width+)))
 
 (defun draw-line-of-text (canvas x y width text)
@@ -26,7 +26,7 @@
                    (concatenate 'string (subseq text 0 (1- count)) "~")))))
 
 (defun draw-paragraph (canvas x y width text)
-  "Write TEXT, in as many lines as it takes, from Y. Return where it ends."
+  "Write TEXT, in as many lines as needed, from Y. Return where it ends."
   (dolist (line (wrapped-text text (characters-in (- width x +margin+))) y)
     (draw-line-of-text canvas x y width line)
     (incf y +line-height+)))
@@ -34,7 +34,7 @@
 ;;; Things.
 
 (defun images-shown (robot)
-  "Return a list of the images of things that displays show of ROBOT."
+  "Return a list of the images of things that the displays of ROBOT show."
   (remove-if-not #'thing-image-p
                  (append (mapcar #'designator-image-denotation (robot-image-designators robot))
                          (loop for camera in (robot-image-cameras robot)
@@ -48,11 +48,11 @@
                                  (robot-image-bins robot)))))
 
 (defvar *size-unit* +largest-unit+
-  "How many pixels wide a thing is drawn for each unit of its size: all things of a robot alike, so
-that their widths are in proportion.")
+  "The pixels of width for each unit of size, the same for all things of a robot, so that their
+widths are in proportion.")
 
 (defun size-unit (robot)
-  "Return how many pixels wide a unit of size is for the largest thing shown of ROBOT to fit."
+  "Return the pixels for a unit of size with which the largest thing shown of ROBOT fits."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
                          :initial-value 0)))
     (if (< (* largest +largest-unit+) +object-width+)
@@ -60,11 +60,11 @@ that their widths are in proportion.")
         (/ +object-width+ largest))))
 
 (defun thing-width (image)
-  "Return how wide to draw the thing, in pixels: in proportion to its size, but so that it is seen."
+  "Return the width of the thing, in pixels: in proportion to its size, but at least 2."
   (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
-  "Draw a frame in the current colour, with an outline that is seen on white whatever that is."
+  "Draw a frame in the current colour, with a black outline that is visible on white."
   (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
     (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
     (when (and in-color* (<= 4 width))
@@ -92,13 +92,13 @@ that their widths are in proportion.")
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
 (defun note-undrawable (image value trouble)
-  "Say once that TROUBLE keeps the thing from being drawn by VALUE, its :draw-function."
+  "Report once that TROUBLE prevents VALUE, the :draw-function of the thing, from drawing it."
   (unless (gethash value *broken-graphics*)
     (setf (gethash value *broken-graphics*) t)
     (error-set (subject-title image) " is drawn plainly: " trouble)))
 
 (defun draw-by-itself (canvas image x y)
-  "Have the thing drawn by its own :draw-function (reading 211). True if it has one that can."
+  "Draw the thing by its :draw-function (reading 211). True if it has one that works."
   (let ((value (thing-image-draw-function image)))
     (multiple-value-bind (function trouble) (drawing-code value)
       (when trouble (note-undrawable image value trouble))
@@ -116,7 +116,7 @@ that their widths are in proportion.")
       (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
 (defun draw-location (canvas location x y width)
-  "Draw what a part is inside of: a thing, or the text that LOCATION is."
+  "Draw LOCATION, which a part is inside of: the image of a thing, a text, or NIL."
   (cond ((null location))
         ((stringp location) (draw-line-of-text canvas x y width (format nil "in ~A" location)))
         (t (draw-line-of-text canvas x y width "in ")
@@ -165,8 +165,8 @@ that their widths are in proportion.")
                      (append (around x y angle (* 1/2 +dial+)) (around x y angle +dial+))))))
 
 (defun draw-dial (canvas robot camera y)
-  "Draw CAMERA as a wedge in the direction in which it looks on the map, as wide as its field of
-view, with a tick in the direction in which it believes what it tracks to be."
+  "Draw CAMERA as a wedge in its direction on the map, as wide as its field of view, with a tick in
+the believed direction of what it tracks."
   (let* ((x (+ +margin+ +dial+)) (y (+ y +dial+))
          (half (* 1/2 (camera-image-field-of-view camera)))
          (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
@@ -181,15 +181,15 @@ view, with a tick in the direction in which it believes what it tracks to be."
       (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
 
 (defun view-text (camera)
-  "Return what CAMERA saw when a view was asked for last, and how long ago that was. STATUS looks
-anew; a display does not, lest it show what the robot cannot know."
+  "Return a text of the last view of CAMERA that was asked for, and its age. Unlike STATUS, a
+display does not look again, so that it shows nothing that the robot cannot know."
   (if (camera-image-view camera)
       (format nil "View, asked for ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
               (camera-image-view-age camera) (camera-image-view camera))
       "View: none asked for yet"))
 
 (defun draw-track-line (canvas track x y width)
-  "Write what TRACK, the image of a designator, is, and draw what it denotes."
+  "Write the type and distance of TRACK, the image of a designator, and draw what it denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
     (draw-line-of-text canvas x y width text)
@@ -242,8 +242,8 @@ anew; a display does not, lest it show what the robot cannot know."
       (:cameras "Cameras" draw-camera robot-image-cameras)
       (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
-  :documentation "The displays but that of the world: lists (name title function), or of those of
-parts (name title function parts), in which FUNCTION draws one of what PARTS returns.")
+  :documentation "The displays except that of the world: lists (name title function [parts]). With
+PARTS, FUNCTION draws each of the parts that PARTS returns.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))
@@ -254,7 +254,7 @@ storage bins.")
 (defconstant +detail-width+ 340 "The width of every display but that of the world, in pixels.")
 
 (defun display-title (display)
-  "Return what the window of DISPLAY, one of +DISPLAYS+, is called (manual B)."
+  "Return the title of the window of DISPLAY, one of +DISPLAYS+ (manual B)."
   (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-detail (canvas display robot width)
@@ -281,7 +281,7 @@ height."
     (+ top height 1)))
 
 (defun draw-all (canvas snapshot robot layers title)
-  "Draw the six displays side by side; return the width and height of that."
+  "Draw the six displays side by side; return the width and height."
   (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers :title title)
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
@@ -291,8 +291,8 @@ height."
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
                                                      (width +detail-width+) title)
   "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS from SNAPSHOT and ROBOT, the image of a robot
-in it. Return the width and height drawn, in pixels. WIDTH is that of the details, LAYERS what
-the world shows, TITLE what stands above it: see DRAW-FRAMED. To be called within WITH-CANVAS."
+in it. Return the width and height drawn, in pixels. WIDTH is that of the details, LAYERS are those
+of the world, TITLE is above it: see DRAW-FRAMED. Call this within WITH-CANVAS."
   (case display
     (:all (draw-all canvas snapshot robot layers title))
     (:world (draw-framed-world canvas snapshot layers :title title))

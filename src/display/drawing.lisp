@@ -7,11 +7,11 @@
           draw-image-glyphs clear-area +text-font+ text-width paint-text character-width
           draw-words call-with-opacity with-opacity))
 
-;;; Signatures and meanings are CLX's, so that code written for it runs. Like CLX, they check
-;;; their arguments here, at the door, and return nothing of use.
+;;; Signatures and meanings are those of CLX, so that code written for CLX runs. Arguments are
+;;; checked here, and the values are of no use.
 
 (defvar *calls-left* nil
-  "How many times more the code that draws may do so; NIL if nobody counts.")
+  "How often drawing code may still draw; NIL for no limit.")
 
 (defun check-drawing (operator canvas gcontext numbers)
   (when (and *calls-left* (minusp (decf *calls-left*)))
@@ -69,7 +69,7 @@ extent of ANGLE2, in radians, counterclockwise from three o'clock; a filled slic
                       (list x1 y1 x2 y2))))
 
 (defun absolute-points (points)
-  "Return the list x y ... of the places that POINTS, each relative to the one before, reach."
+  "Return POINTS, x y ..., each relative to the one before, as a list of absolute points."
   (loop with x = 0 and y = 0
         for (dx dy) on (coerce points 'list) by #'cddr
         collect (incf x dx)
@@ -87,7 +87,7 @@ the polygon if FILL-P. SHAPE is a hint and changes nothing."
   (paint-segments drawable gcontext segments))
 
 (defun pixels (points)
-  "Return the sequence of rectangles that are the pixels at POINTS."
+  "Return the rectangles x y width height ... of the pixels at POINTS."
   (loop for (x y) on (coerce points 'list) by #'cddr
         append (list (floor x) (floor y) 1 1)))
 
@@ -104,7 +104,7 @@ RELATIVE-P."
 ;;; Text.
 
 (defun glyph-text (sequence start end)
-  "Return the string for SEQUENCE, a string or characters or their codes, from START to END."
+  "Return SEQUENCE, a string or a sequence of characters or codes, from START to END, as a string."
   (check-argument draw-glyphs sequence (typep sequence 'sequence) "a string")
   (map 'string (lambda (glyph)
                  (cond ((integerp glyph) (code-char glyph))
@@ -152,9 +152,9 @@ WRONG-ARGUMENT."
 
 ;;;; Text of any size, for charts
 
-;;; How wide a text is depends on the fonts of whoever looks at it. So the widths here are what it
-;;; takes at most: those of the wider one of DejaVu Sans and of Helvetica, to which Arial and
-;;; Liberation Sans are alike. What fits by them fits everywhere.
+;;; The width of a text depends on the viewer's fonts. The widths here are upper bounds: of DejaVu
+;;; Sans and of Helvetica, which Arial and Liberation Sans resemble, the wider one. So what fits by
+;;; them fits everywhere.
 
 (define-constant +text-font+ "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
   :test #'equal
@@ -170,10 +170,10 @@ WRONG-ARGUMENT."
           do (loop for character across characters
                    do (setf (svref widths (char-code character)) width)))
     widths)
-  "How wide the characters of ASCII are, in heights of the font.")
+  "The widths of the ASCII characters, in heights of the font.")
 
 (defun text-width (string size &optional bold-p)
-  "Return how wide STRING is at most, in pixels, if the font is SIZE pixels high."
+  "Return the greatest width of STRING, in pixels, in a font SIZE pixels high."
   (* size (if bold-p 1.2d0 1)
      (loop for character across string
            for code = (char-code character)
@@ -181,9 +181,9 @@ WRONG-ARGUMENT."
 
 (defgeneric paint-text (canvas gcontext x y string size anchor upward-p bold-p)
   (:documentation
-   "Paint STRING, without new lines, in a font SIZE pixels high. X, Y is where its base line has
-its :START, :MIDDLE or :END, as ANCHOR says. It runs upward if UPWARD-P, else to the right. By
-default a canvas uses its one font, to the right.")
+   "Paint STRING, without new lines, in a font SIZE pixels high. X, Y is the :START, :MIDDLE or :END
+of its base line, by ANCHOR. It runs upward if UPWARD-P, else to the right. By default a canvas uses
+its one font, to the right.")
   (:method (canvas gcontext x y string size anchor upward-p bold-p)
     (declare (ignore size upward-p bold-p))
     (let ((width (* +character-width+ (length string))))
@@ -192,15 +192,15 @@ default a canvas uses its one font, to the right.")
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return how wide a character is that DRAW-WORDS draws on CANVAS in a font SIZE
-pixels high, in pixels, if all are alike: by default as in a canvas's one font.")
+  (:documentation "Return the width in pixels of characters that DRAW-WORDS draws on CANVAS in a
+font SIZE pixels high, if all have the same: by default that of the one font of a canvas.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))
 
 (defun draw-words (canvas gcontext x y string &key (size 12) (anchor :start) upward-p bold-p)
-  "Draw STRING in a font SIZE pixels high, with the :START, :MIDDLE or :END, as ANCHOR says, of its
-base line at X, Y; upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT."
+  "Draw STRING in a font SIZE pixels high, with the :START, :MIDDLE or :END of its base line, by
+ANCHOR, at X, Y: upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT."
   (check-drawing 'draw-words canvas gcontext (list x y size))
   (check-argument draw-words anchor (member anchor '(:start :middle :end))
                   ":start, :middle or :end")
@@ -208,12 +208,12 @@ base line at X, Y; upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT
   nil)
 
 (defgeneric call-with-opacity (function canvas opacity)
-  (:documentation "Call FUNCTION; what it paints hides what is below by OPACITY, from 0 to 1, as far
-as CANVAS can do that: by default wholly.")
+  (:documentation "Call FUNCTION, which paints with OPACITY, from 0 to 1. By default a canvas paints
+opaquely.")
   (:method (function canvas opacity)
     (declare (ignore canvas opacity))
     (funcall function)))
 
 (defmacro with-opacity ((canvas opacity) &body body)
-  "Run BODY; what it draws on CANVAS hides what is below by OPACITY, from 0 to 1."
+  "Run BODY, which draws on CANVAS with OPACITY, from 0 to 1."
   `(call-with-opacity (lambda () ,@body) ,canvas ,opacity))

@@ -1,47 +1,48 @@
-;;;; history.lisp -- what pictures show of the past: where robots went, what cameras last saw.
+;;;; history.lisp -- where robots went, and what cameras last saw, for pictures.
 
 (in-package :ars-magna.display)
 
 (export '(history))
 
-;;; A history is kept by an observer of its simulation from when somebody first asks for it. Trails
-;;; are kept with the simulation, under the names of robots, and are never altered: so forks have
-;;; them as they were, and what is rewound has the part of them that is still so.
+;;; An observer of a simulation records its history from the first call of KEEP-HISTORY. Trails are
+;;; part of the simulation, by the names of robots. A trail is never modified, only replaced: so
+;;; forks have the trails of the moment of the fork, and rewinding cuts them.
 
 (defstruct (trail (:constructor make-trail (points count)) (:copier nil))
-  "Where a robot has been: POINTS is a list x y tick placements x y ... of COUNT of them, newest
-first. Where the placements differ from one point to the next, the robot was put elsewhere."
+  "Where a robot has been: POINTS is a list x y tick placements x y ... of COUNT points, newest
+first. Placements count how often the robot was put somewhere: if they differ, it was put
+elsewhere."
   (points '() :type list :read-only t)
   (count 0 :type fixnum :read-only t))
 
 (defstruct (look (:constructor make-look (view x y ends)) (:copier nil))
-  "What a camera's last view came from: rays from X, Y to ENDS, a list x y x y ...."
+  "The rays of a camera's last view: from X, Y to ENDS, a list x y x y ...."
   (view '() :type list :read-only t)
   (x 0d0 :type double-float :read-only t)
   (y 0d0 :type double-float :read-only t)
   (ends '() :type list :read-only t))
 
 (defstruct (history (:copier nil))
-  "The past of one simulation, as far as pictures show it besides trails."
-  ;; Cameras come in small numbers: an association list.
+  "The recorded past of a simulation, except trails."
+  ;; An association list by camera: there are few cameras.
   (looks '() :type list))
 
 (defconstant +trail-length+ 4000 "The most points of a trail that are drawn.")
 (defconstant +trail-step+ 0.1d0 "The least distance between the points of a trail, in metres.")
 
 (defun trail-called (name simulation)
-  "Return the trail of the robot called NAME that is kept of SIMULATION, or NIL."
+  "Return the trail of the robot called NAME in SIMULATION, or NIL."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
 (defmacro do-trail ((points &rest variables) &body body)
-  "Run BODY, clauses of LOOP, with VARIABLES for x, y, tick and placements of each of POINTS, of a
-trail, that pictures show, newest first."
+  "Run BODY, clauses of LOOP, for each of those POINTS of a trail that pictures show, newest first.
+VARIABLES are bound to its x, y, tick and placements."
   `(loop for (,@variables) on ,points by #'cddddr
          repeat +trail-length+
          ,@body))
 
 (defun moved-p (points x y)
-  "True unless the first of POINTS is about at X, Y."
+  "True unless the first of POINTS is less than +TRAIL-STEP+ from X, Y."
   (declare #.*hot* (type double-float x y))
   (or (null points)
       (>= (+ (abs (- x (the double-float (first points))))
@@ -49,8 +50,8 @@ trail, that pictures show, newest first."
           +trail-step+)))
 
 (defun add-placement (robot tick points)
-  "Return POINTS, of a trail; if ROBOT has been put elsewhere since, with where that was, as it may
-have driven on by TICK."
+  "Return POINTS, of a trail. If ROBOT has been put elsewhere since, add that place: by TICK it may
+have driven on."
   (if (and points
            (/= (the fixnum (robot-placements robot)) (the fixnum (fourth points)))
            (moved-p (list (robot-x robot) (robot-y robot)) (robot-put-x robot) (robot-put-y robot)))
@@ -58,16 +59,16 @@ have driven on by TICK."
       points))
 
 (defun add-place (robot tick points)
-  "Return POINTS, of a trail, with where ROBOT is at TICK as the newest."
+  "Return POINTS, of a trail, with the place of ROBOT at TICK as the newest."
   (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
          (add-placement robot tick points)))
 
 (defun new-points (points before)
-  "Return how many POINTS, of a trail, there are to BEFORE, the tail of them that was there."
+  "Return the number of POINTS, of a trail, before its tail BEFORE."
   (loop for rest on points by #'cddddr until (eq rest before) count t))
 
 (defun extended-trail (trail robot tick)
-  "Return what TRAIL, one or NIL, is with where ROBOT is at TICK as the newest point."
+  "Return a trail like TRAIL, one or NIL, with the place of ROBOT at TICK as the newest point."
   (let* ((before (and trail (trail-points trail)))
          (points (add-place robot tick before))
          (count (+ (if trail (trail-count trail) 0) (new-points points before))))
@@ -76,7 +77,7 @@ have driven on by TICK."
         (make-trail points count))))
 
 (defun note-position (simulation robot)
-  "Note where ROBOT of SIMULATION is, if it has moved; this runs in every tick."
+  "Record the place of ROBOT of SIMULATION, if it has moved. This runs in every tick."
   (declare #.*hot* (type robot robot))
   (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
@@ -85,8 +86,8 @@ have driven on by TICK."
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
 (defun points-of-trail (robot)
-  "Return a list x y tick placements ... of where ROBOT has been, newest first, as far as that is
-known; NIL if none of it is. Where a fork has gone nobody notes, but it came to where it is."
+  "Return a list x y tick placements ... of where ROBOT has been, newest first; NIL if no trail is
+recorded. Forks do not record trails: their last piece leads straight to where ROBOT is."
   (let* ((simulation (robot-simulation robot))
          (trail (trail-called (robot-name robot) simulation)))
     (cond ((null trail) '())
@@ -115,7 +116,7 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
         collect (+ x (* end dx)) collect (+ y (* end dy))))
 
 (defun take-look (camera)
-  "Return the look that CAMERA's last view comes from, if it was taken where CAMERA is now."
+  "Return the look of CAMERA's last view, supposing that it was taken where CAMERA is now."
   (let* ((robot (camera-robot camera))
          (x (robot-x robot)) (y (robot-y robot))
          (count (min 60 (camera-resolution camera)))
@@ -147,16 +148,16 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
     (loop for camera across (robot-cameras robot) do (note-look history camera))))
 
 (defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "From simulations to pairs of their history and the observer that keeps it.")
+  "From simulations to pairs of their history and the observer that records it.")
 
 (defun history-of (simulation)
-  "Return the history that is kept of SIMULATION, or NIL."
+  "Return the history of SIMULATION, or NIL."
   (car (gethash simulation *histories*)))
 
 (addition keep-history)
 (defun keep-history (&optional (simulation (current-simulation)))
-  "From now on keep a history of SIMULATION, so that its pictures can show the trails of robots and
-the rays of the last looks. Return it."
+  "Record a history of SIMULATION from now on, so that its pictures can show the trails of robots
+and the rays of the last views. Return the history."
   (or (history-of simulation)
       (let* ((history (make-history))
              (observer (lambda (simulation) (note-moment history simulation))))
@@ -167,8 +168,8 @@ the rays of the last looks. Return it."
         history)))
 
 (defun follow-rewind (old new)
-  "Keep a history of NEW, which is to go on in the place of OLD, if one is kept of that; let it have
-the trails of OLD up to now."
+  "Give NEW, which replaces OLD, the trails of OLD up to the present tick of NEW. If OLD has a
+history, record one of NEW instead."
   (setf (simulation-trails new)
         (loop for (name . trail) in (simulation-trails old)
               collect (cons name (trail-until (simulation-tick new) trail))))

@@ -1,11 +1,11 @@
-;;;; inks.lisp -- lines that are seen on whatever they lie on, and how walls are told apart.
+;;;; inks.lisp -- lines that are visible on any ground, and how walls are told apart.
 
 (in-package :ars-magna.display)
 
 (export '(nth-cyclic nth-ink to-pixels pixels-of with-halo around draw-circle box-around overlap-p))
 
-;;; Lines are dark and have a light halo: on light ground the line is seen, on dark ground the halo,
-;;; on what is between both. So nobody need know what is below.
+;;; Lines are dark and have a light halo. The line is visible on light ground, the halo on dark
+;;; ground, and both between. So the ground does not matter.
 
 (defun call-with-halo (function color width dashes)
   (with-gcontext (draw-gcontext* :foreground white* :line-width (+ width 2))
@@ -15,49 +15,49 @@
       (funcall function))))
 
 (defmacro with-halo ((color &key (width 1) dashes) &body body)
-  "Run BODY, which draws lines, twice: for a halo, and then in COLOR, a dark one, WIDTH pixels
+  "Run BODY, which draws lines, twice: for a white halo, and then in COLOR, a dark one, WIDTH pixels
 wide, with DASHES."
   `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
-;;; Where there are several of a sort, such as robots and ways, each has a colour and dashes in its
-;;; turn. The numbers of both have no common factor: so forty are told apart, and five of them even
-;;; without colours. The colours are at least 20 apart in CIE Lab for those who see all colours and
-;;; for those who miss one kind of cones; tests/palette.lisp measures it.
+;;; Each of several robots or ways has a colour and dashes by its position. There are 8 colours and
+;;; 5 dashes: so 40 can be told apart, and 5 without colours. Any two colours are at least 20 apart
+;;; in CIE Lab, with full colour vision and without one kind of cones; tests/palette.lisp measures
+;;; it.
 
 (define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
   :test #'cl:equal
-  :documentation "The colours of what there are several of, in turn.")
+  :documentation "The colours of several robots or ways, by position.")
 
 (define-constant +line-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
   :test #'cl:equal
-  :documentation "The dashes and gaps of what there are several of, in turn; NIL is a solid line.")
+  :documentation "The dashes and gaps of several robots or ways, by position; NIL is a solid line.")
 
 (defun nth-cyclic (position sequence)
-  "Return the element of SEQUENCE at POSITION, counted from the beginning again after the last."
+  "Return the element of SEQUENCE at POSITION, as if SEQUENCE were repeated for ever."
   (elt sequence (mod position (length sequence))))
 
 (defun nth-ink (position)
-  "Return the colour of what is at POSITION among several of its sort."
+  "Return the colour of the robot or way at POSITION among several."
   (nth-cyclic position +line-inks+))
 
 (defun nth-dashes (position)
   (nth-cyclic position +line-dashes+))
 
 (defun to-pixels (metres)
-  "Return how many pixels METRES are."
+  "Return METRES in pixels."
   (* metres graphics-scale*))
 
 (defun pixels-of (points)
-  "Return the list of coordinates POINTS, in metres, in pixels."
+  "Return POINTS, a list of coordinates in metres, in pixels."
   (mapcar #'to-pixels points))
 
 (defun around (x y angle radius)
-  "Return a list of the coordinates RADIUS from X, Y in direction ANGLE."
+  "Return the point (x y) at the distance RADIUS from X, Y in direction ANGLE."
   (list (+ x (* radius (cosine angle))) (+ y (* radius (sine angle)))))
 
 (defun draw-circle (canvas x y radius fill-p)
-  "Draw a circle, or a line of which the middle is RADIUS away from X, Y."
+  "Draw a filled circle, or a circular line with its middle RADIUS pixels from X, Y."
   (let ((reach (if fill-p radius (+ radius (/ (max 1 (gcontext-line-width draw-gcontext*)) 2)))))
     (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 2pi fill-p)))
 
@@ -69,41 +69,41 @@ wide, with DASHES."
        (< (second a) (fourth b)) (< (second b) (fourth a))))
 
 (defun box-around (x y half)
-  "Return the box that reaches HALF from X, Y to each side."
+  "Return the square box around X, Y that is twice HALF wide."
   (list (- x half) (- y half) (+ x half) (+ y half)))
 
 (defun draw-text (canvas x y text)
   (draw-glyphs canvas draw-gcontext* x y text))
 
 (defun words-width (text)
-  "Return how wide TEXT is, in pixels."
+  "Return the width of TEXT in pixels."
   (* +character-width+ (length text)))
 
 (defun wipe (canvas x y width height)
-  "Draw over what is in a box. Return NIL."
+  "Fill a box with white. Return NIL."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t)))
 
 (define-constant +ray-inks+ '(#x10308C #x4A2480 #x801850 #x8A3010 #x604800)
   :test #'cl:equal
-  :documentation "The colours of rays, from the least parameter of walls to the greatest.")
+  :documentation "The colours of rays, from the least to the greatest parameter of walls.")
 
 (defconstant +grid-ink+ #x8A8A8A "The colour of the grid, which lies on white.")
 (defconstant +frame-ink+ #x606060 "The colour of frames and ticks, on white.")
 
 ;;;; Walls
 
-;;; A wall has the texture and the hue of its substance, and is the lighter the greater the
-;;; parameter is. Hue and texture go by the order in which substances were defined; there is no
-;;; common factor of how many there are of each, so that they do not come together again soon. If
-;;; two substances of a map have the same texture, that which was defined later takes a free one.
+;;; A wall has the texture and the hue of its substance. The greater its parameter, the lighter it
+;;; is. Hues and textures follow the order in which substances were defined. There are 10 hues and
+;;; 11 textures, so that a combination repeats late. If two substances of a map have the same
+;;; texture, the one defined later takes a free one.
 
-;;; Text maps write walls in these colours, pictures tint their greys with them.
+;;; Text maps write walls in these colours. Pictures tint their greys with them.
 
 (define-constant +substance-inks+ '(:yellow :cyan :red :blue :grey :green :lightcyan :violet
                                     :lightyellow :lightviolet)
   :test #'cl:equal
-  :documentation "The colours of substances, in order of definition, over and over again.")
+  :documentation "The colours of substances, cyclically in order of definition.")
 
 (define-constant +tints+ '(:yellow #xC8B060 :cyan #x58B0B8 :red #xC08878 :blue #x7890D0
                            :green #x78A878 :lightcyan #x88C4B0 :violet #xA080C8
@@ -116,10 +116,10 @@ wide, with DASHES."
 (define-constant +wall-textures+ '(:lines :hatching :bricks :falling-hatching :plain :dots :posts
                                    :crosses :net :chequers :arrows)
   :test #'cl:equal
-  :documentation "The textures of substances, in order of definition, over and over again.")
+  :documentation "The textures of substances, cyclically in order of definition.")
 
 (defun substance-position (name)
-  "Return how many substances were defined before that called NAME, or NIL."
+  "Return the number of substances defined before the one called NAME, or NIL if there is none."
   (position name (all-substances) :key #'substance-name :test #'same-name-p))
 
 (defun substance-ink (name)
@@ -134,7 +134,7 @@ wide, with DASHES."
 (defconstant +middle-parameter+ 60 "The parameter whose shade is halfway between those two.")
 
 (defun wall-shade (parameter)
-  "Return the shade of grey* of walls with PARAMETER: the same in each map."
+  "Return the shade of grey* of walls with PARAMETER, the same in each map."
   (let ((part (/ parameter (+ (abs parameter) +middle-parameter+))))
     (+ +shade-of-zero+
        (round (* part (if (minusp part)
@@ -142,19 +142,20 @@ wide, with DASHES."
                           (- +greatest-shade+ +shade-of-zero+)))))))
 
 (defun wall-color (shade hue)
-  "Return the shade of grey* with the number SHADE, tinted with HUE, a colour or NIL."
+  "Return the shade SHADE of grey*, tinted with HUE, a colour or NIL."
   (let ((grey (svref grey* shade)))
     (if hue (tinted grey hue +tint-strength+) grey)))
 
 ;;; Looks.
 
 (defstruct (material (:constructor make-material (hue texture)) (:copier nil))
-  "What the walls of a substance look like: HUE is a colour or NIL."
+  "The look of the walls of a substance: HUE is a colour or NIL."
   (hue nil :type (or null color) :read-only t)
   (texture :plain :type keyword :read-only t))
 
 (defun free-texture (name taken)
-  "Return the texture for the substance called NAME in a map in which others have TAKEN theirs."
+  "Return the texture for the substance called NAME in a map whose other substances have the
+textures TAKEN."
   (let* ((first (or (substance-position name) 0))
          (all (loop for position from first repeat (length +wall-textures+)
                     collect (nth-cyclic position +wall-textures+))))
@@ -162,8 +163,7 @@ wide, with DASHES."
         (first all))))
 
 (defun textures-for (names)
-  "Return a list (name texture) for each of NAMES, the substances of a map, those first that were
-defined first."
+  "Return a list (name texture) for each of NAMES, the substances of a map, in order of definition."
   (let ((taken '()))
     (loop for name in (stable-sort (copy-list names) #'<
                                    :key (lambda (name)
@@ -171,7 +171,7 @@ defined first."
           collect (list name (first (push (free-texture name taken) taken))))))
 
 (defun materials-of (map)
-  "Return a vector of the looks of the substances of MAP by their numbers."
+  "Return a vector of the materials of the substances of MAP, by number."
   (let ((textures (textures-for (remove nil (coerce (map-substance-types map) 'list)))))
     (cl:map 'vector (lambda (name)
                       (make-material (and name (getf +tints+ (substance-ink name)))

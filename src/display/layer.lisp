@@ -5,9 +5,8 @@
 (export '(text-layers picture-layers layer-title define-layer layer-named
           text-layer-named layer-words))
 
-;;; All there is to know of a layer stands in its DEFINE-LAYER. The menus, the prompt, the
-;;; documentation, the legend, pictures and text maps read it. For the layers themselves see
-;;; layers.lisp. A layer is drawn at a depth:
+;;; DEFINE-LAYER defines a layer for menus, the prompt, the documentation, legends, pictures and
+;;; text maps. The layers themselves are in layers.lisp. A layer is drawn at a depth:
 ;;;
 ;;;   :UNDER-WALLS, :ON-WALLS     on the map, which never changes: (draw canvas map window)
 ;;;   :WAYS, :THINGS              of the whole snapshot, below robots, below things:
@@ -17,11 +16,11 @@
 ;;;   :LOOKS, :CAMERAS            of each camera, below :ROBOTS; looks lie lower: the same
 ;;;   :NAMES, :MARGIN             names.lisp and margins.lisp draw these
 ;;;
-;;; The function :SHOWN of a snapshot, or of the image of a robot or camera, returns what there is
-;;; to draw, SHOWN, or NIL. What the legend has is what is drawn: it asks the same function.
+;;; The function :SHOWN gets a snapshot, or the image of a robot or camera. It returns what to draw,
+;;; the argument SHOWN, or NIL. The legend calls it too, and so lists exactly what is drawn.
 
 (defstruct (layer (:copier nil) (:conc-name %layer-))
-  "What pictures can show, and how: see DEFINE-LAYER."
+  "Something that pictures can show: see DEFINE-LAYER."
   (name nil :type keyword) (title "" :type string) (sentence "" :type string)
   (default-p nil) (depth :robots :type keyword) (shown nil) (draw nil) (note nil) (boxes nil)
   (ink nil) (dashes '() :type list) (width 1) (legend nil) (entries nil) (last-p nil)
@@ -38,16 +37,16 @@
 
 (defun document-layers ()
   (setf (documentation '*picture-layers* 'variable)
-        (format nil "A list of what pictures of the world show besides walls, things and robots, ~
-                     unless their :LAYERS say otherwise: some of the following. By default those ~
-                     with a star.~2%~:{  ~S~:[~; *~] -- ~A: ~A~%~}~%Rays and trails are known ~
-                     from KEEP-HISTORY on."
+        (format nil "A list of the layers that pictures show besides walls, things and robots, ~
+                     unless :LAYERS is given: some of the following, by default those with a ~
+                     star.~2%~:{  ~S~:[~; *~] -- ~A: ~A~%~}~%Rays and trails are recorded ~
+                     only after KEEP-HISTORY."
                 (loop for layer in *layers*
                       collect (list (%layer-name layer) (%layer-default-p layer)
                                     (%layer-title layer) (%layer-sentence layer))))))
 
 (defun add-layer (layer)
-  "Let pictures know LAYER, in the place of one of the same name, or after all others."
+  "Add LAYER, in the place of one of the same name, or after all others. Return its name."
   (let* ((name (%layer-name layer)) (old (find name *layers* :key #'%layer-name)))
     (cond (old (setf *layers* (substitute layer old *layers*)))
           (t (setf *layers* (append *layers* (list layer)))
@@ -57,22 +56,23 @@
     name))
 
 (defmacro define-layer (name title sentence &rest options)
-  "Define the layer NAME, a keyword, called TITLE in menus; SENTENCE says what it shows. OPTIONS:
-- :default-p t: pictures show it unless told otherwise.
+  "Define the layer NAME, a keyword, called TITLE in menus. SENTENCE says what it shows. OPTIONS:
+- :default-p t: pictures show it unless :LAYERS is given.
 - :depth: where it is drawn, by default :ROBOTS: see the head of layer.lisp.
-- :shown, a function: what there is to draw, by default the :note of the robot.
+- :shown, a function: returns what to draw, by default the :note of the robot.
 - :draw, a function that draws this: see there.
-- :note, a function of a robot: what snapshots keep for this layer, an image or data for EQUAL.
-- :ink, by default that of each robot, :dashes and :width: what its lines look like.
-- :legend: what the legend calls these lines. :entries, a function of the snapshot, returns further
-  entries; :last-p t puts its line after those of other layers.
-- :boxes, a function of what :draw takes but the canvas: boxes that names leave alone.
-- :text-name, :text, :text-depth: what text maps call it, a function of a text view and the image
-  of a robot that returns pairs of a block and a glyph, and where these show: :ABOVE things,
-  :BELOW things, or on the :FLOOR, where there is nothing else."
+- :note, a function of a robot: returns what snapshots keep for this layer, an image or data for
+  EQUAL.
+- :ink, by default that of each robot, :dashes and :width: the look of its lines.
+- :legend: the text for these lines in the legend. :entries, a function of the snapshot, returns
+  further entries. :last-p t puts the line after those of other layers.
+- :boxes, a function of the arguments of :draw but the canvas: returns boxes that names avoid.
+- :text-name: the name in text maps. :text, a function of a text view and the image of a robot,
+  returns pairs of a block and a glyph. :text-depth: where these are visible: :ABOVE things, :BELOW
+  things, or on the :FLOOR, where there is nothing else."
   `(add-layer (make-layer :name ,name :title ,title :sentence ,sentence ,@options)))
 
-;;; What is asked of layers, by name.
+;;; Layers by name.
 
 (defun layer-called (name)
   "Return the layer called NAME. Signals WRONG-ARGUMENT."
@@ -85,33 +85,33 @@
   (%layer-title (layer-called name)))
 
 (defun layer-ink (name)
-  "Return the colour of lines of the layer NAME; for lines in the colours of robots, the first."
+  "Return the colour of the lines of the layer NAME; of lines in the colours of robots, the first."
   (or (%layer-ink (layer-called name)) (nth-ink 0)))
 
 (defun layer-dashes (name) (%layer-dashes (layer-called name)))
 
 (defun layers-at (depth &optional (names (picture-layers)))
-  "Return those of the layers called NAMES that are drawn at DEPTH, in the order of menus."
+  "Return the layers called NAMES that are drawn at DEPTH, in the order of menus."
   (remove-if-not (lambda (layer)
                    (and (eq depth (%layer-depth layer)) (member (%layer-name layer) names)))
                  *layers*))
 
-;;; Text maps have other names for layers. Lines of the prompt take both.
+;;; Text maps have other names for layers. The prompt accepts both.
 
 (defun text-layers ()
-  "Return what text maps call the layers that they can show."
+  "Return the names in text maps of the layers that these can show."
   (remove nil (mapcar #'%layer-text-name *layers*)))
 
 (defun layer-named (name)
-  "Return the layer of pictures that NAME, a keyword, means: its own name or that in text maps."
+  "Return the name in pictures of the layer NAME, a keyword: its name in pictures or in text maps."
   (let ((layer (find name *layers* :key #'%layer-text-name)))
     (if layer (%layer-name layer) name)))
 
 (defun text-layer-named (name)
-  "Return the layer of the text map that NAME, a keyword, means, either of its names."
+  "Return the name in text maps of the layer NAME, a keyword: its name in pictures or in text maps."
   (let ((layer (find name *layers* :key #'%layer-name)))
     (or (and layer (%layer-text-name layer)) name)))
 
 (defun layer-words (name)
-  "Return what lines of the prompt call the layer NAME: one name or two."
+  "Return the names that the prompt accepts for the layer NAME, one or two, as a text."
   (format nil "~A~@[ or ~A~]" name (%layer-text-name (layer-called name))))

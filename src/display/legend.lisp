@@ -1,42 +1,42 @@
-;;;; legend.lisp -- what there is to be seen in a picture of a world, each with a sample.
+;;;; legend.lisp -- what a picture of a world shows, each with a sample.
 
 (in-package :ars-magna.display)
 
 (export '(grouped sample-of robot-entry sample-of-name jump-entries))
 
-;;; An entry is a text with a function of a canvas and a place, X and Y in pixels, that draws the
-;;; sample around there, no more than 16 pixels high and as wide as the entry says.
+;;; An entry is a text with a function of a canvas and of X and Y, in pixels. The function draws a
+;;; sample around X, Y, at most 16 pixels high and as wide as the entry says.
 
 (defconstant +sample-width+ 18 "The width of most samples, in pixels.")
 
 (defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
                   (:copier nil))
-  "TEXT stands in the legend beside a sample WIDTH pixels wide; WHOLE is what it is short for, or
-NIL."
+  "An entry of a legend: TEXT beside a sample WIDTH pixels wide. WHOLE is the full text if TEXT is
+abridged, or NIL."
   (width +sample-width+ :type real :read-only t)
   (text "" :type string :read-only t)
   (sample (constantly nil) :type function :read-only t)
   (whole nil :type (or null string) :read-only t))
 
 (defmacro sample-of ((canvas x y) text &body body)
-  "Return an entry with TEXT, the sample of which BODY draws."
+  "Return an entry with TEXT and a sample that BODY draws."
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
 (defun named-entry (name sample &optional (more "") (width +sample-width+))
-  "Return an entry for NAME, a string, abridged if it is long, and for MORE, with SAMPLE, WIDTH
+  "Return an entry with NAME, a string, abridged if it is long, then MORE, and with SAMPLE, WIDTH
 pixels wide."
   (let ((text (short-name name)))
     (make-entry (concatenate 'string text more) sample
                 :whole (and (string/= text name) name) :width width)))
 
 (defmacro sample-of-name ((canvas x y) (name &rest more-and-width) &body body)
-  "Return an entry for NAME, the sample of which BODY draws. MORE-AND-WIDTH: a text to stand behind
-the name, and how wide the sample is, in pixels."
+  "Return an entry for NAME with a sample that BODY draws. MORE-AND-WIDTH: a text to append to the
+name, and the width of the sample in pixels."
   `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)
                 ,@more-and-width))
 
 (defun grouped (objects key)
-  "Return OBJECTS, a list, as lists of those for which KEY returns what is equal, in their order."
+  "Return the list OBJECTS as lists of those for which KEY returns equal values, in their order."
   (let ((groups '()))
     (dolist (object objects (mapcar #'reverse (mapcar #'rest (reverse groups))))
       (let* ((value (funcall key object)) (group (assoc value groups :test #'cl:equal)))
@@ -47,7 +47,7 @@ the name, and how wide the sample is, in pixels."
 (defconstant +longest-names+ 32 "About how many characters several names beside one sample have.")
 
 (defun join-names (texts)
-  "Return TEXTS as one, or as many as there is room for, and how many there are more."
+  "Return TEXTS joined, as many as there is room for, and the number of the others."
   (loop with joined = (first texts)
         for rest on (rest texts)
         for longer = (format nil "~A, ~A" joined (first rest))
@@ -56,8 +56,8 @@ the name, and how wide the sample is, in pixels."
         finally (return (format nil "~A~@[ and ~D more~]" joined (and rest (length rest))))))
 
 (defun names-entry (names sample)
-  "Return an entry for NAMES, lists (name more) of two strings each, with SAMPLE, which looks as all
-that they are the names of."
+  "Return an entry for NAMES, lists (name more) of two strings each, with SAMPLE: things with these
+names look the same."
   (flet ((texts (function)
            (loop for (name more) in names
                  collect (concatenate 'string (funcall function name) more))))
@@ -86,8 +86,8 @@ that they are the names of."
                    do (funcall function index)))))
 
 (defun parameter-ranges (snapshot)
-  "Return lists (number least greatest) of the substances of the walls that SNAPSHOT shows, by their
-numbers."
+  "Return lists (number least greatest), for each substance of walls that SNAPSHOT shows, of its
+number and the range of parameters, by number."
   (let ((map (snapshot-map snapshot)) (ranges '()))
     (flet ((note (index)
              (when (logtest +wall+ (aref (map-flags map) index))
@@ -142,7 +142,7 @@ numbers."
     (draw-place-at canvas type (- x 6) (- y 6))))
 
 (defun place-mark-svg (type)
-  "Return what the mark of the place type TYPE looks like here, as a string for comparison."
+  "Return an SVG document of the mark of the place type TYPE, to compare marks."
   (let ((color-p in-color*))
     (with-output-to-string (out)
       (with-svg (canvas out :color-p color-p)
@@ -150,7 +150,7 @@ numbers."
           (draw-place-sample canvas type 8 8)
           (values 16 16))))))
 
-;; Without colours, concave places and beaks have the same mark, as the manual wants it.
+;; As the manual says, concave places and beaks have the same mark without colours.
 (defun place-entries (snapshot)
   (loop for types in (grouped (place-types-of snapshot) #'place-mark-svg)
         collect (let ((type (first types)))
@@ -158,27 +158,28 @@ numbers."
                                      collect (list (drawn-name (place-type-name each)) ""))
                                (lambda (canvas x y) (draw-place-sample canvas type x y))))))
 
-;;; Things: each look once, with the names of all that look so.
+;;; Things: each look once, with the names of all things that look so.
 
 (defun sample-half (image)
-  "Return half the width of the sample of the thing, in pixels: as on the map, if that is not larger
-than the line."
+  "Return half the width of the sample of the thing, in pixels: as on the map if the line is high
+enough."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +largest-thing+))))
     (half-width image)))
 
 (defun thing-look (image)
-  "Return what the thing looks like, for comparison: what has the same can hardly be told apart."
+  "Return the look of the thing as a list. Things with equal looks can hardly be told apart."
   (list (thing-image-color image) (thing-shape image) (round (sample-half image))
         (thing-image-container-p image) (thing-image-obsview-p image)))
 
 (defun thing-kinds (snapshot)
-  "Return lists of the images of things that look the same, by the names of their first."
+  "Return lists of images of things that look the same, ordered by the first name in each."
   (grouped (stable-sort (coerce (snapshot-things snapshot) 'list)
                         #'name-before-p :key #'thing-image-name)
            #'thing-look))
 
 (defun names-with-counts (images)
-  "Return lists (name more) for what IMAGES are called: MORE says how many are, if several."
+  "Return lists (name more) for the names of IMAGES; MORE is the number of things if there are
+several."
   (loop for (image . others) in (grouped images #'thing-image-name)
         collect (list (thing-image-name image)
                       (format nil "~@[ (~D)~]" (and others (1+ (length others)))))))
@@ -237,7 +238,7 @@ pieces, lists x y ... in pixels."
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
 (defun further-entries (layers snapshot)
-  "Return the entries of LAYERS for SNAPSHOT that are not of their lines."
+  "Return the :entries of LAYERS for SNAPSHOT."
   (loop for layer in layers
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
@@ -254,7 +255,7 @@ pieces, lists x y ... in pixels."
 (defconstant +entry-limit+ 80 "The most entries of a legend.")
 
 (defun fade-samples (entries opacity)
-  "Return ENTRIES with samples that hide as much of what is below as OPACITY says."
+  "Return ENTRIES with samples drawn with OPACITY."
   (loop for entry in entries
         collect (let ((sample (entry-sample entry)))
                   (make-entry (entry-text entry)
@@ -266,8 +267,8 @@ pieces, lists x y ... in pixels."
                        &key (lines (line-entries snapshot layers))
                             (robots (robot-entries snapshot))
                             (opacity 1))
-  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS, the map in which has
-OPACITY; LINES are those of lines, and ROBOTS those of robots."
+  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS. LINES are the entries of
+lines, ROBOTS those of robots. OPACITY is that of the map."
   (let* ((terrain (append (wall-entries snapshot)
                           (further-entries (append (layers-at :under-walls layers)
                                                    (layers-at :on-walls layers))

@@ -1,4 +1,4 @@
-;;;; margins.lisp -- how large a map is drawn, and what stands around it: title, legend, scale bar.
+;;;; margins.lisp -- the scale of a map, and what is around it: title, legend, scale bar.
 
 (in-package :ars-magna.display)
 
@@ -10,18 +10,17 @@
   "a number of pixels to a cell, from 1 to 256")
 
 (defun users-scale ()
-  "Return GRAPHICS-SCALE* if the user has set it to another value than the default, or NIL. Signals
-MISUSE if that is no scale."
+  "Return GRAPHICS-SCALE* if the user has set it to another value than the default, else NIL.
+Signals MISUSE if it is not a scale."
   (cond ((eql graphics-scale* +usual-scale+) nil)
         ((argument-of-type-p graphics-scale* 'picture-scale) graphics-scale*)
         (t (reject-use "graphics-scale* is ~S, but should be ~A. Set it to such a number, or to ~
                         ~D: then pictures have the scale that suits their map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
-;;; Where nobody says how many pixels a cell has, there are as many as make the map, with title,
-;;; coordinates and scale bar, no larger than +WIDEST+ by +HIGHEST+. The legend comes on top of
-;;; that, beside the map or below it, where it makes the page less large: the map does not shrink
-;;; for it.
+;;; Without a given scale, the map with title, coordinates and scale bar is at most +WIDEST+ by
+;;; +HIGHEST+. The legend is added beside the map or below it, where the page becomes less large.
+;;; The map does not shrink for it.
 
 (defconstant +widest+ 900 "The greatest width of a map without a given scale, in pixels.")
 (defconstant +highest+ 700 "The greatest height of a map without a given scale, in pixels.")
@@ -31,15 +30,14 @@ MISUSE if that is no scale."
   "From this many pixels to a cell on a picture is magnified as a whole.")
 
 (defstruct (arrangement (:copier nil))
-  "Where the map begins, how much room there is to its right and below, and the legend: COLUMNS,
-lists of entries, BELOW-P or beside the map, there so far from the left of the map as LEGEND-LEFT
-says; TITLE and SUBTITLE, lists of lines; and how wide and high the whole is."
+  "The layout of a picture, in pixels. LEFT to BOTTOM are the margins of the map, WIDTH and HEIGHT
+the size of the whole. COLUMNS are lists of entries of the legend, which is below the map if
+BELOW-P, else LEGEND-LEFT from the left of the map. TITLE and SUBTITLE are lists of lines."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
   (title '()) (subtitle '()) (width 0) (height 0))
 
 (defun room-for (layers)
-  "Return how much room there is left of, above, right of and below the map for LAYERS without
-legend."
+  "Return the margins left of, above, right of and below the map for LAYERS without a legend."
   (flet ((shown-p (layer) (member layer layers)))
     (if (layers-at :margin layers)
         (list (if (shown-p :coordinates) 36 8)
@@ -51,7 +49,7 @@ legend."
 ;;; The scale bar, which may be wider than a small map.
 
 (defun bar-metres (width)
-  "Return how many metres a scale bar below WIDTH metres is long."
+  "Return the length of a scale bar below WIDTH metres, in metres."
   (or (first (last (round-numbers (min width (/ 140 graphics-scale*)))))
       1))
 
@@ -59,29 +57,29 @@ legend."
   (format nil "~D m" metres))
 
 (defun scale-bar-width (width)
-  "Return how wide the scale bar below WIDTH metres is with its text, in pixels."
+  "Return the width of the scale bar below WIDTH metres with its text, in pixels."
   (let ((metres (bar-metres width)))
     (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
 
 ;;; Scales.
 
 (defun fitting-scale (snapshot layers)
-  "Return how many pixels a cell has for a picture of SNAPSHOT with LAYERS not to be too large."
+  "Return the pixels to a cell with which a picture of SNAPSHOT with LAYERS is not too large."
   (destructuring-bind (left top right bottom) (room-for layers)
     (multiple-value-bind (width height) (shown-size snapshot)
       (clamp (floor (min (/ (- +widest+ left right) width) (/ (- +highest+ top bottom) height)))
              +least-scale+ +greatest-scale+))))
 
 (defun suitable-scale (scale snapshot layers)
-  "Return SCALE, or if it is NIL, GRAPHICS-SCALE* if the user has set that, or else the scale that
-suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is no scale."
+  "Return SCALE; if it is NIL, GRAPHICS-SCALE* if the user has set it, else the scale that suits the
+map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is not a scale."
   (or scale
       (users-scale)
       (fitting-scale snapshot layers)))
 
 (defun drawn-scale (scale snapshot layers)
-  "Return how many pixels a cell has where a picture of SNAPSHOT with SCALE (see SUITABLE-SCALE) and
-LAYERS is drawn, and how much that is then magnified as a whole, text and lines included: by 1, or
+  "Return the pixels to a cell with which to draw a picture of SNAPSHOT with SCALE (see
+SUITABLE-SCALE) and LAYERS, and by how much to magnify it then, text and lines included: by 1, or
 more if SCALE is larger than suits the map and than +READABLE-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
          (zoom (max 1 (/ (rational scale)
@@ -91,16 +89,16 @@ more if SCALE is larger than suits the map and than +READABLE-SCALE+."
 ;;; The legend.
 
 (defun columns-of (entries rows)
-  "Return ENTRIES as a list of lists of no more than ROWS of them."
+  "Return ENTRIES as a list of lists of at most ROWS entries."
   (loop while entries
         collect (loop repeat rows while entries collect (pop entries))))
 
 (defun samples-width (column)
-  "Return how wide the samples of COLUMN, a list of entries, are, in pixels."
+  "Return the width of the samples of COLUMN, a list of entries, in pixels."
   (reduce #'max column :key #'entry-width))
 
 (defun column-width (column)
-  "Return how wide COLUMN, a list of entries, is, in pixels."
+  "Return the width of COLUMN, a list of entries, in pixels."
   (+ 18 (samples-width column)
      (loop for entry in column maximize (words-width (entry-text entry)))))
 
@@ -111,17 +109,17 @@ more if SCALE is larger than suits the map and than +READABLE-SCALE+."
   (* +line-height+ (length (first columns))))
 
 (defun columns-below (entries width)
-  "Return ENTRIES in columns, as low as can be, that together are no wider than WIDTH pixels."
+  "Return ENTRIES in columns, as low as possible, that together are at most WIDTH pixels wide."
   (loop for rows from 1
         for columns = (columns-of entries rows)
         when (or (null (rest columns)) (<= (columns-width columns) width))
           return columns))
 
-;;; The whole. What has been drawn with the origin in the corner of the map is known by now.
+;;; The whole.
 
 (defun arrangement-with (room edge map-height columns below-p)
-  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels right. ROOM is
-as ROOM-FOR has it."
+  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels to the right.
+ROOM is the value of ROOM-FOR."
   (destructuring-bind (left top right bottom) room
     (let ((below (if (and columns below-p) (+ 8 (columns-height columns)) 0))
           (beside (if (and columns (not below-p)) (columns-width columns) 0)))
@@ -136,8 +134,7 @@ as ROOM-FOR has it."
   (* (arrangement-width arrangement) (arrangement-height arrangement)))
 
 (defun arrange (snapshot layers entries)
-  "Return the arrangement for a picture of SNAPSHOT with LAYERS and a legend of ENTRIES that takes
-the least room."
+  "Return the smallest arrangement for a picture of SNAPSHOT with LAYERS and a legend of ENTRIES."
   (multiple-value-bind (width height) (shown-size snapshot)
     (flet ((with (columns below-p)
              (arrangement-with (room-for layers)
@@ -158,7 +155,8 @@ the least room."
 (defconstant +least-title+ 360 "The least room for a line of a title, in pixels.")
 
 (defun lines-within (text width per-character)
-  "Return TEXT, or NIL, as lines of at most WIDTH pixels, of which a character has PER-CHARACTER."
+  "Return TEXT, a string or NIL, as lines at most WIDTH pixels wide. A character is PER-CHARACTER
+wide."
   (and text
        (loop for line in (uiop:split-string text :separator '(#\Newline))
              append (wrapped-text line (max 1 (floor width per-character))))))
@@ -191,11 +189,11 @@ pixels wide for each pixel that its font is high."
 ;;; The parts. The origin is that of the map.
 
 (defun title-of (robots map)
-  "Return what a title says of ROBOTS, a list of names as they are drawn, in MAP, a name."
+  "Return a title for ROBOTS, a list of drawn names, in the map named MAP."
   (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
 (defun map-title (snapshot)
-  "Return what stands above a picture of SNAPSHOT unless somebody says what."
+  "Return the default title of a picture of SNAPSHOT."
   (format nil "~A, tick ~D"
           (title-of (mapcar #'robot-title (snapshot-robots snapshot))
                     (map-name (snapshot-map snapshot)))
@@ -212,7 +210,7 @@ pixels wide for each pixel that its font is high."
         (incf y +subtitle-step+)))))
 
 (defun draw-coordinates (canvas snapshot)
-  "Write metres above and to the left of what is to be shown of the map of SNAPSHOT."
+  "Write metres above and to the left of the part of the map that SNAPSHOT shows."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (with-color +frame-ink+
       (dolist (metres (marks-between left right 40))
@@ -225,7 +223,7 @@ pixels wide for each pixel that its font is high."
           (draw-text canvas (- -8 (words-width text)) (+ y 4) text))))))
 
 (defun draw-scale-bar (canvas width y)
-  "Draw a scale bar around Y that suits WIDTH metres."
+  "Draw a scale bar for WIDTH metres around Y."
   (let* ((metres (bar-metres width)) (x (to-pixels metres)))
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
@@ -263,8 +261,8 @@ pixels wide for each pixel that its font is high."
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
 (defun call-on-part (function canvas snapshot)
-  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT; what it draws on CANVAS
-beside what is to be shown of that stays invisible."
+  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT. What it draws on CANVAS
+outside of the part to show stays invisible."
   (if (snapshot-part snapshot)
       (destructuring-bind (left top right bottom) (pixels-of (snapshot-part snapshot))
         (with-clipping (canvas 0 0 (- right left) (- bottom top))
@@ -272,10 +270,10 @@ beside what is to be shown of that stays invisible."
       (funcall function)))
 
 (defun draw-framed (canvas snapshot layers draw &key title subtitle more legend)
-  "Draw around the map of SNAPSHOT what LAYERS lists, and call DRAW, which draws the map and what is
-on it; return width and height of all that, and how far from the left the map begins. TITLE stands
-above, or if it is NIL, robots, map and tick; then SUBTITLE, if any. MORE are entries of the legend
-that come first; LEGEND are options of LEGEND-ENTRIES for the others."
+  "Draw what LAYERS list around the map of SNAPSHOT, and call DRAW, which draws the map and what is
+on it. Return the width and height of all, and how far from the left the map begins. TITLE is above,
+by default robots, map and tick; then SUBTITLE, if any. MORE are entries at the beginning of the
+legend; LEGEND are options of LEGEND-ENTRIES for the others."
   (let* ((entries (and (member :legend layers)
                        (append more (apply #'legend-entries snapshot layers legend))))
          (arrangement (arrange snapshot layers entries))
@@ -288,8 +286,8 @@ that come first; LEGEND are options of LEGEND-ENTRIES for the others."
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
 (defun draw-framed-world (canvas snapshot layers &key title)
-  "Draw the world of SNAPSHOT and around it what LAYERS lists, with TITLE as DRAW-FRAMED has it;
-return width and height of that."
+  "Draw the world of SNAPSHOT with what LAYERS list around it, and TITLE as in DRAW-FRAMED. Return
+the width and height."
   (draw-framed canvas snapshot layers
                (lambda ()
                  (draw-terrain canvas (snapshot-map snapshot) :layers layers)
@@ -302,13 +300,13 @@ return width and height of that."
       (with-canvas (canvas :scale scale) (funcall function canvas)))))
 
 (defmacro with-map-svg ((canvas stream snapshot &rest options) &body body)
-  "Run BODY, which draws a picture of SNAPSHOT on CANVAS and returns its width and height in pixels,
-as two values, then write that to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
+  "Run BODY, which draws a picture of SNAPSHOT on CANVAS and returns its width and height in pixels.
+Then write it to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
   `(call-with-map-svg (lambda (,canvas) ,@body) ,stream ,snapshot ,@options))
 
 (defun framed-text (snapshot draw &key layers in-color scale title subtitle more legend)
-  "Return an SVG document of SNAPSHOT in which DRAW, a function of a canvas, draws the map and what
-is on it; the other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
+  "Return an SVG document of SNAPSHOT. DRAW, a function of a canvas, draws the map and what is on
+it. The other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
   (with-output-to-string (out)
     (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
       (draw-framed canvas snapshot layers (lambda () (funcall draw canvas))

@@ -1,4 +1,4 @@
-;;;; movers.lisp -- robots and things on the map; what cameras can see, and what robots believe.
+;;;; movers.lisp -- robots and things on the map, what cameras can see, and what robots believe.
 
 (in-package :ars-magna.display)
 
@@ -6,9 +6,9 @@
 
 ;;; Things.
 
-;;; In colour a thing is a shape around its place. The larger its :size, the larger it is; its shape
-;;; says what it does. It has an outline of black, and around that a halo of white: so one sees it
-;;; whatever its colour is and whatever it lies on, be that another thing.
+;;; In colour a thing is a shape around its place, which says what the thing does. The larger its
+;;; :size, the larger the shape. A black outline and a white halo make it visible on any ground,
+;;; whatever its colour is.
 
 (defconstant +largest-thing+ 3/2 "The greatest width of a thing on the map, in cells.")
 (defconstant +largest-size+ 64 "The :size of the things that are drawn so wide.")
@@ -16,19 +16,19 @@
 
 ;; As reading 241 says.
 (defun half-width (image)
-  "Return half the width of the thing on the map, in pixels: its area grows with its size. Without
-colours all have the same."
+  "Return half the width of the thing on the map, in pixels. Its area grows with its size. Without
+colours all things have the same width."
   (if in-color*
       (let ((largest (max (1+ +least-width+) (* graphics-scale* +largest-thing+)))
             (part (/ (clamp (thing-image-size image) 0 +largest-size+) +largest-size+)))
         (* 1/2 (+ +least-width+ (* (- largest +least-width+) (sqrt part)))))
       (* 3/8 graphics-scale*)))
 
-;;; Shapes. What moves by itself has a point.
+;;; Shapes. Things that move by themselves have a point.
 
 (defun thing-shape (image)
-  "Return :SQUARE if the thing blocks the way, :ROUND if not, and if it moves by itself, :HOUSE
-or :DIAMOND."
+  "Return the shape of the thing: :SQUARE if it blocks the way, else :ROUND; if it moves by itself,
+:HOUSE or :DIAMOND."
   (if (thing-image-moving-p image)
       (if (thing-image-obsmove-p image) :house :diamond)
       (if (thing-image-obsmove-p image) :square :round)))
@@ -55,7 +55,7 @@ or :DIAMOND."
       (draw-shape canvas shape x y (max 1 (- half more))))))
 
 (defun draw-rim (canvas image x y half)
-  "Draw the rim of a container; where there is no room, a dot."
+  "Draw the rim of a container, or a dot if there is no room."
   (let ((inner (- half 3)))
     (cond ((< inner 3/2) (draw-circle canvas x y 1 t))
           ((eq :square (thing-shape image))
@@ -69,7 +69,7 @@ or :DIAMOND."
                        append (list (- x dx 1/2) (- y dy 1/2) (+ x dx -1/2) (+ y dy -1/2)))))
 
 (defun draw-thing-sample (canvas image x y half)
-  "Draw the thing in colour around X, Y, HALF as wide as HALF pixels."
+  "Draw the thing in colour around X, Y, reaching HALF pixels to each side."
   (draw-body canvas image x y half)
   (with-color (ink-on (thing-image-color image))
     (when (thing-image-container-p image) (draw-rim canvas image x y half))
@@ -77,7 +77,7 @@ or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  "Draw the small vertical line of the manual's figure, with a halo, so that it is seen on walls."
+  "Draw the small vertical line of the manual's figure, with a halo that makes it visible on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
     (flet ((upright (more)
@@ -87,7 +87,7 @@ or :DIAMOND."
       (upright 0))))
 
 (defun draw-things (canvas images)
-  "Draw the things, the large ones first, so that small ones are seen on them."
+  "Draw the things, the large ones first, so that they hide no small ones."
   (dolist (image (stable-sort (coerce images 'list) #'> :key #'thing-image-size))
     (let ((x (to-pixels (thing-image-x image))) (y (to-pixels (thing-image-y image))))
       (with-subject (canvas image)
@@ -107,26 +107,26 @@ or :DIAMOND."
 
 ;;; Robots.
 
-;;; It is drawn below things and hollow, so that it hides nothing of what it is about to grasp.
-;;; Where there are several, each has a colour and dashes in its turn; without colours, the heads of
-;;; every second five are hollow.
+;;; A robot is drawn hollow and below things, so that it does not hide what it is about to grasp.
+;;; Each of several has a colour and dashes by its position. Without colours, the heads of every
+;;; second five are hollow.
 
 (defun robot-radius ()
-  "Return the radius of the ring that a robot is drawn as, in pixels: nearly a cell, but half of one
-where cells are large, so that the ring fits into a map of one cell."
+  "Return the radius of the ring of a robot, in pixels: nearly a cell, but half a cell where cells
+are large, so that the ring fits into a map of one cell."
   (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
 (defconstant +between-rings+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
 (defun same-spot-p (image other)
-  "True if the rings of two robots would be taken for one."
+  "True if the rings of two robots would look like one."
   (> (robot-radius)
      (* 2 (to-pixels (max (abs (- (robot-image-x image) (robot-image-x other)))
                           (abs (- (robot-image-y image) (robot-image-y other))))))))
 
 (defun ring-radius (image robots)
-  "Return the radius of the ring that IMAGE, one of ROBOTS, is drawn as, in pixels: around those of
-them before it that are on the same spot."
+  "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. It is around the rings of
+earlier ROBOTS on the same spot."
   (+ (robot-radius)
      (* +between-rings+ (count-on-spot image (ldiff robots (member image robots))))))
 
@@ -152,8 +152,8 @@ them before it that are on the same spot."
   (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
 (defun camera-lines (image radius)
-  "Return the lines, x y x y in pixels, of those cameras that the robot of IMAGE, a ring of RADIUS,
-has with it."
+  "Return the lines, x y x y in pixels, of those cameras that are on the robot of IMAGE, drawn as a
+ring of RADIUS."
   (loop with x = (to-pixels (robot-image-x image)) and y = (to-pixels (robot-image-y image))
         for camera in (robot-image-cameras image)
         for angle = (+ (robot-image-angle image) (camera-image-angle camera))
@@ -161,8 +161,7 @@ has with it."
           collect (append (around x y angle (+ radius 1)) (around x y angle (* 8/5 radius)))))
 
 (defun draw-ring (canvas x y radius angle position)
-  "Draw the ring and the arrowhead of the robot at POSITION among its world's, which looks in
-direction ANGLE."
+  "Draw the ring and the arrowhead, in direction ANGLE, of the robot at POSITION among its world's."
   (let ((color (nth-ink position)))
     (with-halo (color :width 2 :dashes (nth-dashes position)) (draw-circle canvas x y radius nil))
     (with-gcontext (draw-gcontext* :foreground white*)
@@ -178,7 +177,7 @@ direction ANGLE."
       (with-halo ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
-  "Draw ROBOTS, the images of all there are; wide rings first, so that they hide none."
+  "Draw ROBOTS, the images of all robots, wide rings first, so that these hide no others."
   (loop for (image radius)
           in (stable-sort (loop for image in robots
                                 collect (list image (ring-radius image robots)))
@@ -187,14 +186,14 @@ direction ANGLE."
 
 ;;;; Senses and beliefs
 
-;;; Fields of view end at walls and at things that obstruct view. They are found when they are
-;;; drawn, from the snapshot alone.
+;;; Fields of view end at walls and at things that obstruct view. They are computed when drawn, from
+;;; the snapshot alone.
 
 (defconstant +sight-spacing+ 0.015d0
   "The angle between rays that find the edge of a field of view, in radians.")
 
 (defun opaque-cells (snapshot)
-  "Return a predicate of the index of a cell: whether a camera cannot look through it."
+  "Return a predicate of the index of a cell: true if the cell blocks the view."
   (let* ((map (snapshot-map snapshot)) (flags (map-flags map))
          (hidden (loop for image across (snapshot-things snapshot)
                        when (thing-image-obsview-p image)
@@ -203,7 +202,7 @@ direction ANGLE."
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
 (defun unobstructed-camera (camera)
-  "Return CAMERA if it can see the map: if it is in nothing."
+  "Return CAMERA if it is not inside of anything, so that it can see the map; else NIL."
   (and (null (camera-image-location camera)) camera))
 
 (defun draw-wedge (canvas camera robot snapshot)
@@ -217,10 +216,10 @@ direction ANGLE."
           (draw-lines canvas draw-gcontext*
                       (pixels-of (append (list x y) ends (list x y)))))))))
 
-;;; Rays, coloured by what was read.
+;;; Rays, coloured by their readings.
 
 (defun reading-color-index (map reading)
-  "Return the number of the colour of READING, by where it is between the parameters of the walls."
+  "Return the number of the colour of READING, by its place between the parameters of the walls."
   (let* ((least (map-least-parameter map)) (greatest (map-greatest-parameter map))
          (count (length +ray-inks+)))
     (if (< least greatest)
@@ -228,7 +227,7 @@ direction ANGLE."
         0)))
 
 (defun readings-for-rays (look count)
-  "Return COUNT of the numbers that were read, one for each ray of LOOK."
+  "Return COUNT of the numbers in the view, one for each ray of LOOK."
   (let ((view (coerce (look-view look) 'vector)))
     (loop for ray below count
           collect (if (zerop (length view)) 0 (aref view (floor (* ray (length view)) count))))))
@@ -304,7 +303,7 @@ to what it denotes."
   (dolist (designator designators) (draw-designator-on-map canvas robot designator)))
 
 (defun odometer-box (odometer)
-  "Return the corners of the box that contains the position of ODOMETER, x y ..., in metres."
+  "Return the corners of the box of possible positions of ODOMETER, x y ..., in metres."
   (let ((cos (cosine (odometer-image-axis odometer))) (sin (sine (odometer-image-axis odometer))))
     (loop for (across down) in '((-1 -1) (1 -1) (1 1) (-1 1) (-1 -1))
           for dx = (* across 1/2 (odometer-image-width odometer))
@@ -313,8 +312,8 @@ to what it denotes."
           collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
 
 (defun draw-odometer (canvas odometer robot snapshot)
-  "Draw where ODOMETER puts its robot: the box that contains its position, and from the middle of
-that the bounds of its heading."
+  "Draw the estimate of ODOMETER: a box of possible positions, and from its middle the bounds of the
+heading."
   (declare (ignore robot snapshot))
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))

@@ -1,4 +1,4 @@
-;;;; picture.lisp -- pictures of a world in files, without a window; of a map with ways on it, too.
+;;;; picture.lisp -- pictures of a world, and of a map with ways, in files.
 
 (in-package :ars-magna.display)
 
@@ -6,7 +6,7 @@
 
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale title)
-  "Write an SVG document of DISPLAY from SNAPSHOT to STREAM; ROBOT is the image of a robot in it."
+  "Write an SVG document of DISPLAY from SNAPSHOT and ROBOT, the image of a robot in it, to STREAM."
   (flet ((draw (canvas)
            (draw-display canvas display snapshot robot :layers layers :title title)))
     (if (member display '(:world :all))
@@ -16,8 +16,7 @@
           (with-canvas (canvas :scale (suitable-scale scale snapshot layers)) (draw canvas))))))
 
 (defun check-map-options (operator &key title layers scale)
-  "Signal WRONG-ARGUMENT unless these are arguments of OPERATOR, which draws a map, for the title
-above it, its layers and its scale."
+  "Signal WRONG-ARGUMENT for OPERATOR, which draws a map, unless TITLE, LAYERS and SCALE are valid."
   (unless (typep title '(or null string))
     (reject-argument operator :title title "a string or NIL"))
   (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
@@ -37,17 +36,18 @@ above it, its layers and its scale."
     (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
   "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
 of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
-LAYERS lists what the picture shows besides walls, things and robots: *PICTURE-LAYERS* tells what
-there is; the list () gives the bare map. SCALE is how many pixels there are to a cell, from 1 to
-256. Without SCALE it is GRAPHICS-SCALE*, if you have set that to another value than 8, or else what
-suits the map: from 4 to 40, so that the picture without its legend is 900 x 700 pixels at most, if
-4 do for that. Where SCALE is more than that, and more than 20, the picture grows as a whole, text
-and lines, too. In a paper, text is readable in a column, 84 mm wide, if the picture is no more than
-400 pixels wide, and on a page, 174 mm wide, if it is 820: choose SCALE so. IN-COLOR is false for a
-picture in black and white. TITLE, a string, stands above, where the layers have a title, instead of
-the robots, the map and the tick. PART (left top right bottom), in cells, is what is wanted of the
-map, by default all. Signals WRONG-ARGUMENT,
-and MISUSE if GRAPHICS-SCALE* is no scale."
+LAYERS lists what the picture shows besides walls, things and robots. *PICTURE-LAYERS* documents the
+layers; () gives the bare map. TITLE, a string, replaces the default title of robots, map and tick
+if the layers have one. PART (left top right bottom), in cells, is the part of the map, by default
+all. IN-COLOR NIL gives a picture in black and white.
+
+SCALE is the number of pixels to a cell, from 1 to 256. By default it is GRAPHICS-SCALE* if you have
+set that to another value than 8, else what suits the map: from 4 to 40, so that the picture without
+its legend is at most 900 x 700 pixels, if 4 are enough for that. With a larger SCALE than that, and
+than 20, text and lines grow too. In a paper, text is readable in a column, 84 mm wide, if the
+picture is at most 400 pixels wide, and on a page, 174 mm wide, if it is at most 820.
+
+Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a scale."
   (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
@@ -67,7 +67,7 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
         (t "Choose a smaller scale if it is very large, or save it as .svg")))
 
 (defun reject-png (file words)
-  "Signal MISUSE: the picture cannot be written to FILE, as rsvg-convert says in WORDS."
+  "Signal MISUSE: the picture cannot be written to FILE. WORDS is the message of rsvg-convert."
   (let ((words (one-line words)))
     (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[says nothing, but ~
                  failed~;~:*says ~S~]. What was there is as before. ~A."
@@ -75,7 +75,8 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
                 (png-remedy words))))
 
 (defun write-png (svg out file)
-  "Write the SVG document SVG to the stream OUT, as PNG, by the program rsvg-convert: to be FILE."
+  "Convert the SVG document SVG to PNG by the program rsvg-convert. Write it to OUT, which becomes
+FILE."
   (multiple-value-bind (status words)
       (run-filter "rsvg-convert" '("--unlimited" "-f" "png") svg out)
     (cond ((null status)
@@ -84,8 +85,8 @@ and MISUSE if GRAPHICS-SCALE* is no scale."
           ((plusp status) (reject-png file words)))))
 
 (defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
-  "Return which of KINDS the name of FILE ends in. Signals WRONG-ARGUMENT if OPERATOR cannot save a
-picture there; then it says that a name has one of ENDINGS."
+  "Return the one of KINDS in which the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot
+save a picture there; the message lists ENDINGS."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (when (many-files-p file)
@@ -105,8 +106,8 @@ picture there; then it says that a name has one of ENDINGS."
                              :kind :image)))))
 
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
-  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does; ROBOT is the image of a robot in it.
-LOOK are options of WRITE-PICTURE."
+  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does. ROBOT is the image of a robot in it,
+LOOK options of WRITE-PICTURE."
   (save-svg (reporting-broken-graphics
               (with-output-to-string (stream)
                 (apply #'write-picture stream snapshot robot :display display look)))
@@ -115,9 +116,9 @@ LOOK are options of WRITE-PICTURE."
 (addition save-picture)
 (define-with-keywords save-picture
     (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
-  "Save a picture of the world of ROBOT as it is now in FILE, replacing it: SVG or, where the
-program rsvg-convert is installed, PNG, as its name ends. The other arguments are those of
-SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
+  "Save a picture of the world of ROBOT as it is now in FILE, replacing it, and return the truename.
+The name ends in .svg or, if the program rsvg-convert is installed, .png. The other arguments are
+those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
@@ -127,8 +128,6 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
                    :title title)))
 
 ;;;; Ways on a map
-
-;;; Ways as points.
 
 (defun coordinates-of (point)
   "Return the coordinates of POINT, a PT or a list (x y), as a list."
@@ -182,7 +181,7 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
                           (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
 
 (defun snapshot-of-map (map)
-  "Return a snapshot of the current world, if that is of MAP, or else of MAP with nothing in it."
+  "Return a snapshot of the current world if it is in MAP, else of the empty MAP."
   (let ((simulation *simulation*))
     (if (and simulation (eq map (world-map (simulation-world simulation))))
         (asking (simulation) (take-snapshot (simulation-world simulation)))
@@ -199,11 +198,11 @@ SVG-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE with
 (addition save-way-picture)
 (define-with-keywords save-way-picture
     (map ways file &key title (layers *picture-layers*) (in-color t) scale)
-  "Save in FILE, replacing it, a picture of MAP, a map or the name of one, and of WAYS in it: a
-list of ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. If the current
-simulation is in MAP, its things and robots are shown as they are now. TITLE, a string, stands
-above. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals
-WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE without the program that PNG needs."
+  "Save in FILE, replacing it, a picture of MAP, a map or its name, and of WAYS in it: a list of
+ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. Return the truename. If the
+current simulation is in MAP, the picture also has its things and robots. TITLE, a string, is above.
+FILE and the other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and
+MISUSE without the program that PNG needs."
   (check-ways ways)
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))

@@ -1,13 +1,13 @@
-;;;; snapshot.lisp -- what a world looks like at one moment, for those who draw it.
+;;;; snapshot.lisp -- what a world looks like at one moment, for drawing.
 
 (in-package :ars-magna.display)
 
 (export '(snapshot take-snapshot snapshot-of snapshot-robot thing-image robot-image camera-image
           hand-image bin-image designator-image in-part shown-part))
 
-;;; A snapshot is made where the world stands still, and never changes; whoever draws, in whatever
-;;; thread, draws from one. An image is what it knows of a thing, a robot or a part. The image of a
-;;; thing that has not changed since the snapshot before is the same object.
+;;; A snapshot is taken between ticks and never changes, so that any thread can draw it. It has
+;;; images of things, robots and their parts. If a thing has not changed since the snapshot before,
+;;; its image is the same object.
 
 (define-record snapshot
   "What a world looks like at one moment."
@@ -16,14 +16,14 @@
   (things #() t "a vector of the images of the things on the floor, by serial number" :export)
   (robots '() t "a list of the images of the robots" :export)
   (part nil t
-        "what is to be shown of the map, (left top right bottom) in cells, or NIL for all" :export))
+        "the part of the map to show, (left top right bottom) in cells, or NIL for all" :export))
 
 (define-record thing-image
-  "What a snapshot knows of a thing."
+  "What a snapshot has of a thing."
   (thing nil t "the thing itself" :export)
   (x 0d0 t "the thing's x coordinate, in metres" :export)
   (y 0d0 t "the thing's y coordinate, in metres" :export)
-  (location nil t "in words what the thing is in, as `in hand 0 of ROBBIE', or NIL" :export)
+  (location nil t "a text that says what the thing is in, as `in hand 0 of ROBBIE', or NIL" :export)
   (attributes '() t "a list (name value) for each attribute of the thing" :export)
   (color 0 t "the colour of the display")
   (size 0d0 t)
@@ -34,9 +34,9 @@
   (draw-function nil t))
 
 (define-record robot-image
-  "What a snapshot knows of a robot."
-  (name nil t "the symbol that the robot is called" :export)
-  (position 0 t "the robot's position among those of its world, which decides what it looks like")
+  "What a snapshot has of a robot."
+  (name nil t "the name of the robot, a symbol" :export)
+  (position 0 t "the robot's position among those of its world, which determines its look")
   (x 0d0 t "the robot's x coordinate, in metres" :export)
   (y 0d0 t "the robot's y coordinate, in metres" :export)
   (angle 0d0 t "the robot's heading, in radians" :export)
@@ -54,7 +54,7 @@
   (notes '() t "what the :note of layers returned, by their names"))
 
 (define-record camera-image
-  "What a snapshot knows of a camera."
+  "What a snapshot has of a camera."
   (index 0 t "the number of the camera" :export)
   (angle 0d0 t "the angle of the camera relative to the robot, in radians")
   (field-of-view 1d0 t)
@@ -65,21 +65,21 @@
   (look nil t))
 
 (define-record hand-image
-  "What a snapshot knows of a hand."
+  "What a snapshot has of a hand."
   (index 0 t "the number of the hand" :export)
   (strength 0d0 t)
   (contents nil t "the image of the thing that the hand holds, or NIL" :export)
   (location nil t "what the hand is inside of: the image of a thing, a string, or NIL" :export))
 
 (define-record bin-image
-  "What a snapshot knows of a storage bin."
+  "What a snapshot has of a storage bin."
   (index 0 t "the number of the storage bin" :export)
   (capacity 0d0 t)
   (closed-p nil t "the storage bin is closed" :export)
   (contents '() t "a list of the images of the things in the storage bin" :export))
 
 (define-record designator-image
-  "What a snapshot knows of a designator."
+  "What a snapshot has of a designator."
   (number 0 t "the number of the designator" :export)
   (type nil t)
   (angle 0d0 t)
@@ -90,8 +90,7 @@
   (y nil t "where the denotation is, the y coordinate in metres"))
 
 (define-record odometer-image
-  "What a snapshot knows of an odometer: where, seen from outside, it puts the robot, and how
-uncertain it is."
+  "What a snapshot has of an odometer: its estimate in coordinates of the map, and the uncertainty."
   (x 0d0 t)
   (y 0d0 t)
   (heading 0d0 t)
@@ -105,7 +104,7 @@ uncertain it is."
 (defun moving-p (thing) (and (thing-kickers thing) t))
 
 (defun image-of-thing (thing &optional old)
-  "Return the image of THING: OLD, an image of it, if that is still right."
+  "Return the image of THING: OLD, an earlier one or NIL, if that is still right."
   (let ((attributes (thing-attributes thing)))
     (if (and old
              (eq attributes (thing-image-attributes old))
@@ -124,9 +123,9 @@ uncertain it is."
 (defun image-serial (image) (thing-serial (thing-image-thing image)))
 
 (defun images-on-floor (world old)
-  "Return a vector of the images of the things on the floor of WORLD by serial number. OLD is such
-a vector of an earlier moment, returned if nothing has changed; both are in order, so one pass finds
-what it holds of each."
+  "Return a vector of the images of the things on the floor of WORLD by serial number. OLD is such a
+vector of an earlier moment. It is returned if nothing has changed. Both are in order, so that one
+pass finds the old image of each thing."
   (declare (type simple-vector old))
   (let ((images '()) (position 0) (count 0) (kept 0))
     (declare (type fixnum position count kept))
@@ -149,7 +148,7 @@ what it holds of each."
 ;;; Robots.
 
 (defun image-of-location (location)
-  "Return how to show that a part is inside LOCATION: NIL, an image, or a string."
+  "Return LOCATION, which a part is inside of, as an image or a string; NIL if it is NIL."
   (cond ((null location) nil)
         ((thing-p location) (image-of-thing location))
         (t (location-name location))))
@@ -159,7 +158,7 @@ what it holds of each."
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
 (defun place-of-denotation (denotation)
-  "Return, as a list, where what DENOTATION is lies; NIL if it is false."
+  "Return the place of DENOTATION, a thing or a place, as a list (x y); NIL if it is NIL."
   (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
          (let ((cell (place-cell denotation)))
@@ -195,7 +194,7 @@ what it holds of each."
                   :contents (mapcar #'image-of-thing (storage-bin-contents bin))))
 
 (defun image-of-odometer (robot)
-  "Return the image of the main odometer of ROBOT: its box, and its bounds of the heading."
+  "Return the image of the main odometer of ROBOT."
   (let* ((odometer (robot-main-odometer robot))
          (position (get-odometer-pos odometer))
          (angle (get-odometer-ang odometer)))
@@ -208,7 +207,7 @@ what it holds of each."
          :spread (width angle))))))
 
 (defun notes-of (robot)
-  "Return a property list of what layers with a :note want to know of ROBOT."
+  "Return a property list of the notes of layers for ROBOT."
   (loop for layer in *layers*
         when (%layer-note layer)
           append (list (%layer-name layer) (funcall (%layer-note layer) robot))))
@@ -232,37 +231,37 @@ what it holds of each."
 ;;; The whole.
 
 (defun take-snapshot (world &optional previous)
-  "Return a snapshot of WORLD as it is now; to be called where it stands still. PREVIOUS, an earlier
-snapshot of WORLD, makes it cheaper."
+  "Return a snapshot of WORLD as it is now. Call this between ticks. PREVIOUS, an earlier snapshot
+of WORLD, makes it faster."
   (let* ((timeline (world-timeline world))
          (history (and timeline (timeline-run timeline) (history-of (timeline-run timeline)))))
     (make-snapshot :tick (world-tick world)
                    :map (world-map world)
                    :things (images-on-floor world (if previous (snapshot-things previous) #()))
-                   ;; Some of what an image has is text.
+                   ;; Images contain printed text.
                    :robots (printing-plainly ()
                              (loop for robot in (world-robots world)
                                    for position from 0
                                    collect (image-of-robot robot position history))))))
 
 (defun snapshot-of (robot)
-  "Return a snapshot of the world of ROBOT, from whatever thread."
+  "Return a snapshot of the world of ROBOT. Any thread may call this."
   (asking ((robot-simulation robot)) (take-snapshot (robot-world robot))))
 
 (defun snapshot-robot (snapshot name)
-  "Return the image of the robot called NAME in SNAPSHOT; of its first robot if none is so called."
+  "Return the image of the robot called NAME in SNAPSHOT, or if there is none, of its first robot."
   (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
       (first (snapshot-robots snapshot))))
 
-;;; A part of it.
+;;; Parts of the map.
 
 (defun shown-part (snapshot)
-  "Return what is to be shown of the map of SNAPSHOT, as a list (left top right bottom) in cells."
+  "Return the part of the map that SNAPSHOT shows, as a list (left top right bottom) in cells."
   (or (snapshot-part snapshot)
       (list 0 0 (map-width (snapshot-map snapshot)) (map-height (snapshot-map snapshot)))))
 
 (defun shown-size (snapshot)
-  "Return how wide and how high what is to be shown of the map of SNAPSHOT is, in cells."
+  "Return the width and the height of the part of the map that SNAPSHOT shows, in cells."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (values (- right left) (- bottom top))))
 
@@ -277,8 +276,8 @@ snapshot of WORLD, makes it cheaper."
                                     NIL" width height)))))
 
 (defun in-part (snapshot part operator)
-  "Return SNAPSHOT with PART (left top right bottom) of its map, in cells, and what is in that. NIL
-means all. Signals WRONG-ARGUMENT, of OPERATOR, if PART is no part of that map."
+  "Return a snapshot of what SNAPSHOT has in PART of its map, (left top right bottom) in cells, or
+NIL for all. Signals WRONG-ARGUMENT for OPERATOR if PART is not part of that map."
   (check-part operator part (snapshot-map snapshot))
   (flet ((within-p (x y)
            (destructuring-bind (left top right bottom) part

@@ -1,4 +1,4 @@
-;;;; subjects.lisp -- what there is to say, and to be seen, of a thing, place or robot.
+;;;; subjects.lisp -- descriptions of things, places and robots, and what is visible of them.
 
 (in-package :ars-magna.display)
 
@@ -14,27 +14,27 @@
 
 (defun angle-text (angle)
   "Return ANGLE, in radians, as text: in degrees, more than -180 and no more than 180, and in
-radians as it is, which are never reduced (reading 50) and so may tell of several turns."
+radians. Radians are never reduced (reading 50), and so can be several turns."
   (let ((degrees (- 180 (mod (- 180 (round (* angle (/ 180 pi)))) 360))))
     (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
             (< (+ pi 0.01d0) (abs angle)))))
 
 (defun plain-text (value)
-  "Return VALUE of an attribute as text, numbers in decimals without exponents, in lower case."
+  "Return VALUE, of an attribute, as text in lower case, numbers as decimals without exponents."
   (typecase value
     (float (if (within-reason-p value) (number-text value) (princ-to-string value)))
     (cons (format nil "(~{~A~^ ~})" (mapcar #'plain-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 
 (defun denotation-text (image)
-  "Return what the designator whose image is IMAGE denotes, as text; false ones say so (manual B)."
+  "Return what the designator of IMAGE denotes, as text: FALSE if it is false (manual B)."
   (let ((denotation (designator-image-denotation image)))
     (cond ((null denotation) "FALSE")
           ((stringp denotation) denotation)
           (t (subject-title denotation)))))
 
 (defgeneric describe-subject (subject stream)
-  (:documentation "Write to STREAM what is known of SUBJECT, the image of something, in lines.")
+  (:documentation "Write a description of SUBJECT, an image or a cell, to STREAM, in lines.")
   (:method ((image thing-image) stream)
     (format stream "~A ~:[at ~,2F, ~,2F~;~:*~A~]~%" (subject-title image)
             (thing-image-location image) (thing-image-x image) (thing-image-y image))
@@ -71,11 +71,12 @@ radians as it is, which are never reduced (reading 50) and so may tell of severa
 
 ;;;; Contents
 
-;;; Contents of one display that are EQUAL look the same. Images are made anew for each snapshot, so
-;;; they are taken apart; things, maps and vectors of images stand for themselves.
+;;; If two contents of a display are EQUAL, the display looks the same. Images are new in each
+;;; snapshot, so contents are made of their slots. Things, maps and vectors of images are compared
+;;; themselves.
 
 (defgeneric content (object)
-  (:documentation "Return what is to be seen of OBJECT, an image or a list of such, for EQUAL.")
+  (:documentation "Return what is visible of OBJECT, an image or a list of images, for EQUAL.")
   (:method (object) object)
   (:method ((list cons)) (cons (content (car list)) (content (cdr list))))
   (:method ((image thing-image))
@@ -84,7 +85,7 @@ radians as it is, which are never reduced (reading 50) and so may tell of severa
           (drawing-code (thing-image-draw-function image)))))
 
 (defmacro define-content (image (&rest slots) &rest parts)
-  "Let what is to be seen of IMAGE be what its SLOTS hold, and what is to be seen of its PARTS."
+  "Define the CONTENT of an IMAGE as the values of its SLOTS and the contents of its PARTS."
   (flet ((reader (slot) (symbolicate image '- slot)))
     `(defmethod content ((image ,image))
        (list ,@(loop for slot in slots collect `(,(reader slot) image))
@@ -98,12 +99,12 @@ radians as it is, which are never reduced (reading 50) and so may tell of severa
 (define-content robot-image (x y angle trail planned-way) cameras odometer designators notes)
 
 (defun snapshot-content (snapshot)
-  "Return an object that is EQUAL to that of another snapshot if their worlds look the same."
+  "Return an object that is EQUAL for two snapshots whose worlds look the same."
   (list (snapshot-map snapshot) (snapshot-things snapshot) (content (snapshot-robots snapshot))))
 
 (defun display-content (display robot)
-  "Return an object that is EQUAL to that of another image of a robot if DISPLAY, one of +DISPLAYS+
-but the world, shows the same of it and of ROBOT, an image too."
+  "Return an object that is EQUAL for two images of a ROBOT of which DISPLAY shows the same. DISPLAY
+is one of +DISPLAYS+ except the world."
   (ecase display
     (:state (list (robot-image-x robot) (robot-image-y robot) (robot-image-angle robot)
                   (robot-image-speed robot) (robot-image-place robot)

@@ -1,17 +1,17 @@
-;;;; svg.lisp -- a canvas that is a picture file.
+;;;; svg.lisp -- a canvas that writes Scalable Vector Graphics.
 
 (in-package :ars-magna.canvas)
 
 (export '(svg-canvas svg-stream call-with-svg with-svg write-svg number-text write-number
           write-text))
 
-;;; Elements are written as they are drawn; numbers with at most two decimals. What is drawn with
-;;; clipping is gathered first, and wrapped in a clipping element only if it reaches beyond
-;;; its box, which it seldom does.
+;;; Elements are written as they are drawn, numbers with at most two decimals. What is drawn with
+;;; clipping is collected first. It gets a clipping element only if it reaches beyond its box, which
+;;; is rare.
 
 (defclass svg-canvas (canvas)
   ((stream :initarg :stream :accessor svg-stream)
-   ;; The box drawn in so far with clipping, as left, top, right, bottom; NIL: nobody asks.
+   ;; The box of what has been drawn with clipping, (left top right bottom); NIL if not needed.
    (reach :initform nil :accessor svg-reach))
   (:documentation "A canvas that writes Scalable Vector Graphics to a stream."))
 (setf (documentation 'svg-stream 'function) "Return the stream that the canvas writes to.")
@@ -19,7 +19,7 @@
 ;;; Numbers and attributes.
 
 (defvar *numerals* (coerce (loop for n below 4096 collect (princ-to-string n)) 'simple-vector)
-  "The integers that coordinates mostly are, as strings.")
+  "The integers that most coordinates are, as strings.")
 
 (defun write-natural (integer stream)
   (if (< integer 4096)
@@ -27,7 +27,7 @@
       (printing-plainly () (princ integer stream))))
 
 (defun write-hundredths (hundredths stream)
-  "Write HUNDREDTHS / 100 with as few decimals as are needed."
+  "Write HUNDREDTHS / 100 with as few decimals as possible."
   (when (minusp hundredths) (write-char #\- stream))
   (multiple-value-bind (whole rest) (truncate (abs hundredths) 100)
     (write-natural whole stream)
@@ -38,7 +38,7 @@
         (unless (zerop hundredths) (write-natural hundredths stream))))))
 
 (defun write-number (number stream)
-  "Write NUMBER in decimals, to a hundredth, no further than 10^9 from 0."
+  "Write NUMBER in decimals, to a hundredth, limited to 10^9 on both sides."
   (if (typep number '(integer 0 4095))
       (write-natural number stream)
       (write-hundredths (round (* 100 (clamp number -1000000000 1000000000))) stream)))
@@ -77,18 +77,18 @@
 "))
 
 (defun write-paint (canvas gcontext fill-p)
-  "Finish an element that is filled, or outlined."
+  "Finish an element: filled if FILL-P, else outlined."
   (cond (fill-p (write-color canvas gcontext "fill")
                 (write-svg canvas "/>
 "))
         (t (write-stroke canvas gcontext))))
 
 (defun write-text (text stream)
-  "Write TEXT with the characters that mean something in SVG replaced."
+  "Write TEXT with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-words (canvas gcontext string)
-  "Finish an element of text, which is STRING."
+  "Finish a text element with STRING."
   (write-color canvas gcontext "fill")
   (write-svg canvas ">")
   (write-text string (svg-stream canvas))
@@ -105,7 +105,7 @@
                   (max right (third reach)) (max bottom (fourth reach)))))))
 
 (defun pen-reach (gcontext)
-  "Return how far beyond its path a line reaches."
+  "Return how far a line reaches beyond its path, in pixels."
   (/ (max 1 (gcontext-line-width gcontext)) 2))
 
 (defmethod paint-rectangles ((canvas svg-canvas) gcontext rectangles fill-p)
@@ -129,7 +129,7 @@
   (write-paint canvas gcontext fill-p))
 
 (defun write-slice (canvas x y width height start extent fill-p)
-  "Begin a path along an arc that is less than a full turn."
+  "Begin a path along an arc of less than a full turn."
   (let* ((across (/ width 2)) (down (/ height 2))
          (center-x (+ x across)) (center-y (+ y down)))
     (flet ((spot (angle)
@@ -144,7 +144,7 @@
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
 (defun write-ellipse (canvas x y width height pen)
-  "Write the ellipse that, drawn with a pen reaching PEN beyond its line, just fits into the box."
+  "Write the ellipse that just fits into the box, if its line reaches PEN beyond its path."
   (note-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
              "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))
@@ -189,7 +189,7 @@
 ;;; Where.
 
 (defun gather (canvas function)
-  "Call FUNCTION; return what it wrote, and the reach of that, as two values."
+  "Call FUNCTION; return what it wrote, and the box of that, as two values."
   (let ((stream (svg-stream canvas)) (reach (svg-reach canvas)))
     (setf (svg-reach canvas) (list 1d9 1d9 -1d9 -1d9))
     (unwind-protect
@@ -259,9 +259,9 @@
 
 (defun call-with-svg (function stream &key (color-p t) (font "DejaVu Sans Mono, monospace")
                                         (zoom 1))
-  "Call FUNCTION with a canvas, then write what it has drawn to STREAM as an SVG document, white
-where nothing was drawn, with text in the font family FONT. FUNCTION returns its width and height
-in pixels, as two values; the document is shown ZOOM times as large."
+  "Call FUNCTION with a canvas. Then write what it has drawn to STREAM as an SVG document on white,
+with text in the font family FONT. FUNCTION returns the width and height in pixels, as two values;
+the document is ZOOM times as large."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)
@@ -271,6 +271,6 @@ in pixels, as two values; the document is shown ZOOM times as large."
     (printing-plainly () (write-document body width height stream font zoom))))
 
 (defmacro with-svg ((canvas stream &rest options) &body body)
-  "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values, then
-write what it has drawn to STREAM as an SVG document. OPTIONS: :color-p, :font, :zoom."
+  "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values. Then
+write it to STREAM as an SVG document. OPTIONS: :color-p, :font, :zoom."
   `(call-with-svg (lambda (,canvas) ,@body) ,stream ,@options))

@@ -1,11 +1,12 @@
-;;;; terrain.lisp -- what never moves: walls, and the marks of places, some by code of users.
+;;;; terrain.lisp -- what never moves: walls, and the marks of places, some drawn by users' code.
 
 (in-package :ars-magna.display)
 
 (export '(reporting-broken-graphics draw-terrain))
 
-;;; Code that fails, or goes on without an end, is reported once and not called again; whoever asked
-;;; for it draws something else. Code that is defined anew is another function, and called.
+;;; If users' drawing code fails or does not end, this is reported once, and the code is not called
+;;; again. The caller then draws something else. Code that is redefined is a new function and is
+;;; called.
 
 (defconstant +drawing-seconds+ 2 "The seconds that users' code may take to draw one thing or cell.")
 (defconstant +drawing-calls+ 100000 "How often users' code may draw for one thing or cell.")
@@ -14,19 +15,19 @@
   "The functions that have signalled an error, and the names that mean no function.")
 
 (defmacro reporting-broken-graphics (&body body)
-  "Run BODY, which draws a file: of what is broken it tells once, though it was told before."
+  "Run BODY, which draws a file: broken graphics are reported once again, if they were before."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun give-up-drawing ()
-  "Signal that users' code has drawn for too long, unless it waits in a debugger."
+  "Signal MISUSE: users' code has drawn for too long. Do nothing if it waits in a debugger."
   (unless (user-calls-waiting-p *user-calls*)
     (reject-use "It had not come to its end after ~D seconds. Mend what goes on without an end."
                 +drawing-seconds+)))
 
 (defun draw-by-user (canvas function origin x y width height &rest arguments)
-  "Have FUNCTION draw in a box of CANVAS, called with CANVAS and ARGUMENTS. ORIGIN, an item or list
-of items, says whose it is (reading 214). Return true if it can; if not, it has been said why, and
-what it has drawn is to be drawn over."
+  "Call FUNCTION with CANVAS and ARGUMENTS, to draw in a box of CANVAS. ORIGIN, an item or a list of
+items, names it in messages (reading 214). Return true if it succeeds. If not, an error message has
+been queued, and the caller must draw over the box."
   (flet ((draw ()
            (let ((*calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
              (call-with-limit (lambda () (apply function canvas arguments))
@@ -40,7 +41,7 @@ what it has drawn is to be drawn over."
     (not (gethash function *broken-graphics*))))
 
 (defun draw-mark (canvas x y width height)
-  "Draw what stands for graphics that cannot be drawn: a crossed box."
+  "Draw a crossed box, in place of graphics that cannot be drawn."
   (with-color (svref red* 9)
     (with-clipping (canvas x y width height)
       (draw-rectangle canvas draw-gcontext* x y (1- width) (1- height))
@@ -57,7 +58,7 @@ what it has drawn is to be drawn over."
 
 (defstruct (wall-look (:constructor make-wall-look (color &optional (texture :plain)))
                       (:copier nil))
-  "What a wall looks like. Looks of walls that are alike are the same object."
+  "The look of a wall. Walls that look alike have the same object."
   (color 0 :type color :read-only t)
   (texture :plain :type keyword :read-only t))
 
@@ -66,8 +67,8 @@ what it has drawn is to be drawn over."
              (material-texture material)))
 
 (defun wall-looks (map)
-  "Return a function of the index of a wall cell of MAP that returns its look: by its substance and
-its parameter; plain black on a display without colours."
+  "Return a function of the index of a wall cell of MAP that returns its look by its substance and
+parameter: plain black on a display without colours."
   (let ((materials (materials-of map)) (known (make-hash-table :test #'eql))
         (black (make-wall-look black*)))
     (if in-color*
@@ -85,8 +86,8 @@ its parameter; plain black on a display without colours."
   (look nil :type wall-look))
 
 (defun clip-window (map left top right bottom)
-  "Return the window of the cells of MAP between the given ones, a list (left top right bottom), of
-which the last two are outside; NIL means to the edge."
+  "Return the cells of MAP between the given ones as a list (left top right bottom). RIGHT and
+BOTTOM are outside. NIL means the edge."
   (flet ((within (value limit) (max 0 (min value limit))))
     (let ((width (map-width map)) (height (map-height map)))
       (list (within (or left 0) width) (within (or top 0) height)
@@ -105,7 +106,7 @@ which the last two are outside; NIL means to the edge."
     (nreverse runs)))
 
 (defun wall-runs (map window)
-  "Return rectangles that together are all walls of MAP within WINDOW."
+  "Return rectangles that together cover all walls of MAP within WINDOW."
   (let ((above (make-array (map-width map) :initial-element nil)) (runs '())
         (looks (wall-looks map)))
     (loop for y from (second window) below (fourth window)
@@ -123,7 +124,8 @@ which the last two are outside; NIL means to the edge."
   "The least width of a tile of a texture that can be made out, in pixels.")
 
 (defun tile-width ()
-  "Return how wide tiles of textures are, in pixels: as many as fit into a cell. NIL: too narrow."
+  "Return the width of tiles of textures, in pixels, a part of a cell; NIL if it would be too
+narrow."
   (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
     (and (<= +least-tile+ width) width)))
 
@@ -136,7 +138,7 @@ which the last two are outside; NIL means to the edge."
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)
-  "Return how many pixels a wall takes between the cells FROM and TO: one at least, to be seen."
+  "Return the width of a wall between the cells FROM and TO, in pixels: at least 1, to be visible."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)
@@ -189,12 +191,12 @@ which the last two are outside; NIL means to the edge."
         append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
 
 (defun steps-apart (pixels)
-  "Return how many cells marks are apart, 1, 2, 5, 10 and so on, that are PIXELS apart at least."
+  "Return the least of 1, 2, 5, 10 and so on cells that are at least PIXELS wide."
   (find-if (lambda (step) (<= pixels (to-pixels step)))
            (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
-  "Return the numbers of metres from START to END at which there are marks, PIXELS apart at least."
+  "Return the metres from START to END at which there are marks, at least PIXELS apart."
   (loop with step = (steps-apart pixels)
         for metres from (* step (ceiling start step)) to end by step collect metres))
 
@@ -210,11 +212,10 @@ which the last two are outside; NIL means to the edge."
                                               append (list left y right y))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
-  "Draw the walls of MAP in black, or in greys by their substance parameters with a tint and a
-texture by their substance, and what LAYERS lists below and on them, such as :GRID and :PLACES, on
-CANVAS, GRAPHICS-SCALE* pixels to a cell (manual B). LEFT, TOP,
-RIGHT and BOTTOM, columns and rows of cells, say which part of MAP is wanted; by default all of
-it is."
+  "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels to a cell (manual B), and those of
+LAYERS below and on walls, such as :GRID and :PLACES. Walls are black without colours, else grey by
+their parameter, with a tint and a texture by their substance. LEFT, TOP, RIGHT and BOTTOM, columns
+and rows of cells, are the part of MAP, by default all."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)
              (dolist (layer (layers-at depth layers))
@@ -226,8 +227,8 @@ it is."
 ;;; The marks of the built-in place types.
 
 ;;; Each is a :graphics function as a user would write it. A circle denotes a convex corner, a dot a
-;;; concave one or a beak, a square a doorway; on a display with colours over a tint, in a dark
-;;; shade of the same hue, so that the tint need not be told from others.
+;;; concave one or a beak, a square a doorway. On a display with colours the cell has a tint, and
+;;; the mark a dark shade of the same hue: so marks can be read without telling tints apart.
 
 (defun fill-cell (canvas x y color)
   "Tint the cell, if there are colours."

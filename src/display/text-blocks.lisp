@@ -1,12 +1,12 @@
-;;;; text-blocks.lisp -- the blocks of cells of a text map, and which character stands for what.
+;;;; text-blocks.lisp -- the blocks of cells of a text map, and the characters for them.
 
 (in-package :ars-magna.display)
 
-;;; Each character stands for a block of cells. Characters are about twice as high as they are wide;
-;;; so where a map has to be scaled down to a number of lines, blocks may be twice as high, too.
+;;; Each character stands for a block of cells. Characters are about twice as high as wide. So if a
+;;; map is scaled down to a number of lines, blocks may be twice as high, too.
 
 (defstruct (view (:copier nil))
-  "Which cells of SNAPSHOT a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT
+  "The cells of SNAPSHOT that a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT
 and TOP."
   (snapshot nil :type snapshot :read-only t)
   (left 0 :type fixnum :read-only t)
@@ -21,18 +21,18 @@ and TOP."
 ;;; Regions.
 
 (defun clip-range (least low high most)
-  "Return LOW and HIGH as whole numbers between LEAST and MOST, at least one apart."
+  "Return LOW and HIGH, rounded outward to integers, between LEAST and MOST and at least 1 apart."
   (let ((low (max least (min (floor low) (1- most)))))
     (values low (max (1+ low) (min (ceiling high) most)))))
 
 (defun region-near (robot radius)
-  "Return the list (left top right bottom) of what is no more than RADIUS cells from ROBOT."
+  "Return the region, a list (left top right bottom), of at most RADIUS cells around ROBOT."
   (let ((x (floor (robot-x robot))) (y (floor (robot-y robot))))
     (list (- x radius) (- y radius) (+ x radius 1) (+ y radius 1))))
 
 (defun least-block (width height columns rows)
-  "Return how many cells wide and high blocks are of which WIDTH x HEIGHT cells make no more than
-COLUMNS x ROWS; ROWS may be NIL, if lines do not count."
+  "Return the least width and height of blocks, in cells, with which WIDTH x HEIGHT cells are at
+most COLUMNS x ROWS blocks. ROWS may be NIL for any number."
   (flet ((fits-p (wide high)
            (and (<= (ceiling width wide) columns)
                 (or (null rows) (<= (ceiling height high) rows)))))
@@ -42,7 +42,7 @@ COLUMNS x ROWS; ROWS may be NIL, if lines do not count."
 
 (defun view-of (snapshot region columns rows)
   "Return a view of REGION, a list (left top right bottom) in metres, or NIL for all of SNAPSHOT, in
-COLUMNS characters of a line and ROWS lines at most; ROWS may be NIL."
+at most COLUMNS characters of a line and ROWS lines, NIL for any number."
   (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
       (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
@@ -63,47 +63,48 @@ COLUMNS characters of a line and ROWS lines at most; ROWS may be NIL."
                        when (map-index map x y) collect it))))
 
 (defun block-at (view x y)
-  "Return the number of the block of VIEW that the point X, Y is in, counted row by row, or NIL."
+  "Return the number of the block of VIEW with the point X, Y, counted row by row, or NIL."
   (let ((column (floor (- x (view-left view)) (view-wide view)))
         (row (floor (- y (view-top view)) (view-high view))))
     (when (and (< -1 column (view-columns view)) (< -1 row (view-rows view)))
       (+ column (* row (view-columns view))))))
 
 (defun block-of-index (view index)
-  "Return the number of the block of VIEW that the cell INDEX is in, or NIL."
+  "Return the number of the block of VIEW with the cell INDEX, or NIL."
   (multiple-value-bind (y x) (floor index (map-width (view-map view)))
     (block-at view x y)))
 
 ;;;; Glyphs
 
-;;; Each kind of thing, that is, all that are called the same, has a letter of its own, which it
-;;; keeps wherever and whenever one looks at its world, as long as no kinds come or go.
+;;; Things with the same name are of one kind. Each kind has its own letter, the same in all text
+;;; maps of its world, until a kind is added or removed.
 
 (defstruct (glyph (:constructor make-glyph (kind char text &optional ink)) (:copier nil))
-  "A character, what kind of thing it stands for (:ROBOT for where one believes to be, too) and what
-it is called, and in which colour it is shown: a name, or NIL for that of text."
+  "A character CHAR for something of KIND called TEXT. :ROBOT is also the kind of believed
+positions. INK is the name of its colour, or NIL for that of text."
   (kind :thing :type (member :wall :robot :layer :several :place :thing) :read-only t)
   (char #\Space :type character :read-only t)
   (text "" :type string :read-only t)
   (ink nil :type (or symbol string) :read-only t))
 
-(define-constant +several+ #\* :documentation "What stands for things of several kinds.")
-(define-constant +other+ #\& :documentation "What stands for things for which there is no letter.")
+(define-constant +several+ #\* :documentation "The character for things of several kinds.")
+(define-constant +other+ #\& :documentation "The character for things without a letter.")
 
 ;;; Letters.
 
 (define-constant +letters+ "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ" :test #'equal
-  :documentation "What may stand for kinds of things.")
+  :documentation "The letters for kinds of things.")
 
 (defun letters-for (name)
-  "Return strings of the characters that may stand for things called NAME, the best first."
+  "Return strings of possible letters for things called NAME, the best first."
   (list (string-downcase (char name 0))
         (string-upcase (char name 0))
         (concatenate 'string (string-downcase name) (string-upcase name))
         +letters+))
 
 (defun kinds-of (world)
-  "Return what the things of WORLD are called, strings: the largest first, then by name."
+  "Return the names of the things of WORLD, strings: those of the largest things first, then by
+name."
   (let ((sizes (make-hash-table :test #'equal)))
     (do-things (thing world)
       (let ((name (symbol-name (thing-name thing))))
@@ -115,10 +116,10 @@ it is called, and in which colour it is shown: a name, or NIL for that of text."
               (if (= size-a size-b) (name-before-p a b) (> size-a size-b)))))))
 
 (defun letters-of (world)
-  "Return a hash table from what the things of WORLD are called, strings, to their letters: those of
-large things are their initials, as far as can be. There may be more kinds than letters."
+  "Return a hash table from the names of the things of WORLD, strings, to their letters. Large
+things get their initials first. There may be more kinds than letters."
   (let ((letters (make-hash-table :test #'equal)) (names (kinds-of world))
-        (free (remove #\v (coerce +letters+ 'list))))   ; that is a robot
+        (free (remove #\v (coerce +letters+ 'list))))   ; v is a robot
     (dotimes (rank 4 letters)
       (dolist (name names)
         (let ((letter (and (null (gethash name letters))
@@ -135,7 +136,7 @@ large things are their initials, as far as can be. There may be more kinds than 
                 (and (typep color '(or symbol string)) color))))
 
 (defun things-glyphs (images letters)
-  "Return the glyphs of the kinds of the things: in front the one for all, if they are several."
+  "Return the glyphs of the kinds of the things; for several kinds, first the glyph for several."
   (let ((glyphs (remove-duplicates (mapcar (lambda (image) (thing-glyph image letters)) images)
                                    :key #'glyph-text :test #'string= :from-end t)))
     (if (rest glyphs)
@@ -145,8 +146,8 @@ large things are their initials, as far as can be. There may be more kinds than 
 ;;; Walls, by their substance.
 
 (defun wall-glyphs (map indices colored-p)
-  "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any; if COLORED-P,
-by its substance."
+  "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any. If COLORED-P,
+it shows the substance."
   (let ((index (find-if (lambda (index) (logtest +wall+ (aref (map-flags map) index))) indices)))
     (when index
       (let ((name (and colored-p
@@ -157,7 +158,7 @@ by its substance."
 ;;; Places.
 
 (define-constant +place-glyphs+ "=:.;,'~\"|-/\\_" :test #'equal
-  :documentation "What place types look like, by their rank; the rest look like the last.")
+  :documentation "The characters of place types, by rank; further ranks have the last.")
 
 (defun place-glyphs (map indices)
   "Return a list of the glyph of the first place of MAP in the cells INDICES, if any."
@@ -175,7 +176,7 @@ by its substance."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun robot-glyph (robot things)
-  "Return the glyph of ROBOT, which stands on THINGS: all are images."
+  "Return the glyph of ROBOT, which is on THINGS; all are images."
   (make-glyph :robot (arrow-glyph (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (hundredths (robot-image-x robot)) (hundredths (robot-image-y robot))

@@ -1,10 +1,9 @@
-;;;; text-map.lisp -- the world as characters, for terminals, with a legend beside or below.
+;;;; text-map.lisp -- the world as characters, for terminals, with a legend.
 
 (in-package :ars-magna.display)
 
-;;; Robots come first; then, by their characters, what was asked for, walls, places and things. If
-;;; there is not room enough below the map, these go beside it; and if that does not do, the rest is
-;;; counted.
+;;; The legend lists robots first; then, by their characters, layers, walls, places and things. If
+;;; there is not enough room below the map, these are beside it. What does not fit there is counted.
 
 (defun kind-rank (glyph)
   (position (glyph-kind glyph) '(:robot :layer :wall :several :place :thing)))
@@ -25,12 +24,12 @@
 (defun in-head-p (glyph)
   (eq :robot (glyph-kind glyph)))
 
-;;; An entry is a pair of how many characters it takes and of what is written.
+;;; An item is a pair of its length in characters and its text.
 
 (defun text-item (text) (cons (length text) text))
 
 (defun glyph-item (glyph paint &optional (width 1000))
-  "Return the entry of GLYPH, as PAINT has it in its colour, of no more than WIDTH characters."
+  "Return the item of GLYPH, in its colour by PAINT, of at most WIDTH characters."
   (let ((text (glyph-text glyph)))
     (setf text (subseq text 0 (min (length text) (- width 2))))
     (cons (+ 2 (length text))
@@ -39,16 +38,15 @@
 (defun glyph-items (glyphs paint)
   (mapcar (lambda (glyph) (glyph-item glyph paint)) glyphs))
 
-(defun fill-lines (entries columns)
-  "Return ENTRIES as lines of at most COLUMNS characters, if they are not longer themselves: a list
-of lists."
+(defun fill-lines (items columns)
+  "Return ITEMS as lines, lists, of at most COLUMNS characters; a longer item is a line."
   (loop with lines = '() and used = 0
-        for entry in entries
-        do (cond ((and lines (<= (+ used 3 (car entry)) columns))
-                  (push entry (first lines))
-                  (incf used (+ 3 (car entry))))
-                 (t (push (list entry) lines)
-                    (setf used (car entry))))
+        for item in items
+        do (cond ((and lines (<= (+ used 3 (car item)) columns))
+                  (push item (first lines))
+                  (incf used (+ 3 (car item))))
+                 (t (push (list item) lines)
+                    (setf used (car item))))
         finally (return (nreverse (mapcar #'reverse lines)))))
 
 (defun write-items (lines stream)
@@ -56,7 +54,7 @@ of lists."
     (format stream "~{~A~^   ~}~%" (mapcar #'cdr line))))
 
 (defun head-items (sheet paint)
-  "Return the entries of the legend of SHEET that always stand below it."
+  "Return the items of the legend of SHEET that are always below the map."
   (let ((view (sheet-view sheet)))
     (append (when (< 1 (max (view-wide view) (view-high view)))
               (list (text-item (format nil "Each character is ~D x ~D cells."
@@ -64,11 +62,11 @@ of lists."
             (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
 
 (defun tail-glyphs (sheet)
-  "Return the glyphs of SHEET whose entries stand wherever there is room."
+  "Return the glyphs of SHEET whose items are wherever there is room."
   (remove-if #'in-head-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
-  "Return all that the legend of SHEET says, as lines of COLUMNS characters."
+  "Return the complete legend of SHEET, as lines of at most COLUMNS characters."
   (fill-lines (append (head-items sheet paint) (glyph-items (tail-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
@@ -76,8 +74,8 @@ of lists."
 (defconstant +least-side+ 12 "The least characters for a legend beside a map.")
 
 (defun side-legend (glyphs room rows paint)
-  "Return what stands beside each of ROWS lines of a map, a vector of lists of entries, each padded,
-and those of GLYPHS for which there is none of ROOM characters."
+  "Return a vector of lists of items, padded, to write in ROOM characters beside each of ROWS lines
+of a map; and those of GLYPHS for which there is no room."
   (let* ((longest (loop for glyph in glyphs maximize (length (glyph-text glyph))))
          (width (min room (+ 2 longest)))
          (columns (if (<= +least-side+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
@@ -92,24 +90,24 @@ and those of GLYPHS for which there is none of ROOM characters."
 
 ;;; Below it.
 
-(defun lines-with-count (head entries columns rows)
-  "Return lines of HEAD and ENTRIES, no more than ROWS of COLUMNS characters; for which of ENTRIES
-there is no room is counted in the last, if there is room for that. ROWS may be NIL."
+(defun lines-with-count (head items columns rows)
+  "Return HEAD and ITEMS as at most ROWS lines of COLUMNS characters. Items without room are counted
+in the last line, if there is room for that. ROWS may be NIL for any number."
   (flet ((kept (count &rest more)
-           (fill-lines (append head (subseq entries 0 count) more) columns))
+           (fill-lines (append head (subseq items 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
-    (if (fits-p (kept (length entries)))
-        (kept (length entries))
-        (loop for count from (1- (length entries)) downto 0
+    (if (fits-p (kept (length items)))
+        (kept (length items))
+        (loop for count from (1- (length items)) downto 0
               for remark = (text-item (format nil "and ~D more: MAP LEGEND"
-                                                  (- (length entries) count)))
+                                                  (- (length items) count)))
               when (fits-p (kept count remark)) return (kept count remark)
               finally (return (kept 0))))))
 
 ;;;; The map
 
-;;; Nothing is changed by looking, and no dice are rolled. Where lines count, as on a terminal, the
-;;; map is made to fit; elsewhere only how wide it is counts, and blocks of cells are square.
+;;; A text map changes nothing and rolls no dice. With a number of lines, as on a terminal, the map
+;;; is made to fit. Otherwise only the width matters, and blocks of cells are square.
 
 (defconstant +margin-columns+ 5 "How many characters stand left of a text map.")
 
@@ -118,7 +116,7 @@ there is no room is counted in the last, if there is room for that. ROWS may be 
   text)
 
 (defun write-row (sheet row paint stream)
-  "Write ROW of SHEET, as PAINT has it in colours; return how many characters that is."
+  "Write ROW of SHEET, in colours by PAINT; return the number of characters."
   (let ((glyphs (row-glyphs sheet row)) (view (sheet-view sheet)))
     (format stream "~4D " (+ (view-top view) (* row (view-high view))))
     (loop with rest = glyphs
@@ -144,19 +142,19 @@ there is no room is counted in the last, if there is room for that. ROWS may be 
             (string-right-trim " " (format nil "~{~10A~}" marks)))))
 
 (defun write-rows (sheet side paint stream)
-  "Write the rows of SHEET, and beside them the lists of entries in the vector SIDE."
+  "Write the rows of SHEET, and beside them the lists of items in the vector SIDE."
   (let ((view (sheet-view sheet)))
     (write-ruler view stream)
     (dotimes (row (view-rows view))
       (let ((written (write-row sheet row paint stream))
-            (entries (svref side row)))
-        (when entries
-          (format stream "~VA~{~A~}" (- (view-columns view) written) "" entries)))
+            (items (svref side row)))
+        (when items
+          (format stream "~VA~{~A~}" (- (view-columns view) written) "" items)))
       (terpri stream))))
 
 (defun write-sheet (sheet columns rows paint stream)
-  "Write SHEET with its legend in lines of at most COLUMNS characters, ROWS of them, if that is not
-NIL, as far as there is room."
+  "Write SHEET with its legend in lines of at most COLUMNS characters, at most ROWS if possible.
+ROWS may be NIL for any number."
   (let* ((view (sheet-view sheet))
          (all (whole-legend sheet columns paint))
          (left (and rows (- rows 1 (view-rows view))))
@@ -170,8 +168,9 @@ NIL, as far as there is room."
                    stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
-  "Return a sheet of REGION for ROBOT that, with the head of its legend, fits into ROWS lines of
-COLUMNS characters, if that can be. Kinds of things have letters also while none lies about."
+  "Return a sheet of REGION for ROBOT that fits, with the head of its legend, into ROWS lines of
+COLUMNS characters, if possible. Kinds keep their letters while none of their things is on the
+floor."
   (let* ((world (robot-world robot)) (snapshot (take-snapshot world)) (letters (letters-of world))
          (image (snapshot-robot snapshot (robot-name robot))))
     (loop for lines from 1
@@ -183,7 +182,7 @@ COLUMNS characters, if that can be. Kinds of things have letters also while none
             return sheet)))
 
 (defun check-region (region map)
-  "Signal WRONG-ARGUMENT unless REGION is NIL or a region that has some of MAP in it."
+  "Signal WRONG-ARGUMENT unless REGION is NIL or a region that overlaps MAP."
   (check-argument text-map region (or (null region) (region-p region))
                   (format nil "a list (left top right bottom) in metres, left less than right and ~
                                top less than bottom, or NIL"))
@@ -204,14 +203,13 @@ COLUMNS characters, if that can be. Kinds of things have letters also while none
 (define-with-keywords text-map
     (robot &key (columns 80) rows radius region layers paint only-legend)
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
-places, things by letters, robots as arrows, and what it all means. With ROWS, it is made to fit
-into so many lines, as far as possible. With REGION, a list (left top right bottom) in metres, it
-shows only that; with RADIUS, a number of cells, only the surroundings of ROBOT. LAYERS are some of
-:CONES (what its cameras have in view), :WAY (where it went since KEEP-HISTORY), :PLAN (which way it
-is about to go, see PUBLISH-WAY) and :BELIEF (where it believes itself and what its designators
-denote to be). PAINT is a function of a string and of
-the name of a colour, or NIL, that returns the string in that colour. ONLY-LEGEND leaves the map
-out. Call it where the world stands still. Signals WRONG-ARGUMENT."
+places, things as letters, robots as arrows, and a legend. With ROWS, it fits into that many lines
+if possible. REGION, a list (left top right bottom) in metres, limits it to that region; RADIUS, a
+number of cells, to the surroundings of ROBOT. LAYERS are some of :CONES (what its cameras have in
+view), :WAY (where it went since KEEP-HISTORY), :PLAN (the way it is about to go, see PUBLISH-WAY)
+and :BELIEF (where it believes itself and its designated objects to be). PAINT is a function of a
+string and of the name of a colour, or NIL; it returns the string in that colour. ONLY-LEGEND leaves
+out the map. Call this between ticks. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
   (check-argument text-map rows (or (null rows) (whole-p rows 5 100000))

@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.display)
 
-;;; These are called by layers.lisp. Each returns a list of pairs of the number of a block and of
-;;; the glyph that is to be seen there.
+;;; The layers (see layers.lisp) call these functions. Each returns a list of pairs of the number of
+;;; a block and the glyph to show there.
 
 (defun mark-at (view x y glyph)
-  "Return a list of the pair of the block of VIEW at X, Y and of GLYPH, or NIL if it is outside."
+  "Return a list of a pair of the block of VIEW at X, Y and GLYPH, or NIL if X, Y is outside."
   (let ((number (block-at view x y)))
     (and number (list (cons number glyph)))))
 
@@ -26,7 +26,7 @@
     indices))
 
 (defun cone-blocks (view robot camera)
-  "Return the numbers of the blocks of VIEW that have something in the field of view of CAMERA."
+  "Return the numbers of the blocks of VIEW that are, at least in part, in view of CAMERA of ROBOT."
   (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-spacing+)))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
@@ -52,10 +52,10 @@
           append (mark-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0
-  "How far apart the points of a planned way are that are shown, in metres.")
+  "The distance between points of a planned way that are shown, in metres.")
 
 (defun points-between (from to)
-  "Return points, lists (x y), on the line between the points FROM and TO, both with it."
+  "Return points, lists (x y), on the line from FROM to TO, with both ends."
   (destructuring-bind ((x y) (dx dy)) (list from (mapcar #'- to from))
     (let ((count (max 1 (ceiling (sqrt (+ (* dx dx) (* dy dy))) +way-spacing+))))
       (loop for i to count
@@ -91,15 +91,15 @@
 
 ;;;; Sheets
 
-;;; What matters most in a block shows: a robot, what one believes, things, its way, walls, a place,
-;;; what cameras see.
+;;; A block shows what matters most in it: a robot, beliefs, things, ways, walls, a place, what
+;;; cameras see.
 
 (defstruct (sheet (:copier nil))
-  "A VIEW, in which GLYPHS has what is to be seen in each block, row by row, or NIL; and the LEGEND,
-a list of all glyphs that mean something there."
+  "A VIEW with GLYPHS, the visible glyph of each block, row by row, or NIL; and LEGEND, a list of
+all glyphs used."
   (view nil :type view :read-only t)
   (letters nil :type hash-table :read-only t)
-  ;; Walls are told apart by colour.
+  ;; True if walls are told apart by colour.
   (colored-p nil :read-only t)
   (things nil :type hash-table :read-only t)
   ;; For each layer, the last first, its depth with a table from blocks to lists of glyphs.
@@ -108,7 +108,7 @@ a list of all glyphs that mean something there."
   (legend '() :type list))
 
 (defun add-to-legend (sheet glyphs)
-  "Let the legend of SHEET have GLYPHS. Return the first of them."
+  "Add GLYPHS to the legend of SHEET. Return the first of them."
   (dolist (glyph glyphs (first glyphs))
     (pushnew glyph (sheet-legend sheet)
              :test (lambda (a b)
@@ -134,7 +134,7 @@ a list of all glyphs that mean something there."
                  (snapshot-robots (view-snapshot view))))
 
 (defun things-by-cell (view)
-  "Return a hash table from indices of cells to lists of images of things in VIEW, by number."
+  "Return a hash table from indices of cells to lists of images of things in VIEW, in their order."
   (let ((table (make-hash-table)))
     (loop for image across (reverse (snapshot-things (view-snapshot view)))
           do (push image (gethash (map-index (view-map view) (thing-image-x image)
@@ -143,8 +143,8 @@ a list of all glyphs that mean something there."
     table))
 
 (defun glyphs-of-block (sheet number indices)
-  "Return the glyphs of what matters most in the block NUMBER of SHEET, which has the cells INDICES:
-first the one that shows."
+  "Return the glyphs of what matters most in the block NUMBER of SHEET, with the cells INDICES:
+first the visible one."
   (let* ((view (sheet-view sheet))
          (map (view-map view))
          (things (loop for index in indices append (gethash index (sheet-things sheet)))))
@@ -157,8 +157,8 @@ first the one that shows."
         (layer-glyphs-at sheet :floor number))))
 
 (defun sheet-of (robot view layers letters colored-p)
-  "Return a sheet of VIEW with LAYERS, some of (TEXT-LAYERS), for ROBOT, an image. LETTERS are those
-of things."
+  "Return a sheet of VIEW with LAYERS, some of (TEXT-LAYERS), for ROBOT, an image. LETTERS is a
+value of LETTERS-OF."
   (let ((sheet (make-sheet :view view :colored-p colored-p :things (things-by-cell view)
                            :letters letters)))
     (dolist (layer *layers*)
@@ -176,7 +176,7 @@ of things."
     sheet))
 
 (defun row-glyphs (sheet row)
-  "Return the glyphs of ROW of SHEET, NIL where there is nothing, up to the last one."
+  "Return the glyphs of ROW of SHEET up to the last one, NIL for empty blocks."
   (let* ((columns (view-columns (sheet-view sheet)))
          (start (* row columns))
          (last (position nil (sheet-glyphs sheet) :from-end t :test-not #'eq

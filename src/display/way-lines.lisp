@@ -1,21 +1,21 @@
-;;;; way-lines.lisp -- ways as lines on a map, also where several go along one; trails and plans.
+;;;; way-lines.lisp -- ways as lines on a map, side by side; trails and planned ways.
 
 (in-package :ars-magna.display)
 
 (export '(make-way-line draw-way-lines draw-way-sample draw-arrows draw-way-marks jumps-of
           way-seen-p points-along draw-jump-dots draw-start))
 
-;;; Ways may go along one line. So each goes in a lane of its own, a few pixels beside where it
-;;; was, and they are drawn together: all halos, then all lines, then arrowheads, then the marks of
-;;; their ends, one around the other where they are on one spot. None hides what is of another.
+;;; Several ways may go along one line. So each is drawn in its own lane, a few pixels beside its
+;;; place. They are drawn together: all halos, then all lines, then arrowheads, then the marks of
+;;; their ends, around each other on one spot. So no way hides another.
 
 (defconstant +arrows-apart+ 90 "About how far arrowheads on a way are apart, in pixels.")
 (defconstant +least-arrowed+ 24 "The length of the shortest way with an arrowhead, in pixels.")
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun segments-along (points)
-  "Return lists (length x y dx dy) of the pieces of the way through POINTS, x y ...; those of no
-length are left out."
+  "Return lists (length x y dx dy) of the segments of the way through POINTS, x y ..., except those
+of length 0."
   (loop for (x y next-x next-y) on points by #'cddr
         for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
         for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
@@ -23,7 +23,7 @@ length are left out."
         when (plusp length) collect (list length x y dx dy)))
 
 (defun point-along (pieces distance)
-  "Return the point DISTANCE along the way of PIECES (see LENGTHS-ALONG), a list (x y)."
+  "Return the point (x y) at DISTANCE along the way of PIECES (see SEGMENTS-ALONG)."
   (loop for ((length x y dx dy) . more) on pieces
         when (or (<= distance length) (null more))
           return (let ((share (min 1 (/ distance length))))
@@ -31,15 +31,15 @@ length are left out."
         do (decf distance length)))
 
 (defun arrow-along (pieces distance)
-  "Return a list (x y angle): an arrowhead DISTANCE along the way of PIECES."
+  "Return an arrowhead, a list (x y angle), at DISTANCE along the way of PIECES."
   (destructuring-bind ((x y) (to-x to-y))
       (list (point-along pieces (- distance (/ +arrow-length+ 2)))
             (point-along pieces (+ distance (/ +arrow-length+ 2))))
     (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (arctangent (- to-y y) (- to-x x)))))
 
 (defun free-arrow (pieces distance arrows)
-  "Return an arrowhead about DISTANCE along the way of PIECES that lies on none of ARROWS, as it may
-where a way leads back; or NIL."
+  "Return an arrowhead at about DISTANCE along the way of PIECES that overlaps none of ARROWS, which
+it may where a way leads back; or NIL."
   (loop with room = (* 3/2 +arrow-length+)
         for aside in (list 0 room (- room) (* 2 room) (* -2 room))
         for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
@@ -48,8 +48,8 @@ where a way leads back; or NIL."
           return (list x y angle)))
 
 (defun arrows-along (points &optional others)
-  "Return lists (x y angle) of where arrowheads stand on the way through POINTS, x y ... in pixels:
-few, none on a very short one, and none on OTHERS."
+  "Return the arrowheads (x y angle) of the way through POINTS, x y ... in pixels: few, none on a
+very short way, and none that overlaps OTHERS."
   (let* ((pieces (segments-along points)) (whole (reduce #'+ pieces :key #'first))
          (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
          (arrows '()))
@@ -73,52 +73,52 @@ few, none on a very short one, and none on OTHERS."
 
 (define-constant +lanes+ '((0 0) (5/4 5/2) (5/2 -5/4) (-5/4 -5/2) (-5/2 5/4))
   :test #'cl:equal
-  :documentation "How far what there are several of is drawn beside its place, in turn: lists (x y)
-in widths of its line. As with queens on a chessboard, no two share a row, a column or a diagonal,
-in which they would lie on each other.")
+  :documentation "How far several ways are drawn beside their places, by position: lists (x y) in
+widths of the line. Like queens on a chessboard, no two share a row, a column or a diagonal, where
+they would overlap.")
 
 (define-record (way-line (:constructor make-way-line
                              (position pieces &key (color (nth-ink position))
                                                    (dashes (nth-dashes position)) (width 2)
                                                    (arrows-p t) (lane position))))
-  "A way, the one at POSITION of several, as a line of PIECES."
+  "A way, at POSITION among several, as a line of PIECES."
   (position 0 integer)
   (lane 0 integer "the number of the lane that it is drawn in")
-  (pieces '() list "lists x y ... in pixels, between which something was put elsewhere")
+  (pieces '() list "lists x y ... in pixels; between two of them it was put elsewhere")
   (color 0 integer)
   (dashes '() list)
   (width 2 real)
   (arrows-p t t "it has arrowheads"))
 
 (defun pieces-in-lane (line)
-  "Return the pieces of the way LINE that are lines, each in its lane."
+  "Return those pieces of the way LINE that have several points, moved into its lane."
   (destructuring-bind (aside down) (nth-cyclic (way-line-lane line) +lanes+)
     (let ((dx (* aside (way-line-width line))) (dy (* down (way-line-width line))))
       (loop for piece in (way-line-pieces line)
             when (cddr piece)
               collect (loop for (x y) on piece by #'cddr collect (+ x dx) collect (+ y dy))))))
 
-;;; A robot that is put elsewhere, by PLACE-ROBOT or in the window, goes no way from here to there.
-;;; So lines end where it was taken away, and begin anew where it was put; dots join the two.
+;;; A robot can be put elsewhere, by PLACE-ROBOT or in the window, without a way from here to there.
+;;; This is a jump: the line ends, and a new one begins where the robot was put. Dots join the two.
 
 (define-constant +jump-dashes+ '(1 6)
   :test #'cl:equal
-  :documentation "The dots and gaps between where a robot was and where it was put, in pixels.")
+  :documentation "The dots and gaps of jumps, in pixels.")
 (defconstant +jump-width+ 3/2 "The width of these dots, in pixels.")
 
 (defun draw-jump-dots (canvas jumps color)
-  "Draw that something was put elsewhere: dots of COLOR along JUMPS, lists x y to-x to-y in pixels."
+  "Draw JUMPS, lists x y to-x to-y in pixels, as dots in COLOR."
   (with-color color
     (with-dashes (+jump-dashes+ :width +jump-width+)
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
 (defun jumps-of (pieces)
-  "Return the jumps between PIECES, lists x y ... in pixels: lists x y to-x to-y."
+  "Return the jumps between PIECES, lists x y ... in pixels, as lists x y to-x to-y."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
 (defun draw-halos (canvas lines)
-  "Draw what is white around the ways LINES and their jumps."
+  "Draw the white halos of the ways LINES and of their jumps."
   (dolist (line lines)
     (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 +jump-width+))
       (dolist (jump (jumps-of (way-line-pieces line)))
@@ -127,7 +127,7 @@ in which they would lie on each other.")
       (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-arrows (canvas lines)
-  "Draw the arrowheads of the ways LINES, none on another."
+  "Draw the arrowheads of the ways LINES, without overlaps."
   (let ((arrows '()))
     (dolist (line (remove-if-not #'way-line-arrows-p lines))
       (dolist (points (pieces-in-lane line))
@@ -165,7 +165,7 @@ in which they would lie on each other.")
   (cons (floor x +tile+) (floor y +tile+)))
 
 (defun tiles-along (pieces)
-  "Return a hash table with the tiles that the lines PIECES go through, or by."
+  "Return a hash table of the tiles that the lines PIECES cross or touch."
   (let ((tiles (make-hash-table :test #'equal)))
     (dolist (piece pieces tiles)
       (loop for (x y next-x next-y) on piece by #'cddr
@@ -175,8 +175,8 @@ in which they would lie on each other.")
                               do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))))))
 
 (defun jumps-seen-p (ways box)
-  "True if a jump of WAYS, lists of pieces, is to be seen within BOX: something of it that does not
-go along a way."
+  "True if a jump of WAYS, lists of pieces, is visible within BOX: if a part of it is not covered by
+a way."
   (loop with jumps = (mapcan #'jumps-of ways)
         with tiles = (and jumps (tiles-along (apply #'append ways)))
         for (x y to-x to-y) in jumps
@@ -185,7 +185,7 @@ go along a way."
                                    (not (gethash (tile-at x y) tiles))))))
 
 (defun way-seen-p (pieces box)
-  "True if something of the way of PIECES is within BOX."
+  "True if a part of the way of PIECES is within BOX."
   (some (lambda (piece)
           (loop for (x y next-x next-y) on piece by #'cddr
                 thereis (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box)
@@ -199,17 +199,17 @@ go along a way."
 (defconstant +mark-radius+ 4 "The radius of the mark where a way begins or ends, in pixels.")
 
 (defun draw-start (canvas x y color &optional (radius +mark-radius+))
-  "Draw what marks where a way begins: a small ring."
+  "Draw the mark of the start of a way: a small ring."
   (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
   (with-halo (color :width 2) (draw-circle canvas x y radius nil)))
 
 (defun draw-goal (canvas x y color &optional (radius +mark-radius+))
-  "Draw what marks where a way ends: a spot."
+  "Draw the mark of the end of a way: a filled circle."
   (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
   (with-color color (draw-circle canvas x y radius t)))
 
 (defun draw-way-marks (canvas marks)
-  "Draw MARKS, lists (function x y color) of the ends of ways: those on one spot around each other."
+  "Draw MARKS, lists (function x y color) for the ends of ways, around each other on one spot."
   (flet ((near-p (one other)
            (and (< (abs (- (second one) (second other))) +mark-radius+)
                 (< (abs (- (third one) (third other))) +mark-radius+))))
@@ -244,22 +244,22 @@ go along a way."
 ;;; Planned ways.
 
 (defun robots-with-plans (snapshot)
-  "Return the images of those robots in SNAPSHOT of which it is known where they are about to go."
+  "Return the images of those robots in SNAPSHOT that have a planned way."
   (remove-if-not (lambda (robot) (rest (robot-image-planned-way robot)))
                  (snapshot-robots snapshot)))
 
 (defun end-of-planned-way (robot)
-  "Return, in pixels, where the way ends that ROBOT is about to go."
+  "Return the end of the planned way of ROBOT, in pixels."
   (pixels-of (first (last (robot-image-planned-way robot)))))
 
 (defun ends-of-planned-ways (robots)
-  "Return the boxes of the rings where the ways end that ROBOTS are about to go."
+  "Return the boxes of the rings at the ends of the planned ways of ROBOTS."
   (loop for robot in robots
         collect (destructuring-bind (x y) (end-of-planned-way robot)
                   (box-around x y (+ 2 +mark-radius+)))))
 
 (defun draw-planned-ways (canvas robots)
-  "Draw the ways that ROBOTS are about to go, with a ring where each ends."
+  "Draw the planned ways of ROBOTS, with a ring at the end of each."
   (draw-way-lines canvas
                   (loop for robot in robots
                         for way = (apply #'append (robot-image-planned-way robot))

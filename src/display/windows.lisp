@@ -1,20 +1,19 @@
-;;;; windows.lisp -- how a robot gets a window; coordinates and scale bar at the edges of its view.
+;;;; windows.lisp -- opening a window; coordinates and scale bar at the edges of its view.
 
 (in-package :ars-magna.display)
 
 (export '(draw-view-margins view-edges *display-opener* *displays-waiter* announce-display))
 
-;;; A window shows a part of the map. Numbers and bar stand in strips at its edges, from one end to
-;;; the other, and the map is in view between these: so they hide nothing that one could see there
-;;; otherwise. A number at the end of its strip is moved so that it is whole. All is in pixels of
-;;; the whole map: LEFT and TOP are where the view begins.
+;;; A window shows a part of the map. Numbers and scale bar are in strips along its edges. The map
+;;; is in view between the strips, so that they hide nothing. A number at the end of a strip is
+;;; moved to be complete. Coordinates are pixels of the whole map: the view begins at LEFT, TOP.
 
 (defconstant +strip-height+ 17 "The height of the strip of numbers, in pixels.")
 (defconstant +bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
 
 (defun view-edges (map layers)
-  "Return how many pixels at the left, top and bottom of a view of MAP the strips take that LAYERS
-ask for: a list."
+  "Return a list of the widths, in pixels, of the strips for LAYERS at the left, top and bottom of a
+view of MAP."
   (let ((numbers-p (member :coordinates layers)))
     (list (if numbers-p (+ 11 (words-width (princ-to-string (map-height map)))) 0)
           (if numbers-p +strip-height+ 0)
@@ -29,8 +28,8 @@ ask for: a list."
     (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
 
 (defun draw-columns-strip (canvas map left top start end)
-  "Draw the numbers of metres from the left of MAP that are between the pixels START and END, in a
-strip that begins at LEFT, TOP."
+  "Draw numbers of metres from the left of MAP, between the pixels START and END, in a strip that
+begins at LEFT, TOP."
   (draw-strip canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-width map)) 60))
@@ -40,8 +39,8 @@ strip that begins at LEFT, TOP."
                  text))))
 
 (defun draw-rows-strip (canvas map left top width end)
-  "Draw the numbers of metres from the top of MAP that are between the pixels TOP and END, in a
-strip at LEFT that is WIDTH pixels wide."
+  "Draw numbers of metres from the top of MAP, between the pixels TOP and END, in a strip at LEFT
+that is WIDTH pixels wide."
   (draw-strip canvas left top width (- end top))
   (dolist (metres (marks-between (/ (max 0 top) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-height map)) 60))
@@ -50,13 +49,13 @@ strip at LEFT that is WIDTH pixels wide."
       (draw-text canvas (- right 8 (words-width text)) (min (+ y 4) (- end 2)) text))))
 
 (defun draw-view-margins (canvas map layers left top width height)
-  "Draw what LAYERS lists of :COORDINATES and :SCALE-BAR of MAP at the edges of a view of it, WIDTH
-by HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. To be called within
+  "Draw those of :COORDINATES and :SCALE-BAR that LAYERS list at the edges of a view of MAP, WIDTH
+by HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. Call this within
 WITH-CANVAS, with the origin in that corner."
   (destructuring-bind (left-edge top-edge bottom-edge) (view-edges map layers)
     (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
       (when (member :coordinates layers)
-        ;; In this order: the first number of a row may reach into the corner, which is empty.
+        ;; In this order: the first number of a row may reach into the empty corner.
         (draw-columns-strip canvas map left top (+ left left-edge) right)
         (draw-rows-strip canvas map left (+ top top-edge) left-edge bottom))
       (when (member :scale-bar layers)
@@ -67,17 +66,16 @@ WITH-CANVAS, with the origin in that corner."
 ;;;; Opening windows
 
 (defvar *display-opener* nil
-  "A function of a robot that opens its display in a window, or NIL if nothing that can is loaded.")
+  "A function of a robot that opens its display in a window, or NIL without ars-magna/clim.")
 
 (defvar *displays-waiter* nil
-  "A function that waits until all windows are closed, or NIL if nothing that opens any is loaded.")
+  "A function that waits until all windows are closed, or NIL without ars-magna/clim.")
 
 (addition open-display)
 (defun open-display (robot)
-  "Show ROBOT and its world in a window that follows what happens there (manual B). A robot has one
-window: if it is open, it comes to the front, and shows ROBOT where this is, be it in a fork or
-trial. Return ROBOT.
-Signals MISUSE where no window is to be had: see ars-magna/clim."
+  "Show ROBOT and its world in a window that follows the run (manual B). Return ROBOT. A robot has
+one window: if it is open, it comes to the front, and shows the run of ROBOT, which can be a fork or
+a trial. Signals MISUSE if no window can be opened: see ars-magna/clim."
   (check-argument open-display robot (robot-p robot) "a robot")
   (unless *display-opener*
     (reject-use "No display: it needs McCLIM, and the system ars-magna/clim to be loaded. The line ~
@@ -86,11 +84,11 @@ Signals MISUSE where no window is to be had: see ars-magna/clim."
   robot)
 
 (defvar *told-reasons* '()
-  "Why no display could be opened, texts, as far as the user has been told.")
+  "The reasons, texts, that the user has been told why no display could be opened.")
 
 (defun announce-display (robot options)
-  "When SIMULATOR has started ROBOT, open its display, or say in a line, once, that there is none
-and how to get one. The option :DISPLAY NIL of SIMULATOR leaves both out."
+  "Open the display of ROBOT, which SIMULATOR has started; if that fails, print a line, once, that
+says why and what to do. With the option :DISPLAY NIL of SIMULATOR, do nothing."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)

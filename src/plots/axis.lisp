@@ -1,10 +1,10 @@
-;;;; axis.lisp -- from numbers to pixels, with marks at round numbers; axes of words.
+;;;; axis.lisp -- axes: from numbers or words to pixels, with marks.
 
 (in-package :ars-magna.plots)
 
 (defstruct (axis (:copier nil))
-  "The numbers from LOW to HIGH (their logarithms if LOG-P) between the pixels FROM and TO. MARKS
-is a list of (value line...), lines of text, which run upward if UPWARD-P."
+  "The numbers from LOW to HIGH, logarithms if LOG-P, between the pixels FROM and TO. MARKS is a
+list of lists (value line...) with lines of text, which run upward if UPWARD-P."
   (low 0 :type real)
   (high 1 :type real)
   (from 0 :type real)
@@ -14,7 +14,7 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return where VALUE is along an axis: VALUE, or its logarithm if LOG-P."
+  "Return VALUE, or its logarithm to base 10 if LOG-P. Signals WRONG-ARGUMENT if it has none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
                            "more than 0 on a logarithmic axis; leave :log-x out, or make it a word")
@@ -22,7 +22,7 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
              (+ power (rational (/ (logarithm (/ value (expt 10 power))) (logarithm 10))))))))
 
 (defun antilogarithm (spot)
-  "Return the number whose logarithm is SPOT, about."
+  "Return the number whose logarithm is about SPOT."
   (multiple-value-bind (power rest) (floor spot)
     (* (expt 10 power) (rational (power 10 rest)))))
 
@@ -35,8 +35,8 @@ is a list of (value line...), lines of text, which run upward if UPWARD-P."
 ;;; Limits.
 
 (defun limits (values &optional (least-step 0))
-  "Return the least and the greatest of VALUES, further apart if they are the same, by LEAST-STEP at
-least to each side; 0 and 1 if there are none."
+  "Return the least and the greatest of VALUES; 0 and 1 if there are none. If both are equal, widen
+them by LEAST-STEP or more to each side."
   (let ((low (if values (reduce #'min values) 0))
         (high (if values (reduce #'max values) 1)))
     (cond ((< low high) (values low high))
@@ -45,13 +45,13 @@ least to each side; 0 and 1 if there are none."
                (values (- low more) (+ high more)))))))
 
 (defun least-step (values percent)
-  "Return how far apart marks for VALUES are at least: what is counted has no marks between whole
-numbers."
+  "Return the least step of marks for VALUES: 1 for counts, which are integers without PERCENT, else
+0."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
 (defun padded-limits (low high from to inset)
-  "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET from
-these, but no more than a sixth of it."
+  "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET pixels
+from the ends, but at most a sixth of the axis."
   (let* ((span (rational (- to from)))
          (inset (min (rational inset) (/ span 6)))
          (margin (* (- high low) (/ inset (- span (* 2 inset))))))
@@ -65,15 +65,15 @@ these, but no more than a sixth of it."
   (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
 
 (defun marks-fit-p (axis least)
-  "True if the texts of the marks of AXIS, at least LEAST pixels wide, stand clear of each other."
+  "True if the texts of the marks of AXIS, each at least LEAST pixels wide, do not overlap."
   (loop for (mark next) on (axis-marks axis)
         while next
         always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))
                    (- (axis-place (first next) axis) (axis-place (first mark) axis)))))
 
 (defun fit-marks (axis candidates least)
-  "Give AXIS the first of CANDIDATES, lists of marks, whose texts fit; one mark alone, which says
-nothing of the scale, only if there are never two."
+  "Give AXIS the first of CANDIDATES, lists of marks, whose texts fit. A single mark, which does not
+show the scale, is used only if no candidate has two."
   (loop for (marks . more) on (or (remove-if-not #'rest candidates) candidates)
         do (setf (axis-marks axis) marks)
         until (or (null more) (marks-fit-p axis least)))
@@ -82,8 +82,8 @@ nothing of the scale, only if there are never two."
 ;;; Axes across.
 
 (defun step-candidates (low high start end percent &optional (least-step 0))
-  "Return lists of marks between START and END, 10 or fewer between LOW and HIGH, most marks first,
-LEAST-STEP apart at least."
+  "Return lists of marks between START and END, at most 10 between LOW and HIGH and at least
+LEAST-STEP apart, the longest list first."
   (loop for most in '(10 8 6 5 4 3 2 1)
         for step = (max least-step (round-step (- high low) most))
         collect (step-marks step start end percent)))
@@ -98,7 +98,7 @@ LEAST-STEP apart at least."
                          collect (list value (plain-text value 4)))))
 
 (defun logarithmic-candidates (low high percent)
-  "Return lists of marks for the logarithms from LOW to HIGH, most marks first."
+  "Return lists of marks for the logarithms from LOW to HIGH, the longest list first."
   (if (< (- high low) 1)
       (let ((least (antilogarithm low)) (most (antilogarithm high)))
         (step-candidates least most least most percent))
@@ -108,7 +108,8 @@ LEAST-STEP apart at least."
 
 (defun axis-across (values from to log-p &key percent (least 0) (inset 16))
   "Return an axis for VALUES, logarithmic if LOG-P, from the pixel FROM to TO, with as many marks as
-fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the ends."
+fit, each at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the
+ends."
   (let ((least-step (if log-p 0 (least-step values percent)))
         (spots (if log-p
                    (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))
@@ -124,10 +125,10 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
 ;;; The axis upward. Its ends are marks.
 
 (defun axis-upward (values percent range)
-  "Return an axis for VALUES and the two numbers of RANGE; where it is on the page is not yet said."
+  "Return an axis for VALUES and the two numbers of RANGE, without its place on the page."
   (multiple-value-bind (low high) (limits (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
-           ;; Of 0 and 1 nobody knows whether they are counted, or shares.
+           ;; 0 and 1 can be counts or shares.
            (least-step (if (<= high 1) 0 (least-step values percent)))
            (step (max least-step (round-step (- high low) 6)))
            (low (multiple-below step low))
@@ -136,13 +137,14 @@ fit, at least LEAST pixels wide. The least and greatest of VALUES are INSET pixe
 
 ;;;; An axis of words
 
-;;; The words stand below their places, in up to three lines, if none need be broken for that; else
-;;; they run upward, and if there are too many for the page, it becomes wider.
+;;; The words are below their places, in up to three lines, if none must be broken for that.
+;;; Otherwise they run upward. If there are too many for the page, it becomes wider.
 
-(defconstant +longest-upward+ 170 "How long a line of a name that runs upward is, in pixels.")
+(defconstant +longest-upward+ 170 "The greatest length of a line that runs upward, in pixels.")
 
 (defun across-lines (words width)
-  "Return the lines of each of WORDS within WIDTH pixels, or NIL if they don't fit in three."
+  "Return a list of the lines of each of WORDS within WIDTH pixels; NIL if one needs more than three
+or a break."
   (let ((all (mapcar (lambda (word) (wrap-text word width)) words)))
     (and (every (lambda (word lines)
                   (and (<= (length lines) 3)

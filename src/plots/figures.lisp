@@ -1,18 +1,17 @@
-;;;; figures.lisp -- numbers as people read them, and round numbers.
+;;;; figures.lisp -- numbers as text, and round numbers.
 
 (in-package :ars-magna.plots)
 
 (export '(figure-text power-of-ten decimal-text without-zeros))
 
-;;; Inside, all numbers are rationals: nothing overflows, whatever their size, and the same data
-;;; make the same picture to the last byte.
+;;; Internally all numbers are rationals. So numbers of any size do not overflow, and the same data
+;;; give the same picture to the last byte.
 
 (defun as-rational (value)
-  "Return VALUE, a finite number, as a rational, 0.1 as 1/10; NIL if it is NIL. Signals
-WRONG-ARGUMENT."
+  "Return VALUE, a finite number or NIL, as a rational or NIL; 0.1 as 1/10. Signals WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a number that is not infinite, or NIL if there is none")
-  ;; Of denormalized floats SBCL's RATIONALIZE returns numbers that are other floats.
+  ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.
   (and value
        (if (and (floatp value) (< (float-precision value) (float-digits value)))
            (rational value)
@@ -29,7 +28,7 @@ WRONG-ARGUMENT."
 ;;; Text.
 
 (defun decimal-text (value decimals)
-  "Return VALUE in decimals, rounded to DECIMALS of these."
+  "Return VALUE as text, rounded to DECIMALS decimals."
   (multiple-value-bind (whole rest)
       (truncate (abs (round (* (rational value) (expt 10 decimals)))) (expt 10 decimals))
     (format nil "~:[~;-~]~D~:[~;.~V,'0D~]"
@@ -37,13 +36,13 @@ WRONG-ARGUMENT."
             whole (plusp decimals) decimals rest)))
 
 (defun without-zeros (text)
-  "Return TEXT, a number, without the zeros that end its decimals."
+  "Return TEXT, a number, without trailing zeros of its decimals."
   (if (find #\. text)
       (string-right-trim "." (string-right-trim "0" text))
       text))
 
 (defun rounded (value digits)
-  "Return VALUE, a rational, rounded to so many significant DIGITS."
+  "Return VALUE, a rational, rounded to DIGITS significant digits."
   (if (zerop value)
       0
       (let ((unit (expt 10 (- (power-of-ten value) digits -1))))
@@ -58,8 +57,8 @@ WRONG-ARGUMENT."
                 power))))
 
 (defun figure-text (value &key (percent nil) (digits 4))
-  "Return VALUE, a number, as text of so many significant DIGITS, as per cent if PERCENT: 0.3,
-12.5 %, 1.5e9. NIL is a dash. Signals WRONG-ARGUMENT."
+  "Return VALUE, a number, as text with DIGITS significant digits, as per cent if PERCENT: 0.3,
+12.5 %, 1.5e9. For NIL return a dash. Signals WRONG-ARGUMENT."
   (let ((value (as-rational value)))
     (cond ((null value) "-")
           (percent (format nil "~A %" (plain-text (* 100 value) digits)))
@@ -76,7 +75,7 @@ WRONG-ARGUMENT."
                         when (<= least step) return step))))
 
 (defconstant +slack+ 1/1000000000
-  "By how much of a step a float may miss a round number that is meant.")
+  "The share of a step by which a float may miss a round number.")
 
 (defun multiple-below (step value)
   (* step (floor (+ (/ value step) +slack+))))
@@ -85,7 +84,7 @@ WRONG-ARGUMENT."
   (* step (ceiling (- (/ value step) +slack+))))
 
 (defun step-text (value step largest percent)
-  "Return the text of VALUE, one of some STEP apart up to LARGEST; each has as many decimals."
+  "Return the text of VALUE, one of several STEP apart up to LARGEST, with the decimals of STEP."
   (flet ((decimals (step) (max 0 (- (power-of-ten step)))))
     (cond (percent
            (format nil "~A %" (decimal-text (* 100 value) (decimals (* 100 step)))))

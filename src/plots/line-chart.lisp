@@ -1,18 +1,19 @@
-;;;; line-chart.lisp -- what comes of what is varied: points with intervals, by series.
+;;;; line-chart.lisp -- series of points with intervals.
 
 (in-package :ars-magna.plots)
 
 (export '(line-chart))
 
 (defstruct (spot (:constructor make-spot (x y low high)) (:copier nil))
-  "A point of a series: Y at X, between LOW and HIGH. X is a number or a text; all else may be NIL."
+  "A point of a series: Y at X, with the interval LOW to HIGH. X is a number or a text; all others
+may be NIL."
   (x nil :read-only t)
   (y nil :read-only t)
   (low nil :read-only t)
   (high nil :read-only t))
 
 (defstruct (series (:constructor make-series (name index spots)) (:copier nil))
-  "Points in the order in which they are given. INDEX decides the look."
+  "Points in the given order. INDEX determines the look."
   (name nil :read-only t)
   (index 0 :read-only t)
   (spots '() :type list :read-only t))
@@ -26,13 +27,13 @@
                (as-rational y) (as-rational low) (as-rational high))))
 
 (defun words-p (all)
-  "True if some point in the lists ALL has an X that is no number."
+  "True if the X of a point in ALL, lists (name point...), is not a number."
   (some (lambda (entry)
           (some (lambda (point) (and (consp point) (not (realp (first point))))) (rest entry)))
         all))
 
 (defun checked-series (all)
-  "Return series for ALL, a list of lists (name point...); true as well if X are words."
+  "Return series for ALL, a list of lists (name point...), and whether X are words."
   (check-argument chart all (and (listp all) (every #'consp all))
                   "a list of series, each a list (name (x y low high) ...)")
   (let ((words-p (words-p all)))
@@ -46,40 +47,40 @@
 (defun all-spots (series) (mapcan (lambda (one) (copy-list (series-spots one))) series))
 
 (defun all-x (series)
-  "Return what there is along the axis across, each once, in order of appearance."
+  "Return the X of SERIES, each once, in order of appearance."
   (remove-duplicates (mapcar #'spot-x (all-spots series)) :test #'equal :from-end t))
 
 (defun all-y (series)
   (loop for spot in (all-spots series)
         append (remove nil (list (spot-y spot) (spot-low spot) (spot-high spot)))))
 
-;;; Series side by side, so that their intervals do not hide each other.
+;;; Series are drawn side by side, so that their intervals do not hide each other.
 
 (defun least-gap (places)
-  "Return how far the nearest two of PLACES are apart, in pixels; 60 if there are no two."
+  "Return the least distance of two of PLACES, in pixels; 60 if there are fewer."
   (let ((sorted (sort (copy-list places) #'<)))
     (loop for (place next) on sorted
           while next
           minimize (- next place) into gap
           finally (return (if (rest sorted) gap 60)))))
 
-(defconstant +most-sideways+ 8 "How far series stand beside each other at most, in pixels.")
+(defconstant +most-sideways+ 8 "The greatest shift between two series, in pixels.")
 
 (defun shift-step (count gap)
-  "Return how far COUNT series stand beside each other, for places that are GAP pixels apart."
+  "Return the shift between two of COUNT series, for places that are GAP pixels apart."
   (min +most-sideways+ (/ (* 6/10 gap) (max 1 count))))
 
 (defun inset-for-series (series values from to log-p)
-  "Return how far VALUES should be from the ends of an axis between the pixels FROM and TO, so that
-all SERIES find room beside them."
+  "Return how far VALUES must be from the ends of an axis between the pixels FROM and TO for all
+SERIES to have room beside them."
   (let* ((spots (mapcar (lambda (value) (scaled-value value log-p)) values))
          (span (if spots (- (reduce #'max spots) (reduce #'min spots)) 0))
          (gap (if (zerop span) 60 (* (- to from) (/ (least-gap spots) span)))))
     (+ 14 (* 1/2 (length series) (shift-step (length series) gap)))))
 
 (defun series-shifts (series places from)
-  "Return a function from an index of SERIES to how many pixels that stands to the right of PLACES,
-on an axis that begins at FROM."
+  "Return a function from an index of SERIES to its shift, in pixels to the right of PLACES, on an
+axis that begins at FROM."
   (let* ((middle (/ (1- (length series)) 2))
          (room (if places (- (reduce #'min places) from 7) 0))
          (step (min (shift-step (length series) (least-gap places))
@@ -87,17 +88,17 @@ on an axis that begins at FROM."
     (lambda (index) (* step (- index middle)))))
 
 (defun legend-name (name known-p)
-  "Return what the legend says of what is called NAME, if something of it is KNOWN-P or not."
+  "Return the text of NAME in the legend; KNOWN-P is true if there is data."
   (if (or known-p (string= "" name))
       name
       (concatenate 'string name " (no data)")))
 
 ;;;; The chart
 
-;;; Words along the axis across are counted, so that all else deals with numbers.
+;;; Words along the axis across are replaced by numbers.
 
 (defun number-words (series words)
-  "Return SERIES with the places in WORDS for X."
+  "Return SERIES with the position in WORDS of each X, in its place."
   (loop for one in series
         collect (make-series (series-name one) (series-index one)
                              (loop for spot in (series-spots one)
@@ -106,7 +107,7 @@ on an axis that begins at FROM."
                                                       (spot-high spot))))))
 
 (defun spot-title (series spot words percent)
-  "Return what a viewer says of SPOT: its series, X, Y and interval."
+  "Return the tooltip of SPOT: its series, X, Y and interval."
   (flet ((text (value) (figure-text value :percent percent)))
     (format nil "~@[~A, ~]~A: ~A~:[~;~:* (~A to ~A)~]"
             (and (string/= "" (series-name series)) (series-name series))
@@ -116,7 +117,7 @@ on an axis that begins at FROM."
             (and (spot-high spot) (text (spot-high spot))))))
 
 (defun runs (items test)
-  "Return lists of ITEMS that follow each other and for which TEST is true."
+  "Return lists of consecutive ITEMS for which TEST is true."
   (let ((runs '()) (run '()))
     (dolist (item items (nreverse (if run (cons (nreverse run) runs) runs)))
       (cond ((funcall test item) (push item run))
@@ -149,7 +150,7 @@ on an axis that begins at FROM."
                      (axis-place (spot-y spot) (plane-upward plane)))))))
 
 (defun draw-series (canvas all plane words percent)
-  "Draw ALL series: lines, above them intervals, above them markers."
+  "Draw ALL series: lines, then intervals, then markers."
   (let ((shifts (series-shifts all
                                (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
                                (axis-from (plane-across plane)))))
@@ -162,7 +163,7 @@ on an axis that begins at FROM."
       (each (lambda (series shift) (draw-spots canvas series plane shift words percent))))))
 
 (defun plan-line-chart (all words values log-x upward options)
-  "Return the plane for ALL series, whose X are VALUES, in the order of WORDS if there are any."
+  "Return the plane for ALL series, whose X are VALUES: numbers of WORDS if there are any."
   (apply #'plan-plane
          (lambda (from to)
            (if words
@@ -177,13 +178,13 @@ on an axis that begins at FROM."
 (defun line-chart (series &rest options
                    &key percent range log-x title subtitle x-label y-label legend-title
                      width height)
-  "Return a chart of SERIES as an SVG document. Each is a list (name point...), a point a list
-(x y) or (x y low high): Y at X, with an interval. X is a number or, then for all, a string or
-symbol; what is not known is NIL. PERCENT: Y are rates, shown as per cent from 0 to 100. RANGE is a
-list (low high) that the axis upward shows at least. LOG-X: X on a logarithmic scale. Lines join
-the points if X are numbers. TITLE, SUBTITLE, X-LABEL, Y-LABEL and LEGEND-TITLE, which says what the
-series are, are strings or NIL; WIDTH and HEIGHT are pixels, by default 720 and 440, and grow where
-the text needs it. A series without a name, NIL, does without a legend. Signals WRONG-ARGUMENT."
+  "Return a chart of SERIES as an SVG document. Each is a list (name point...), a point a list (x y)
+or (x y low high): Y at X, with an interval. X are all numbers, joined by lines, or all strings or
+symbols. Unknown values are NIL. PERCENT: Y are rates, shown as per cent from 0 to 100. RANGE is a
+list (low high) that the axis upward must include. LOG-X: X on a logarithmic scale. TITLE, SUBTITLE,
+X-LABEL, Y-LABEL and LEGEND-TITLE, above the names of the series, are strings or NIL. WIDTH and
+HEIGHT are pixels, by default 720 and 440; they grow where the text needs it. If all names are NIL,
+there is no legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")

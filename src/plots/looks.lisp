@@ -1,12 +1,13 @@
-;;;; looks.lisp -- colours, markers, text that is broken into lines, titles.
+;;;; looks.lisp -- colours, markers, wrapped text, titles.
 
 (in-package :ars-magna.plots)
 
 (export '(draw-marker save-chart))
 
 ;;; The colours are those of Okabe and Ito (Color Universal Design, 2008), which most colour-blind
-;;; people tell apart, without yellow, which is faint on white. Markers and dashes tell series apart
-;;; without any colour. There are 7, 10 and 6: so no two of the first 210 series look alike.
+;;; people can tell apart, except yellow, which is faint on white. Markers and dashes tell series
+;;; apart without colours. There are 7 colours, 10 markers and 6 dashes: so the first 210 series all
+;;; differ.
 
 (defconstant +ink+ #x202020 "The colour of text.")
 (defconstant +faint-ink+ #x505050 "The colour of text that is less important.")
@@ -32,7 +33,7 @@
   "Polygons x y ... around 0, 0.")
 
 (defun look-color (index)
-  "Return the colour of the series INDEX, as a pixel's value."
+  "Return the colour of the series INDEX."
   (nth-cyclic index *colors*))
 
 (defun call-with-look (function index width)
@@ -41,7 +42,7 @@
       (funcall function))))
 
 (defmacro with-look ((index width) &body body)
-  "Run BODY drawing lines WIDTH pixels wide in colour and dashes of the series INDEX."
+  "Run BODY drawing lines WIDTH pixels wide in the colour and dashes of the series INDEX."
   `(call-with-look (lambda () ,@body) ,index ,width))
 
 (defmacro with-ink ((color &optional (width 1)) &body body)
@@ -49,8 +50,8 @@
   `(with-gcontext (draw-gcontext* :foreground ,color :line-width ,width :line-style :solid)
      ,@body))
 
-;;; Markers. As a line runs through the middle of a pixel, and the edge of what is filled between
-;;; pixels, half a pixel makes the two meet.
+;;; Markers. A line runs through the middles of pixels, the edge of a filled shape between pixels. A
+;;; shift of half a pixel makes the two meet.
 
 (defun shape-points (outline x y radius)
   (loop for (dx dy) on (rest (assoc outline *outlines*)) by #'cddr
@@ -65,7 +66,7 @@
         (draw-lines canvas draw-gcontext* (shape-points outline x y radius) :fill-p t))))
 
 (defun draw-marker (canvas index x y &optional (radius 4) (color (look-color index)))
-  "Draw the marker of the series INDEX around X, Y, in COLOR, with a white rim."
+  "Draw the marker of the series INDEX around X, Y in COLOR, with a white rim."
   (destructuring-bind (outline filled-p) (nth-cyclic index *shapes*)
     (fill-shape canvas outline white* x y (+ radius 6/5))
     (fill-shape canvas outline color x y radius)
@@ -73,7 +74,7 @@
       (fill-shape canvas outline white* x y (- radius 8/5)))))
 
 (defun draw-interval (canvas x low high)
-  "Draw a bar upward at X from the pixel LOW to HIGH, with caps."
+  "Draw a vertical bar at X from the pixel LOW to HIGH, with caps."
   (draw-segments canvas draw-gcontext* (list x low x high
                                              (- x 3) low (+ x 3) low
                                              (- x 3) high (+ x 3) high)))
@@ -85,11 +86,11 @@
 
 ;;;; Text, broken into lines, never cut
 
-(defconstant +text-size+ 12 "How high the font of charts is, in pixels.")
-(defconstant +text-step+ 15 "How far lines of text are apart, in pixels.")
+(defconstant +text-size+ 12 "The height of the font of charts, in pixels.")
+(defconstant +text-step+ 15 "The distance between lines of text, in pixels.")
 
 (defun name-text (name)
-  "Return NAME, a string, symbol, character or number, as text; NIL is none."
+  "Return NAME, a string, symbol, character or number, as text; the empty text for NIL."
   (check-argument chart name (typep name '(or string symbol character real))
                   "a string, symbol, character or number")
   (typecase name
@@ -99,7 +100,7 @@
     (t (string name))))
 
 (defun split-text (text separator-p)
-  "Return the pieces of TEXT between characters for which SEPARATOR-P is true, but empty ones."
+  "Return the pieces of TEXT between characters for which SEPARATOR-P is true, without empty ones."
   (loop with start = 0
         for end = (position-if separator-p text :start start)
         unless (eql start (or end (length text)))
@@ -108,14 +109,14 @@
         do (setf start (1+ end))))
 
 (defun fitting-length (word width size bold-p)
-  "Return how many of the first characters of WORD fit in WIDTH pixels; at least one does."
+  "Return how many of the first characters of WORD fit in WIDTH pixels, at least 1."
   (loop for count from 1 to (length word)
         while (<= (text-width (subseq word 0 count) size bold-p) width)
         finally (return (max 1 (1- count)))))
 
 (defun place-to-break (word count)
-  "Return where WORD, the first COUNT characters of which fit in a line, is broken: behind the last
-dash, slash or the like among these, but not one it begins with; or where the line is full."
+  "Return where to break WORD, of which COUNT characters fit in a line: after the last dash, slash
+or the like among these, except at the beginning; else at COUNT."
   (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))
@@ -143,22 +144,22 @@ dash, slash or the like among these, but not one it begins with; or where the li
 (defun space-p (character) (not (and (graphic-char-p character) (char/= #\Space character))))
 
 (defun wrap-text (text width &key (size +text-size+) bold-p)
-  "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels, broken where it is
-broken, else between words; within a word longer than a line behind a dash, else anywhere."
+  "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels. Break it at newlines
+and between words; a word longer than a line after a dash, else anywhere."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
        (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
              append (wrapped-words (split-text paragraph #'space-p) width size bold-p))))
 
 (defun lines-width (lines &optional (size +text-size+) bold-p)
-  "Return how wide LINES are at most, in pixels."
+  "Return the width of the longest of LINES, in pixels."
   (reduce #'max lines :key (lambda (line) (text-width line size bold-p)) :initial-value 0))
 
 (defun lines-height (lines) (* +text-step+ (length lines)))
 
 (defun write-lines (canvas x y lines &key (anchor :start) (color +ink+) (size +text-size+) bold-p
                                        (step +text-step+))
-  "Write LINES below each other, the first with its base line at Y. Return where the next would be."
+  "Write LINES below each other, the first with its base line at Y. Return that of the next."
   (with-ink (color)
     (dolist (line lines y)
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)
@@ -174,7 +175,7 @@ broken, else between words; within a word longer than a line behind a dash, else
 
 ;;;; The page: margin, title, document
 
-(defconstant +margin+ 16 "How much is left free around a chart, in pixels.")
+(defconstant +margin+ 16 "The margin around a chart, in pixels.")
 
 (defun check-size (width height)
   (check-argument chart width (whole-p width 300 10000)
@@ -182,7 +183,7 @@ broken, else between words; within a word longer than a line behind a dash, else
   (check-argument chart height (whole-p height 200 10000)
                   "an integer from 200 to 10000, in pixels"))
 
-;;; Title and subtitle: a heading is a list of both, each a list of lines.
+;;; A heading is a list of a title and a subtitle, each a list of lines.
 
 (defun plan-heading (title subtitle width)
   (let ((room (- width (* 2 +margin+))))
@@ -197,8 +198,8 @@ broken, else between words; within a word longer than a line behind a dash, else
       (write-lines canvas +margin+ (- y 2) subtitle :color +faint-ink+))))
 
 (defun save-chart (file chart)
-  "Save CHART, an SVG document that a function such as LINE-CHART has returned, in FILE, replacing
-it: SVG or, where the program rsvg-convert is installed, PNG, as its name ends. Return the file's
-truename. Signals WRONG-ARGUMENT, and MISUSE without that program."
+  "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the
+truename. The name ends in .svg or, if the program rsvg-convert is installed, .png. Signals
+WRONG-ARGUMENT, and MISUSE without that program."
   (check-argument save-chart chart (stringp chart) "what a function such as LINE-CHART returns")
   (save-svg chart file (picture-kind 'save-chart file)))

@@ -1,12 +1,12 @@
-;;;; plane.lisp -- a page with title, two axes and a legend, where nothing overlaps.
+;;;; plane.lisp -- a page with a title, two axes and a legend, without overlaps.
 
 (in-package :ars-magna.plots)
 
-(defconstant +sample-width+ 30 "How wide the sample of a series is, in pixels.")
-(defconstant +entry-gap+ 6 "How far entries of the legend are apart, in pixels.")
+(defconstant +sample-width+ 30 "The width of the sample of a series, in pixels.")
+(defconstant +entry-gap+ 6 "The gap between entries of the legend, in pixels.")
 
 (defstruct (legend (:copier nil))
-  "What stands beside a chart: the lines TITLE, and ENTRIES, lists (index line...)."
+  "The legend beside a chart: the lines TITLE, and ENTRIES, lists (index line...)."
   (title '() :type list)
   (entries '() :type list)
   (connect t)
@@ -14,12 +14,12 @@
   (height 0 :type real))
 
 (defun title-height (title)
-  "Return how much room TITLE, lines, takes above the entries."
+  "Return the height of TITLE, lines, above the entries, in pixels."
   (if title (+ +entry-gap+ (lines-height title)) 0))
 
 (defun plan-legend (names title most connect)
   "Return the legend for series called NAMES below TITLE, a string or NIL, at most MOST pixels wide;
-one of no width if all are empty. CONNECT: lines belong to the samples."
+an empty one if all names are empty. CONNECT: samples have lines."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))
@@ -50,25 +50,25 @@ one of no width if all are empty. CONNECT: lines belong to the samples."
            (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
            (incf y (+ +entry-gap+ (lines-height (or lines '("")))))))
 
-(defconstant +least-height+ 170 "How high the place for the data is at least, in pixels.")
-(defconstant +least-width+ 200 "How wide the place for the data is at least, in pixels.")
+(defconstant +least-height+ 170 "The least height of the box of the data, in pixels.")
+(defconstant +least-width+ 200 "The least width of the box of the data, in pixels.")
 
 (defstruct (page (:copier nil))
-  "What is drawn: ACROSS is an axis, LEFT to BOTTOM the box where the data are, in pixels."
+  "A chart to draw: ACROSS is an axis, LEFT to BOTTOM the box of the data, in pixels."
   heading across x-lines
   (left 0) (right 0) (top 0) (bottom 0) (width 0) (height 0))
 
 (defstruct (plane (:include page) (:copier nil))
-  "A page with an axis UPWARD. BELOW is where what a chart adds below begins."
+  "A page with an axis UPWARD. BELOW is the top of what a chart adds below, in pixels."
   upward legend y-lines (below 0))
 
 (defun plan-plane (make-across upward names
                    &key title subtitle x-label y-label legend-title (width 720) (height 440)
                      (connect t) (extra 0) (least-left 0)
                    &allow-other-keys)
-  "Return a plane for series called NAMES. MAKE-ACROSS is called with the pixels where the data
-begin and end, and returns an axis; UPWARD is one. EXTRA is how much room the chart wants below,
-LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT where it must."
+  "Return a plane for series called NAMES. UPWARD is an axis. MAKE-ACROSS is called with the pixels
+where the data begin and end, and returns the other axis. EXTRA is the room to leave below,
+LEAST-LEFT the least room at the left. The page grows beyond WIDTH and HEIGHT if necessary."
   (check-size width height)
   (let* ((heading (plan-heading title subtitle width))
          (legend (plan-legend names legend-title (* 4/10 width) connect))
@@ -88,8 +88,6 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
                 :below (+ bottom low)
                 :width (ceiling (+ right (max 16 (legend-width legend)) +margin+))
                 :height (ceiling (+ bottom low extra +margin+)))))
-
-;;; Drawing it.
 
 (defun draw-upward (canvas plane)
   (loop with left = (plane-left plane)
@@ -130,8 +128,8 @@ LEAST-LEFT how much to the left. The page becomes larger than WIDTH and HEIGHT w
         (values (page-width page) (page-height page))))))
 
 (defun plane-svg (plane data-p draw-data)
-  "Return PLANE as an SVG document, with what DRAW-DATA draws on the canvas it is given, or a word
-that there is nothing unless DATA-P."
+  "Return PLANE as an SVG document. If DATA-P, DRAW-DATA, a function of a canvas, draws the data;
+else there is a text that there are none."
   (page-svg plane (lambda (canvas)
                     (draw-plane canvas plane)
                     (if data-p (funcall draw-data canvas) (draw-no-data canvas plane)))))

@@ -1,11 +1,11 @@
-;;;; row-charts.lisp -- rows along one axis of numbers: differences, and measured values.
+;;;; row-charts.lisp -- charts of rows along one axis: differences, and measured values.
 
 (in-package :ars-magna.plots)
 
 (export '(difference-chart measure-chart))
 
 (defstruct (row (:constructor make-row (label words height)) (:copier nil))
-  "Lines of text to the left and to the right. TOP and HEIGHT are pixels."
+  "A row: LABEL and WORDS are lines of text to its left and right. TOP and HEIGHT are pixels."
   (label '() :type list :read-only t)
   (words '() :type list :read-only t)
   (height 0 :read-only t)
@@ -14,7 +14,7 @@
 (defun row-middle (row) (+ (row-top row) (/ (row-height row) 2)))
 
 (defun plan-row (label words width least)
-  "Return a row at least LEAST pixels high on a page of WIDTH. WORDS is a list of strings."
+  "Return a row at least LEAST pixels high on a page of WIDTH pixels. WORDS is a list of strings."
   (let ((label (wrap-text label (* 32/100 width)))
         (words (loop for text in words append (wrap-text text (* 34/100 width)))))
     (make-row label words
@@ -25,14 +25,14 @@
   rows)
 
 (defun stack-rows (rows top)
-  "Put ROWS below each other from TOP. Return where they end."
+  "Place ROWS below each other from TOP. Return where they end."
   (dolist (row rows top)
     (setf (row-top row) top)
     (incf top (row-height row))))
 
 (defun plan-table (entries values &key title subtitle x-label (width 720) (least 14) log-x percent)
   "Return a table of ENTRIES, lists (label text...), with an axis for VALUES. Each row is at least
-LEAST pixels high. The page becomes wider than WIDTH if it must."
+LEAST pixels high. The page becomes wider than WIDTH if necessary."
   (check-size width 440)
   (flet ((widest (reader rows)
            (reduce #'max rows :initial-value 0
@@ -60,7 +60,7 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
                :anchor anchor))
 
 (defun draw-table (canvas table draw-row)
-  "Draw TABLE; call DRAW-ROW with CANVAS, each row and its number to draw the numbers."
+  "Draw TABLE. Call DRAW-ROW with CANVAS, each row and its number to draw the data."
   (let ((left (table-left table)) (right (table-right table)) (top (table-top table))
         (bottom (table-bottom table)) (across (table-across table)))
     (with-ink (+grid-ink+)
@@ -83,8 +83,7 @@ LEAST pixels high. The page becomes wider than WIDTH if it must."
 ;;;; Differences with intervals, against zero
 
 (defun checked-difference (row)
-  "Return ROW as a list (label estimate low high words): what is compared, an estimate with an
-interval, any of which may be NIL, and what else is said of it."
+  "Return ROW, checked, as a list (label estimate low high words). All but the label may be NIL."
   (check-argument difference-chart row (and (consp row) (ignore-errors (<= 2 (length row) 5)))
                   "a list (label estimate low high words)")
   (destructuring-bind (label estimate &optional low high words) row
@@ -95,7 +94,7 @@ interval, any of which may be NIL, and what else is said of it."
                (figure-text value :percent percent :digits 3)))
 
 (defun interval-text (value low high text)
-  "Return what is said of VALUE and its interval, each written by the function TEXT."
+  "Return a text of VALUE and its interval, with numbers written by the function TEXT."
   (cond ((null value) "no data")
         ((and low high)
          (format nil "~A (~A to ~A)" (funcall text value) (funcall text low) (funcall text high)))
@@ -108,7 +107,7 @@ interval, any of which may be NIL, and what else is said of it."
           words)))
 
 (defun draw-estimate (canvas index y value low high across)
-  "Draw VALUE with its interval along the axis ACROSS at Y, with the look of INDEX."
+  "Draw VALUE with its interval along the axis ACROSS at Y, with the look of the series INDEX."
   (when (and low high)
     (with-ink ((look-color index) 1.8)
       (draw-interval-across canvas y (axis-place low across) (axis-place high across))))
@@ -121,10 +120,10 @@ interval, any of which may be NIL, and what else is said of it."
       (draw-line canvas draw-gcontext* x (table-top table) x (table-bottom table)))))
 
 (defun difference-chart (rows &key percent title subtitle x-label (width 720))
-  "Return a chart of differences, one below the other against a line at 0, as an SVG document. ROWS
-are lists (label estimate low high words): what is compared, the difference, its interval, and what
-else is said of it, such as \"p = 0.03\". All but LABEL may be NIL. PERCENT: they are shown as
-hundredths. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  "Return a chart of differences, below each other against a line at 0, as an SVG document. ROWS are
+lists (label estimate low high words): what is compared, the difference, its interval, and a remark
+such as \"p = 0.03\". All but LABEL may be NIL. PERCENT: numbers are shown as per cent. The other
+arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument difference-chart rows (listp rows) "a list of rows")
   (let* ((differences (mapcar #'checked-difference rows))
          (table (plan-table (mapcar (lambda (difference) (difference-entry difference percent))
@@ -140,17 +139,16 @@ hundredths. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT.
                    (draw-estimate canvas 0 (row-middle row) estimate low high
                                   (table-across table)))))))
 
-;;;; Many numbers: how they lie, group by group
+;;;; Distributions of many numbers, by group
 
-;;; The numbers of a group stand in columns of four pixels, as high as there are many in each. So
-;;; ten numbers and ten thousand are drawn alike.
+;;; The numbers of a group are a histogram with columns of four pixels. So ten numbers and ten
+;;; thousand are drawn alike.
 
-(defconstant +column-width+ 4 "How wide a column is, in pixels.")
-(defconstant +column-height+ 28 "How high the highest column of a group is, in pixels.")
+(defconstant +column-width+ 4 "The width of a column, in pixels.")
+(defconstant +column-height+ 28 "The height of the highest column of a group, in pixels.")
 
 (defun checked-group (row)
-  "Return ROW as a list (label numbers middle low high): NUMBERS, and what is in their middle, with
-an interval."
+  "Return ROW, checked, as a list (label numbers middle low high)."
   (check-argument measure-chart row
                   (and (consp row) (ignore-errors (<= 2 (length row) 5))
                        (typep (second row) 'sequence))
@@ -167,7 +165,8 @@ an interval."
           (format nil "n = ~D" (length numbers)))))
 
 (defun columns (numbers axis)
-  "Return an alist from columns, counted from where AXIS begins, to how many NUMBERS are in each."
+  "Return an alist from columns, numbered from the beginning of AXIS, to the count of NUMBERS in
+each."
   (let ((counts (make-hash-table)))
     (dolist (number numbers)
       (incf (gethash (floor (- (axis-place number axis) (axis-from axis)) +column-width+)
@@ -196,10 +195,10 @@ an interval."
 
 (defun measure-chart (rows &key log-x (middle-label "median") title subtitle x-label (width 720))
   "Return a chart of many numbers as an SVG document. ROWS are lists (label numbers middle low
-high): NUMBERS, a sequence, NIL among which do not count, are drawn as columns, as high as there are
-many; below these what is in their middle, with its interval, any of which may be NIL. MIDDLE-LABEL
-says what the middle is, such as the median. LOG-X: numbers on a logarithmic scale. The other
-arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+high). NUMBERS, a sequence in which NIL is ignored, are drawn as a histogram. Below it is their
+middle, with its interval, any of which may be NIL. MIDDLE-LABEL says what the middle is, such as
+the median. LOG-X: numbers on a logarithmic scale. The other arguments are those of LINE-CHART.
+Signals WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
          (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)

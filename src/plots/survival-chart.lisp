@@ -1,12 +1,12 @@
-;;;; survival-chart.lisp -- how many are left after so much time, as curves with steps.
+;;;; survival-chart.lisp -- survival over time, as curves with steps.
 
 (in-package :ars-magna.plots)
 
 (export '(survival-chart))
 
 (defstruct (curve (:constructor make-curve (name index steps censored times)) (:copier nil))
-  "STEPS are lists (time survival low high), by time: what holds from then on. CENSORED are times at
-which somebody left, TIMES those at which anybody did."
+  "A survival curve. STEPS are lists (time survival low high), by time, each valid from that time
+on. CENSORED are the times of censoring, TIMES those of any end."
   (name "" :read-only t)
   (index 0 :read-only t)
   (steps '() :type list :read-only t)
@@ -50,17 +50,17 @@ which somebody left, TIMES those at which anybody did."
   (find time (curve-steps curve) :key #'first :test #'>= :from-end t))
 
 (defun has-data-p (curve)
-  "True if there is something to show of CURVE."
+  "True if CURVE has data to show."
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
 (defun at-risk (time curve)
-  "Return how many of CURVE were still there just before TIME."
+  "Return the number at risk in CURVE just before TIME."
   (count time (curve-times curve) :test #'<=))
 
 ;;; The curve.
 
 (defun stairs (steps end reader plane)
-  "Return points x y ... along STEPS until the time END, whose heights READER reads."
+  "Return points x y ... along STEPS until the time END. READER returns the height of a step."
   (loop for (step next) on steps
         for y = (axis-place (funcall reader step) (plane-upward plane))
         collect (axis-place (first step) (plane-across plane))
@@ -69,14 +69,14 @@ which somebody left, TIMES those at which anybody did."
         collect y))
 
 (defun reverse-points (points)
-  "Return POINTS, x y ..., from the last to the first."
+  "Return POINTS, x y ..., in reverse order."
   (loop for (y x) on (reverse points) by #'cddr
         collect x
         collect y))
 
 (defun bands (curve)
-  "Return lists (end step...): STEPS of CURVE that follow each other and have an interval, until the
-time END."
+  "Return lists (end step...) of consecutive steps of CURVE with an interval, valid until the time
+END."
   (loop with steps = (curve-steps curve)
         for band in (runs steps (lambda (step) (and (third step) (fourth step))))
         for next = (second (member (first (last band)) steps))
@@ -92,7 +92,7 @@ time END."
                            :fill-p t)))))
 
 (defun draw-censored (canvas curve plane)
-  "Draw a short line upward where somebody has left CURVE, one for each pixel."
+  "Draw a short vertical line for each censoring in CURVE, at most one for each pixel."
   (let ((places (remove-duplicates
                  (loop for time in (remove-duplicates (curve-censored curve))
                        collect (list (round (axis-place time (plane-across plane)))
@@ -104,7 +104,7 @@ time END."
             do (draw-line canvas draw-gcontext* x (- y 5) x (+ y 5))))))
 
 (defun draw-markers-along (canvas curve curves plane)
-  "Draw up to four markers along CURVE, clear of those of the other CURVES."
+  "Draw up to four markers along CURVE, at other times than those of the other CURVES."
   (loop with end = (reduce #'max curves :key #'curve-end)
         for turn below 4
         for time = (* end 1/4 (+ turn (/ (+ 1/2 (curve-index curve)) (length curves))))
@@ -122,7 +122,7 @@ time END."
       (draw-censored canvas curve plane))
     (dolist (curve known) (draw-markers-along canvas curve curves plane))))
 
-;;; Below: how many are left.
+;;; Below: the numbers at risk.
 
 (defun risk-width (curves)
   (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
@@ -143,12 +143,12 @@ time END."
 (defun survival-chart (curves &rest options
                        &key (risk-label "still there") title subtitle x-label y-label legend-title
                          width height)
-  "Return a chart of CURVES, the shares that are left over time, as an SVG document. Each is a list
-(name :steps steps :censored times :times times). A step is a list (time survival low high): the
-share that is left from then on, 0 to 1, and its band; before the first all are. CENSORED are the
-times at which somebody was lost sight of, TIMES those until which each was seen, however that
-ended: from these come the numbers of those left, below the chart, which RISK-LABEL introduces. The
-other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  "Return a chart of survival CURVES as an SVG document. Each is a list (name :steps steps :censored
+times :times times). A step is a list (time survival low high): the share that survives from then
+on, 0 to 1, and its band; before the first step it is 1. CENSORED are the times of censoring, TIMES
+the times at which each was last seen, for any reason. From TIMES come the numbers at risk below the
+chart, which RISK-LABEL introduces. The other arguments are those of LINE-CHART. Signals
+WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument survival-chart risk-label (stringp risk-label) "a string")
   (let* ((curves (checked-curves curves))

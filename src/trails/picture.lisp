@@ -1,4 +1,4 @@
-;;;; picture.lisp -- a map with a bundle of ways over it, by what became of the trials they are of.
+;;;; picture.lisp -- a map with the ways of many trials, by their outcomes.
 
 (in-package :ars-magna.trails)
 
@@ -8,8 +8,8 @@
   '(("success" 0 #x0C3C9C 3/2 nil "succeeded") ("limit" 4 #xB07000 2 (6 3) "came to the limit")
     ("failure" 1 #xC22418 5/2 nil "failed")
     ("error" 3 #x000000 5/2 (2 3) "broke off with an error"))
-  "Lists (outcome marker color width dashes words), in the order of the legend, in which ways are
-drawn, too: so those that failed, of which one wants to know, lie above others.")
+  "Lists (outcome marker color width dashes words), in the order of the legend. Ways are drawn in
+this order too, so that failures, which matter most, lie above others.")
 
 (defun outcome-look (way)
   (rest (assoc (way-outcome way) *outcome-looks* :test #'string=)))
@@ -18,7 +18,7 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
   (remove outcome ways :key #'way-outcome :test-not #'string=))
 
 (defun way-opacity (count)
-  "Return how much one of COUNT ways of one outcome hides what is below."
+  "Return the opacity of each of COUNT ways with the same outcome."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
 (defun draw-line-of-way (canvas points look)
@@ -34,10 +34,10 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
     (dolist (points (pieces-in-pixels (way-pieces way)))
       (when (cddr points) (draw-line-of-way canvas points look)))))
 
-(defconstant +end-opacity+ 8/10 "How much the marker at the end of a way hides what is below.")
+(defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
 (defun draw-arrows-of (canvas ways)
-  "Draw arrowheads on WAYS, as many as have room on all of them together."
+  "Draw arrowheads on WAYS, as many as fit without overlaps."
   (draw-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
                                                    :color (second (outcome-look way))))))
@@ -50,8 +50,8 @@ drawn, too: so those that failed, of which one wants to know, lie above others."
            (snapshot-robots snapshot)))
 
 (defun starts-of (ways snapshot)
-  "Return the points (x y), in metres, where WAYS begin, each once: where no robot in SNAPSHOT is,
-which says so itself."
+  "Return the points (x y), in metres, where WAYS begin, each once, except where SNAPSHOT has a
+robot."
   (remove-duplicates (loop for way in ways
                            for ((piece)) = (list (way-pieces way))
                            for (x . y) = (first piece)
@@ -74,7 +74,7 @@ which says so itself."
         (draw-marker-of canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS so faint that many can be told apart, above the dots where robots were put elsewhere."
+  "Draw WAYS, so faint that many can be told apart, above the dots of their jumps."
   (flet ((draw (function way)
            (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
              (funcall function canvas way))))
@@ -89,7 +89,7 @@ which says so itself."
     (with-opacity (canvas +end-opacity+) (draw-marker-of canvas look (+ x 4) y))))
 
 (defun outcome-entries (ways what)
-  "Return the entries of the legend for what became of WAYS, each of a WHAT, such as a trial."
+  "Return the entries of the legend for the outcomes of WAYS. WHAT is a noun, such as trial."
   (loop for (outcome . look) in *outcome-looks*
         for ended = (ways-of-outcome outcome ways)
         for count = (length (remove-duplicates (mapcar #'way-trial ended)))
@@ -98,7 +98,7 @@ which says so itself."
                                 (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
 
 (defun bundle-entries (snapshot ways what)
-  "Return the entries of the legend for WAYS, each of a WHAT, over the world of SNAPSHOT."
+  "Return the entries of the legend for WAYS in the world of SNAPSHOT; WHAT as for OUTCOME-ENTRIES."
   (append (outcome-entries ways what)
           (and (starts-of ways snapshot)
                (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
@@ -106,12 +106,12 @@ which says so itself."
                         snapshot black*)))
 
 (defun map-opacity (color-p)
-  "Return how much the map of a bundle hides what is below, in colours if COLOR-P."
+  "Return the opacity of the map below ways; COLOR-P is true for a picture in colours."
   (if color-p 1/2 1))
 
 (defun draw-bundle (canvas snapshot ways layers)
-  "Draw the world of SNAPSHOT, its map faintly where there are colours, and WAYS in it; above robots
-and things where these end."
+  "Draw the world of SNAPSHOT, its map faintly if there are colours, and WAYS in it. Their ends are
+above robots and things."
   (let ((ways (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways))))
     (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
@@ -125,14 +125,14 @@ and things where these end."
     (when (member :names layers) (draw-names canvas snapshot layers))))
 
 (defun bundle-text (snapshot ways what &rest look &key layers in-color &allow-other-keys)
-  "Return an SVG document of SNAPSHOT and WAYS in it, each of a WHAT; LOOK as for FRAMED-TEXT."
+  "Return an SVG document of SNAPSHOT and WAYS in it. WHAT as for OUTCOME-ENTRIES, LOOK as for
+FRAMED-TEXT."
   (apply #'framed-text snapshot (lambda (canvas) (draw-bundle canvas snapshot ways layers))
          :more (bundle-entries snapshot ways what)
          :legend (list :opacity (map-opacity in-color)) look))
 
 (defun ways-in-part (part ways)
-  "Return those of WAYS of which something is in PART (left top right bottom), in cells; all if that
-is NIL."
+  "Return those of WAYS that touch PART (left top right bottom), in cells; all if PART is NIL."
   (if part
       (let ((graphics-scale* 8))
         (remove-if-not (lambda (way)
@@ -141,7 +141,8 @@ is NIL."
       ways))
 
 (defun not-shown-text (what all ways)
-  "Return a sentence that says of how many, each a WHAT, there are none in WAYS of ALL; or none."
+  "Return a sentence with the number of trials, called WHAT, in ALL ways but not in WAYS; or an
+empty text."
   (flet ((count-in (ways) (length (remove-duplicates (mapcar #'way-trial ways)))))
     (let ((unseen (- (count-in all) (count-in ways))))
       (if (plusp unseen)
@@ -151,9 +152,9 @@ is NIL."
 (defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
   "Save in FILE, for OPERATOR, a picture of SNAPSHOT and of the ways that the function WAYS-OF
-returns, each of a WHAT, such as a trial, under TITLE, or if it is NIL OWN-TITLE, and SUBTITLE. PART
-(left top right bottom), in cells, is what is wanted of the map, or NIL for all. Return the file's
-truename. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
+returns. Return the truename. WHAT is a noun for a trial. Above are TITLE, or if it is NIL
+OWN-TITLE, and SUBTITLE. PART (left top right bottom), in cells, is the part of the map, or NIL for
+all. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
     (check-map-options operator :title title :layers layers :scale scale)
     (let* ((snapshot (in-part snapshot part operator))

@@ -1,22 +1,23 @@
-;;;; run-picture.lisp -- one run as a picture: where its robots went, and what happened where.
+;;;; run-picture.lisp -- one run as a picture: the ways of its robots and its events.
 
 (in-package :ars-magna.trails)
 
-;;; What a run picture shows besides a picture of its end are the ways of its robots, and places
-;;; with a number each: what happened there stands below the map. See spots.lisp.
+;;; A run picture is a picture of the end of a run, with the ways of its robots and numbered places.
+;;; Notes below the map say what happened there: see spots.lisp.
 
-(defconstant +note-size+ 12 "How high the font of notes is, in pixels.")
-(defconstant +note-step+ 16 "How far lines of notes are apart, in pixels.")
+(defconstant +note-size+ 12 "The height of the font of notes, in pixels.")
+(defconstant +note-step+ 16 "The distance between lines of notes, in pixels.")
 
 (defun robot-of (moment simulation)
-  "Return the robot of SIMULATION to which MOMENT happened, or NIL."
+  "Return the robot of MOMENT in SIMULATION: the named one, or if none is named the only one; or
+NIL."
   (let ((robots (simulation-robots simulation)))
     (if (moment-robot moment)
         (find (moment-robot moment) robots :key #'robot-name :test #'same-name-p)
         (and (null (rest robots)) (first robots)))))
 
 (defun place-moment (moment simulation)
-  "Return MOMENT, which is now, with the place of its robot unless it has one or none is known."
+  "Return MOMENT, which is now. If it has no place, add that of its robot, if known."
   (let ((robot (robot-of moment simulation)))
     (if (or (moment-x moment) (null robot))
         moment
@@ -24,8 +25,8 @@
                      (robot-x robot) (robot-y robot) (robot-name robot)))))
 
 (defun check-robots-of (moments simulation)
-  "Signal WRONG-ARGUMENT unless the robots that MOMENTS, an argument of SAVE-RUN-PICTURE, name are
-those of SIMULATION."
+  "Signal WRONG-ARGUMENT unless the robots named in MOMENTS, an argument of SAVE-RUN-PICTURE, are in
+SIMULATION."
   (dolist (moment moments)
     (when (and (moment-robot moment) (not (robot-of moment simulation)))
       (reject-argument 'save-run-picture :moments (moment-robot moment)
@@ -33,9 +34,9 @@ those of SIMULATION."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun watch-run (journal until own)
-  "Repeat JOURNAL up to UNTIL. Return a snapshot of its end, lists of the name of each robot and the
-pieces of its way, moments that were seen, and the moments OWN with their places. Signals
-WRONG-ARGUMENT if these are of robots that are not there."
+  "Replay JOURNAL up to UNTIL. Return four values: a snapshot of its end; lists of the name of each
+robot and the pieces of its way; the moments found; and the moments OWN with their places. Signals
+WRONG-ARGUMENT if OWN name other robots."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
       (flet ((look (simulation)
@@ -57,11 +58,11 @@ WRONG-ARGUMENT if these are of robots that are not there."
 ;;; Ways.
 
 (defun moved-p (way)
-  "True if WAY, a list of a robot's name and of pieces, has a length or more than one piece."
+  "True if WAY, a list of a robot's name and of pieces, has several points or pieces."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
-  "Draw WAYS, lists of a robot's name and of pieces, of which each has its position among robots."
+  "Draw WAYS, lists of a robot's name and of pieces, in the order of robots."
   (let* ((moved (loop for way in ways for position from 0
                       when (moved-p way)
                         collect (cons position (pieces-in-pixels (rest way))))))
@@ -70,10 +71,10 @@ WRONG-ARGUMENT if these are of robots that are not there."
     (draw-way-marks canvas (loop for (position (x y)) in moved
                                  collect (list 'draw-start x y (nth-ink position))))))
 
-(defconstant +tile+ 6 "How large the boxes are that hide a line, in pixels.")
+(defconstant +tile+ 6 "The side of the boxes that cover a line, in pixels.")
 
 (defun boxes-along (points)
-  "Return boxes that together hide the line through POINTS, x y ... in pixels."
+  "Return boxes that together cover the line through POINTS, x y ... in pixels."
   (let ((tiles (make-hash-table :test #'equal)))
     (loop for (x y next-x next-y) on points by #'cddr
           while next-y
@@ -84,14 +85,14 @@ WRONG-ARGUMENT if these are of robots that are not there."
                         (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
 
 (defun moved-robot-entry (name position)
-  "Return an entry for the robot called NAME at POSITION among those of its world, and for its way."
+  "Return an entry for the robot called NAME, at POSITION among those of its world, and for its
+way."
   (sample-of-name (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
     (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (nth-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
-  "Return the entries of the legend for the robots that are to be seen in SNAPSHOT, or whose WAYS
-are."
+  "Return the entries of the legend for the robots that SNAPSHOT shows, or whose WAYS it shows."
   (loop with box = (pixels-of (shown-part snapshot))
         for way in ways
         for position from 0
@@ -102,14 +103,13 @@ are."
                collect (robot-entry (drawn-name name) position)))
 
 (defun start-seen-p (way snapshot)
-  "True if the ring is to be seen in SNAPSHOT with which WAY begins."
+  "True if SNAPSHOT shows the ring at the start of WAY."
   (and (moved-p way)
        (destructuring-bind (x . y) (first (second way))
          (way-seen-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
 (defun run-entries (snapshot ways spots)
-  "Return the entries of the legend that a picture of a run that ended as SNAPSHOT shows, with WAYS
-and SPOTS, has besides that of a map and things."
+  "Return the entries of the legend for WAYS and SPOTS of a run that ended as SNAPSHOT shows."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
             (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
@@ -121,7 +121,7 @@ and SPOTS, has besides that of a map and things."
 ;;; The whole.
 
 (defun draw-run (canvas snapshot ways spots layers)
-  "Draw the map, and on it what is to be seen of the run."
+  "Draw the map of SNAPSHOT, and on it the run: WAYS, SPOTS, and what LAYERS list."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-robot-ways canvas ways)
   (draw-movers canvas snapshot (remove :names layers))
@@ -131,8 +131,8 @@ and SPOTS, has besides that of a map and things."
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
 (defun draw-notes (canvas notes left y width)
-  "Write NOTES, lists of a number or NIL and a text, below each other, no wider than WIDTH. Return
-where the next would be."
+  "Write NOTES, lists of a number or NIL and a text, below each other from Y, at most WIDTH pixels
+wide. Return the Y after the last."
   (let ((most (max 20 (floor (- width 24) (character-width canvas +note-size+)))))
     (loop for (number text) in notes
           do (when number
@@ -144,8 +144,8 @@ where the next would be."
     y))
 
 (defun moments-in (part moments)
-  "Return those of MOMENTS that were in PART (left top right bottom) of the map, or nobody knows
-where; all if PART is NIL. The second value is the others."
+  "Return those of MOMENTS in PART (left top right bottom) of the map or without a place, all if
+PART is NIL; and the others."
   (flet ((elsewhere-p (moment)
            (destructuring-bind (left top right bottom) part
              (and (moment-x moment)
@@ -156,8 +156,8 @@ where; all if PART is NIL. The second value is the others."
         moments)))
 
 (defun spots-and-notes-in (part moments limit several-p reach)
-  "Return what SPOTS-AND-NOTES does of those of MOMENTS that were in PART, and a note that counts
-the others."
+  "Return the values of SPOTS-AND-NOTES for those of MOMENTS in PART, with a note that counts the
+others."
   (multiple-value-bind (moments others) (moments-in part moments)
     (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
       (values spots
@@ -168,7 +168,7 @@ the others."
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
                           (and (rest ways) t)
-                          ;; Where the rings around two places would be one.
+                          ;; Rings nearer than this would look like one.
                           (/ (* 2 +ring-radius+) (drawn-scale scale snapshot layers)))
     (let ((more (run-entries snapshot ways spots)))
       (with-output-to-string (out)

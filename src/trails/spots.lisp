@@ -1,20 +1,19 @@
-;;;; spots.lisp -- what happened where: numbered places on a map, and lines that tell of them.
+;;;; spots.lisp -- the events of a run: numbered spots on a map, and notes about them.
 
 (in-package :ars-magna.trails)
 
-;;; Places are numbered, not moments: so a number is short, however much happened there. Moments at
-;;; one place that read the same share a line. If there are too many lines, those that matter least
-;;; are left out, and counted.
+;;; Spots are numbered, not moments: so numbers stay short. Moments at one spot with the same text
+;;; are a group and share a note. If there are too many notes, the least important are left out, and
+;;; counted.
 
 (defstruct (spot (:constructor make-spot (x y)) (:copier nil))
-  "A place where something happened, in metres, and its NUMBER on the map."
+  "A place, in metres, where something happened, and its NUMBER on the map."
   (x 0 :type real :read-only t)
   (y 0 :type real :read-only t)
   (number 0 :type fixnum))
 
 (defstruct (moment-group (:constructor make-moment-group (spot words weight)) (:copier nil))
-  "That at SPOT, or nobody knows where, at the ticks of MOMENTS, the latest first, there was what
-WORDS say."
+  "MOMENTS, the latest first, at SPOT, or NIL if it is unknown, with the same WORDS."
   (spot nil :type (or null spot) :read-only t)
   (words "" :type string :read-only t)
   (weight 0 :type fixnum :read-only t)
@@ -26,51 +25,49 @@ WORDS say."
            spots))
 
 (defun group-moments (moments several-p reach)
-  "Return MOMENTS as happenings: what is nearer than REACH metres to each other is at one spot.
-SEVERAL-P: say of which robot each is."
-  (let ((spots '()) (happenings '()))
+  "Return MOMENTS as groups. Moments less than REACH metres apart are at one spot. SEVERAL-P: texts
+name the robots."
+  (let ((spots '()) (groups '()))
     (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-weight)
-                    (nreverse happenings))
+                    (nreverse groups))
       (let* ((spot (and (moment-x moment)
                         (or (spot-near moment spots reach)
                             (first (push (make-spot (moment-x moment) (moment-y moment))
                                          spots)))))
              (words (moment-words moment several-p))
-             (happening (or (find-if (lambda (other)
-                                       (and (eq spot (moment-group-spot other))
-                                            (string= words (moment-group-words other))))
-                                     happenings)
-                            (first (push (make-moment-group spot words (moment-weight moment))
-                                         happenings)))))
-        (push moment (moment-group-moments happening))))))
+             (group (or (find-if (lambda (other)
+                                   (and (eq spot (moment-group-spot other))
+                                        (string= words (moment-group-words other))))
+                                 groups)
+                        (first (push (make-moment-group spot words (moment-weight moment))
+                                     groups)))))
+        (push moment (moment-group-moments group))))))
 
 (defun more-important-p (one other)
   (if (= (moment-group-weight one) (moment-group-weight other))
       (> (length (moment-group-moments one)) (length (moment-group-moments other)))
       (< (moment-group-weight one) (moment-group-weight other))))
 
-(defun number-spots (happenings)
-  "Number the spots of HAPPENINGS, in order. Return them."
-  (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot happenings))
+(defun number-spots (groups)
+  "Number the spots of GROUPS, in order. Return them."
+  (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot groups))
                                   :from-end t)))
     (loop for spot in spots for number from 1 do (setf (spot-number spot) number))
     spots))
 
-;;; As text.
-
 (defun ticks-text (ticks most)
-  "Return TICKS, in order, as text: no more than MOST of them, or all if it is NIL."
+  "Return TICKS, in order, as text: at most MOST of them, or all if MOST is NIL."
   (let ((more (if most (- (length ticks) most) 0)))
     (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
-(defun group-note (happening most)
-  "Return a list of the number of the spot of HAPPENING, if it has one, and a text, with no more
-than MOST ticks, or all if it is NIL."
-  (list (and (moment-group-spot happening) (spot-number (moment-group-spot happening)))
+(defun group-note (group most)
+  "Return a note of GROUP: a list of the number of its spot, or NIL, and a text with at most MOST
+ticks, NIL for all."
+  (list (and (moment-group-spot group) (spot-number (moment-group-spot group)))
         (format nil "~A: ~A"
-                (ticks-text (sort (mapcar #'moment-tick (moment-group-moments happening)) #'<) most)
-                (moment-group-words happening))))
+                (ticks-text (sort (mapcar #'moment-tick (moment-group-moments group)) #'<) most)
+                (moment-group-words group))))
 
 (defparameter *kind-words*
   '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
@@ -78,10 +75,10 @@ than MOST ticks, or all if it is NIL."
     (:plan "plan that failed or was ended" "plans that failed or were ended")
     (:part "failure or end within a plan" "failures or ends within plans")
     (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))
-  "What one moment of each kind is called, and several.")
+  "Lists (kind one several) of the words for moments of each kind.")
 
 (defun not-shown-note (words moments)
-  "Return a list of a note that says, after WORDS, what MOMENTS were; or none."
+  "Return a list of a note that counts MOMENTS by kind, after WORDS; or an empty list."
   (when moments
     (list (list nil (format nil "~A: ~{~A~^, ~}."
                             words
@@ -91,16 +88,16 @@ than MOST ticks, or all if it is NIL."
                                     collect (format nil "~D ~A" count
                                                     (if (= count 1) one several))))))))
 
-;;; What the journal says of plans has their code in it. A picture has a line for each, and says why
-;;; a plan failed where the task in it did that failed first.
+;;; In a journal, failures of plans are described with code. A note describes each in a few words,
+;;; and gives the reason only for the task that failed first.
 
 (define-constant +reason-mark+ "failed: "
   :test #'cl:equal
-  :documentation "What stands before why a plan failed.")
-(defconstant +longest-reason+ 40 "How many characters the reason has at most.")
+  :documentation "The text before the reason why a plan failed.")
+(defconstant +longest-reason+ 40 "The most characters of the reason.")
 
 (defun short-reason (reason)
-  "Return REASON, why a plan failed, in a few words, without code."
+  "Return REASON, why a plan failed, abridged and without code."
   (let* ((prefix "Plan failure ")
          (own-p (eql 0 (search prefix reason)))
          (words (if own-p (string-downcase (subseq reason (length prefix))) reason))
@@ -109,7 +106,7 @@ than MOST ticks, or all if it is NIL."
     (cut (string-trim " :" (subseq words 0 second)) +longest-reason+)))
 
 (defun abridge-failures (moments)
-  "Return MOMENTS with what failed in few words, and why only once."
+  "Return MOMENTS with abridged texts of failures; each reason is given only once."
   (let ((told '()))
     (flet ((brief (moment)
              (let* ((text (moment-text moment)) (at (search +reason-mark+ text))
@@ -129,25 +126,23 @@ than MOST ticks, or all if it is NIL."
                (moment-robot moment) (moment-code moment)))
 
 (defun spots-and-notes (moments limit several-p reach)
-  "Return the numbered spots of what happened at MOMENTS, and notes that tell of that, lists of a
-number or NIL and a text: of all if LIMIT is NIL, else of LIMIT at most, or of more if so many are a
-user's own. See HAPPENINGS-OF."
+  "Return the numbered spots of MOMENTS, and notes, lists of a number or NIL and a text: at most
+LIMIT, or more if there are more of the user's own; all if LIMIT is NIL. See GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
-         ;; These are a user's own.
-         (own (count 0 all :key #'moment-group-weight))
+         (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))
          (told (stable-sort (subseq all 0 count) #'<
-                            :key (lambda (happening)
-                                   (reduce #'min (moment-group-moments happening)
+                            :key (lambda (group)
+                                   (reduce #'min (moment-group-moments group)
                                            :key #'moment-tick))))
          (spots (number-spots told)))
     (values spots
-            (append (mapcar (lambda (happening) (group-note happening (and limit 3))) told)
-                    (not-shown-note "Not shown" (loop for happening in (nthcdr count all)
-                                                      append (moment-group-moments happening)))))))
+            (append (mapcar (lambda (group) (group-note group (and limit 3))) told)
+                    (not-shown-note "Not shown" (loop for group in (nthcdr count all)
+                                                      append (moment-group-moments group)))))))
 
-;;; On the map: an open ring where it was, around the thing that lies there, if one does, so that it
-;;; can be seen; and beside it, where nothing else is, the number.
+;;; On the map, an open ring marks a spot, around the thing that lies there, if any, so that it
+;;; stays visible. The number is beside it, where nothing else is.
 
 (defconstant +number-radius+ 8 "The radius of the circle around a number, in pixels.")
 (defconstant +ring-radius+ 4 "The radius of a ring around a spot without a thing, in pixels.")
@@ -161,8 +156,8 @@ user's own. See HAPPENINGS-OF."
     (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle)))
 
 (defun ring-radius (snapshot x y)
-  "Return the radius of the ring around the spot at X, Y, in pixels, on the map of SNAPSHOT: so
-large that what lies right there, as what was let go of does, is within it."
+  "Return the radius, in pixels, of the ring around the spot at X, Y on the map of SNAPSHOT. A thing
+that lies right there, such as one released there, is inside the ring."
   (flet ((reach (image)
            (let ((off (max (abs (- (to-pixels (thing-image-x image)) x))
                            (abs (- (to-pixels (thing-image-y image)) y))))
@@ -171,7 +166,7 @@ large that what lies right there, as what was let go of does, is within it."
     (reduce #'max (snapshot-things snapshot) :key #'reach :initial-value +ring-radius+)))
 
 (defun boxes-to-avoid (snapshot spots)
-  "Return boxes around robots, spots and things: what no number should hide."
+  "Return boxes around robots, spots and things, which no number should hide."
   (flet ((box (x y half) (box-around (to-pixels x) (to-pixels y) half)))
     (append (loop for robot in (snapshot-robots snapshot)
                   collect (box (robot-image-x robot) (robot-image-y robot)
@@ -189,7 +184,7 @@ large that what lies right there, as what was let go of does, is within it."
                      collect (around x y angle (+ radius distance)))))
 
 (defun free-place-p (place shown taken)
-  "True if the number at PLACE, a point (x y), is in the box SHOWN and meets none of the boxes
+  "True if a number at PLACE, a point (x y), is within the box SHOWN and meets none of the boxes
 TAKEN."
   (destructuring-bind (x y) place
     (let ((box (box-around x y (1+ +number-radius+))))
@@ -198,8 +193,8 @@ TAKEN."
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
 (defun move-inside (shown place)
-  "Return PLACE, or what is nearest to it of where a number is wholly in the box SHOWN; the middle
-of one that is less wide or high."
+  "Return the point nearest to PLACE at which a number is completely within the box SHOWN; its
+middle if SHOWN is too small."
   (let ((reach (1+ +number-radius+)))
     (flet ((within (at low high)
              (if (< (- high low) (* 2 reach))
@@ -208,15 +203,15 @@ of one that is less wide or high."
       (mapcar #'within place shown (subseq shown 2)))))
 
 (defun place-for-number (shown x y radius taken rather-not)
-  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: in the box SHOWN,
-and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
+  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: in the box SHOWN
+and, if possible, clear of the boxes TAKEN and RATHER-NOT."
   (let ((places (places-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-place-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
           (move-inside shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
-  "Draw a ring of RADIUS around X, Y, and TEXT, its number, at PLACE, with a line from there."
+  "Draw a ring of RADIUS around X, Y, its number TEXT at PLACE, and a line between them."
   (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
          (edge (around x y angle radius)))
     (with-halo (black*)
@@ -225,7 +220,7 @@ and if possible where none of the boxes TAKEN is, nor of RATHER-NOT."
     (draw-number canvas (first place) (second place) text)))
 
 (defun draw-spots (canvas snapshot spots ways)
-  "Draw SPOTS on the map of SNAPSHOT, the numbers rather not on the boxes WAYS. Return the boxes of
+  "Draw SPOTS on the map of SNAPSHOT. Numbers avoid the boxes WAYS if possible. Return the boxes of
 the numbers."
   (let ((spared (boxes-to-avoid snapshot spots)) (boxes '()))
     (dolist (spot spots boxes)

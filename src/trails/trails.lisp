@@ -1,30 +1,29 @@
-;;;; trails.lisp -- where robots went, tick by tick: as ways worth drawing, and as a table.
+;;;; trails.lisp -- where robots went, tick by tick: as ways to draw, and as a table.
 
 (in-package :ars-magna.trails)
 
 (export '(note-places ways-along straightened))
 
 (define-record (way (:constructor make-way (trial outcome pieces)))
-  "Where a robot was in a trial."
-  (trial 0 integer "the number of the trial in which the way was gone" :export)
-  (outcome "" string "how that ended: \"success\", \"failure\", \"limit\" or \"error\"" :export)
+  "The way of a robot in a trial."
+  (trial 0 integer "the number of the trial of the way" :export)
+  (outcome "" string "its outcome: \"success\", \"failure\", \"limit\" or \"error\"" :export)
   (pieces '() list "the pieces of the way, lists of points (x . y), in order" :export))
 
 (define-record (trail (:constructor make-trail (robot)))
-  "Where ROBOT has been so far."
+  "The places of ROBOT so far."
   (robot nil robot)
   (placements nil (or null fixnum)
-              "how often it had been put somewhere when it was seen last, or NIL" :writable)
-  (pieces '() list
-          "the pieces as those of a way, latest first, as are the points of each" :writable))
+              "how often it had been put somewhere at the last place, or NIL" :writable)
+  (pieces '() list "pieces like those of a way, latest first, as are their points" :writable))
 
 (defun note-point (trail x y)
-  "Let the last piece of TRAIL go on to X, Y."
+  "Extend the last piece of TRAIL to X, Y."
   (unless (equal (cons x y) (first (first (trail-pieces trail))))
     (push (cons x y) (first (trail-pieces trail)))))
 
 (defun note-placement (trail)
-  "Let a piece of TRAIL begin where its robot has been put: it may have driven on since."
+  "Begin a new piece of TRAIL where its robot has been put. It may have driven on since."
   (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
     (setf (trail-placements trail) (robot-placements robot))
     (push '() (trail-pieces trail))
@@ -36,7 +35,7 @@
     (note-point trail (robot-x robot) (robot-y robot))))
 
 (defun note-places (simulation trails)
-  "Add to TRAILS, a list, latest first, where the robots of SIMULATION are. Return it."
+  "Add the places of the robots of SIMULATION to TRAILS, a list, latest first. Return the list."
   (dolist (robot (simulation-robots simulation) trails)
     (note-place (or (find robot trails :key #'trail-robot)
                     (first (push (make-trail robot) trails))))))
@@ -45,17 +44,16 @@
   (reverse (mapcar #'reverse (trail-pieces trail))))
 
 (defun ways-along (trails trial outcome)
-  "Return the ways that TRAILS, as NOTE-PLACES keeps them, say robots went in TRIAL, which ended
-with OUTCOME. A trial that broke off before robots were seen has one way, without points: so it
-counts."
+  "Return the ways of TRAILS, a value of NOTE-PLACES, in TRIAL, which ended with OUTCOME. A trial
+without trails, which failed at once, has one way without points, so that it is counted."
   (if trails
       (loop for trail in (reverse trails) collect (make-way trial outcome (pieces-along trail)))
       (list (make-way trial outcome '()))))
 
-;;; A way has a point for each tick. What is nearly straight needs only its ends.
+;;; A way has a point for each tick. Nearly straight parts need only their ends.
 
 (defun distance-from-line (point start end)
-  "Return how far POINT is from the line from START to END, or from START if they are one."
+  "Return the distance of POINT from the line from START to END, or from START if both are equal."
   (destructuring-bind ((x . y) (x1 . y1) (x2 . y2)) (list point start end)
     (let* ((dx (- x2 x1)) (dy (- y2 y1)) (square (+ (* dx dx) (* dy dy)))
            (share (if (zerop square)
@@ -64,8 +62,8 @@ counts."
       (sqrt (+ (expt (- x x1 (* share dx)) 2) (expt (- y y1 (* share dy)) 2))))))
 
 (defun straightened (points tolerance)
-  "Return those of POINTS, a list, that a line through which leaves none off by more than TOLERANCE
-(Douglas and Peucker 1973)."
+  "Return some of POINTS, a list, such that all others are at most TOLERANCE from the line through
+them (Douglas and Peucker 1973)."
   (let ((points (coerce points 'simple-vector)) (kept '()))
     (labels ((visit (start end)
                (let ((place nil) (most tolerance))
@@ -84,25 +82,25 @@ counts."
             (append (list (svref points 0)) (nreverse kept) (list (svref points last))))))))
 
 (defun pieces-in-pixels (pieces)
-  "Return PIECES of a way as lists x y ... in pixels, with the points that are worth drawing."
+  "Return PIECES of a way as lists x y ... in pixels, simplified for drawing."
   (loop for piece in pieces
         collect (loop for (x . y) in (straightened piece (/ 1/2 graphics-scale*))
                       collect (to-pixels x) collect (to-pixels y))))
 
 ;;;; A run as a table
 
-;;; The run is repeated from its journal, so any run that keeps one will do, also afterwards, and
-;;; nothing is kept meanwhile.
+;;; The run is replayed from its journal. So a table can be made of any run with a journal, also
+;;; afterwards, and nothing is recorded during the run.
 
 (defparameter *trajectory-columns*
   '("tick" "robot" "x" "y" "angle" "estimated_x" "estimated_y" "estimated_angle" "holding" "place")
-  "What the first line of a trajectory says.")
+  "The columns of a trajectory.")
 
 (note-kind-of-file :trajectory (format nil "~{~A,~}" (subseq *trajectory-columns* 0 5))
                    "it is a table of where robots were; any program that reads CSV reads it")
 
 (defun full-number-text (number)
-  "Return NUMBER as any program reads it, to the last bit."
+  "Return NUMBER in full precision, as text that any program can read."
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
 
 (defun trajectory-row (robot tick)
@@ -116,13 +114,14 @@ counts."
                   (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
-  "Write to OUT a row for each robot of SIMULATION, or of those that NAMES, a list, mean."
+  "Write a row for each robot of SIMULATION to OUT; only for those in the list NAMES unless it is
+NIL."
   (dolist (robot (simulation-robots simulation))
     (when (or (null names) (member (robot-name robot) names :test #'same-name-p))
       (write-string (csv-line (trajectory-row robot (simulation-tick simulation))) out))))
 
 (defun write-trajectory (journal out every until names)
-  "Repeat JOURNAL, up to UNTIL, and write the rows of every EVERY ticks to OUT."
+  "Replay JOURNAL up to UNTIL and write rows to OUT every EVERY ticks."
   (write-string (csv-line *trajectory-columns*) out)
   (flet ((look (simulation)
            (when (zerop (mod (simulation-tick simulation) every))
@@ -146,15 +145,16 @@ counts."
 (addition save-trajectory)
 (define-with-keywords save-trajectory
     (file &key journal (every 1) until robots anyway)
-  "Write to FILE, as a table of commas (CSV), where the robots of a run were: of that of JOURNAL (a
-journal, or a file that holds one), or else the current one up to now, which must keep one. FILE may
-be new, empty, or another such table, which is replaced. A row for every EVERY ticks, up to the tick
-UNTIL, and for each robot, or those that ROBOTS, a name or a list of names, means: the tick, the
-robot, x and y in metres and the heading in radians; the same as its main odometer has it, put on
-the map; what its hands hold; the place type that it sensed last. The run is repeated for that, with
-ANYWAY even if its definitions are not those at hand. Return the file's truename. Signals
-WRONG-ARGUMENT, UNKNOWN-NAME, MISUSE if there is no journal or FILE is something else or cannot be
-written, when what was there is as before, and what REPLAY does."
+  "Replay a run and write the places of its robots to FILE, a CSV table. Return the truename.
+JOURNAL is a journal or a file with one, by default that of the current simulation so far. There is
+a row every EVERY ticks, up to the tick UNTIL, for each robot, or only for those of ROBOTS, a name
+or a list of names. It has the tick, the robot, x and y in metres and the heading in radians; the
+same three as its main odometer estimates them, in coordinates of the map; what its hands hold; and
+the place type that it sensed last. ANYWAY accepts a run whose definitions are not the present ones.
+
+FILE may be new, empty, or another such table, which is replaced. Signals WRONG-ARGUMENT,
+UNKNOWN-NAME, and what REPLAY does; and MISUSE if there is no journal, or if FILE is something else
+or cannot be written, and then FILE is unchanged."
   (let ((journal (journal-meant journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (check-not-foreign file :trajectory "trajectory")
