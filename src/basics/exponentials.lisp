@@ -138,7 +138,7 @@
         ((and (zerop base) (plusp exponent)) 0d0)
         (t (reject-base 'power 'base base))))
 
-;;; What others call.
+;;; The functions for other files.
 
 (declaim (inline exponential logarithm power))
 

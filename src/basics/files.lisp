@@ -104,7 +104,7 @@ octet. CHECK is called with the path of the complete new file; if it signals an 
 unchanged."
   (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
     (remove-abandoned-files directory)
-    ;; The new file's name is random. The caller's random state must not notice that.
+    ;; The new file's name is random. The caller's random state must not change.
     (call-with-own-lisps-dice
      (lambda ()
        (uiop:with-temporary-file (:stream out :pathname new :external-format external-format

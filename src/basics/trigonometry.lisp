@@ -171,7 +171,7 @@ multiplies the powers 1 to 6 by.")
     (declare (type (double-float 0d0 1d0) x))
     (if (< x #.(power-of-two -60))
         (values x 0d0)
-        ;; What is near the limits of floats is moved away, which is exact.
+        ;; Numbers near the limits of floats are scaled, which is exact.
         (let* ((scale (cond ((< large #.(power-of-two -900)) #.(power-of-two 200))
                             ((> large #.(power-of-two 900)) #.(power-of-two -200))
                             (t 1d0)))
@@ -202,7 +202,7 @@ multiplies the powers 1 to 6 by.")
         ((minusp y) (- (arctangent-above (- y) x)))
         (t (arctangent-above y x))))
 
-;;; What others call.
+;;; The functions for other files.
 
 (declaim (inline sine cosine arctangent))
 

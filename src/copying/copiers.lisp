@@ -28,7 +28,7 @@ for the copy, and true; or NIL and false" :writable)
   "Return the value to which the run of COPIER has bound SYMBOL."
   (cdr (assoc symbol (copier-environment copier) :test #'eq)))
 
-;;; Noting.
+;;; Recording copies.
 
 (declaim (inline note-copy))
 (defun note-copy (value copy copier)
@@ -136,12 +136,12 @@ NIL instead; MAKE-NO-FORK."))
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
-   "Return what FORK, a fork being made, has for VALUE, an object found in variables of plans, in
+   "Return the counterpart in FORK, a fork being made, of VALUE, an object in variables of plans, in
 closures or elsewhere in a run. By default, lists, vectors, tables, structures and instances are
 copied with their contents; what two of them share is shared by the copies. Functions are shared,
 closures copied with what they close over. Define a method for a class of your own to change this:
-return VALUE itself to share it, or a replacement. (forked x fork) returns what FORK has for another
-object x.")
+return VALUE itself to share it, or a replacement. (forked x fork) returns the counterpart of
+another object x.")
   (:method (value fork) (decided-copy value fork)))
 
 (addition copy-plan-value)

@@ -1,4 +1,4 @@
-;;;; definitions.lisp -- what all defining forms share: where they stand, what is wrong with them.
+;;;; definitions.lisp -- what all defining forms share: places in files, errors and restarts.
 
 (in-package :ars-magna.definitions)
 

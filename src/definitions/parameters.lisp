@@ -251,7 +251,7 @@ designators of things, but no parameter for them." :addition :digested)
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
       "How much time one tick stands for: motion, drift and chances scale with it, and what takes
-time takes fewer ticks. The manual only wishes, in chapter 1.2, to skip ahead."
+time takes fewer ticks. The manual, in chapter 1.2, only proposes to skip ahead."
        :addition :digested))))
 
 (defun per-tick-probability (probability)

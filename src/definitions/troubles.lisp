@@ -225,7 +225,7 @@ the thread of the error before the debugger asks there.")
 (defun restart-unasked (condition)
   "Choose the most likely restart of CONDITION, because no debugger is left, and warn."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
-    (warning-set "The debugger that asked for a restart has disconnected; " (string-downcase name)
+    (warning-set "The debugger that asked for a restart has gone; " (string-downcase name)
                  " was chosen: " (one-line-text condition))
     (when (eq name 'continue) (continue condition))
     (abort condition)))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.geometry)
 
 ;;; Bounds belong to their interval. In two dimensions a comparison holds if it holds along both
-;;; axes. Where the table says x, an element is asked for: a number or a point.
+;;; axes. Where the table says x, the operand is an element: a number or a point.
 
 (defmacro define-comparison (name combine (low-a high-a low-b high-b) documentation form)
   "Define NAME of two operands, whose bounds along an axis the four variables hold in FORM; COMBINE
@@ -44,7 +44,7 @@ intervals along both axes (manual, Table 3.2)."
 ;; As reading 46 says.
 (define-comparison interval-dist max (low-a high-a low-b high-b)
   "Return the gap between the intervals A and B, of point intervals the wider of the gaps along
-the two axes; 0 just if they intersect (manual, Table 3.2)."
+the two axes; 0 only if they intersect (manual, Table 3.2)."
   (max 0d0 (- low-a high-b) (- low-b high-a)))
 
 (public in-interval)
@@ -126,7 +126,7 @@ that is nothing (manual, Table 3.2)."
 
 (public interval-lbi!)
 (defun interval-lbi! (a b)
-  "Grow the interval A just so that it contains B too, and return A (manual, Table 3.2)."
+  "Grow the interval A as little as possible to contain B too; return A (manual, Table 3.2)."
   (dispatch interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span) (%bound! a (low b) (high b)))
     ((pt-interval region)
@@ -143,7 +143,7 @@ that is nothing (manual, Table 3.2)."
 
 (public add-to-lbi!)
 (defun add-to-lbi! (interval x)
-  "Grow INTERVAL just so that it contains the number or point X, and return it (manual, Table 3.2)."
+  "Grow INTERVAL minimally to contain the number or point X; return it (manual, Table 3.2)."
   (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((interval finite) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))

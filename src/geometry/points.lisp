@@ -59,7 +59,7 @@ Signals WRONG-ARGUMENT, with EXPECTED in words, if there is none or the result i
                      for place from 0
                      for types = (loop for (types) in clauses collect (nth place types))
                      collect `((not (typep ,operand '(or ,@types))) ,(refuse operand)))
-             ;; Each could be right alone; then the last does not suit the others.
+             ;; Each operand may be valid alone; then the last does not fit the others.
              (t ,(refuse (first (last operands))))))))
 
 ;;; Arithmetic. Each destructive operation reads all that it needs of both operands before it

@@ -1,4 +1,4 @@
-;;;; compiler.lisp -- the position of the compiler and of LOAD; what waits until a unit ends.
+;;;; compiler.lisp -- the position of the compiler and of LOAD; work deferred to a unit's end.
 
 (in-package :ars-magna.host)
 

@@ -139,7 +139,7 @@ second value. Replacements get the source position of what they replace."
 
 ;;;; Names that can be variables, and undefined names
 
-;;; A user's definition can often also be had as the value of the variable of its name.
+;;; A user's definition is often also the value of the variable of its name.
 
 (defun variable-name-trouble (name)
   "Return in words why the symbol NAME cannot become a special variable, or NIL."

@@ -52,8 +52,7 @@ move these, since they can be reached."
   "Restore the guard pages of this thread's stack. Little of it may be in use."
   (let ((end (internal (:sb-kernel #:get-lisp-obj-address)
                        (internal-value :sb-vm #:*control-stack-start*))))
-    ;; Opened or not, that page can be written. If the guard page is closed, this is what it waits
-    ;; for.
+    ;; That page can always be written, and this closes the guard page if it is open.
     (setf (internal (:sb-sys #:sap-ref-8)
                     (internal (:sb-sys #:int-sap)
                               (+ end (* 2 (internal-value :sb-c #:+backend-page-bytes+))))

@@ -130,8 +130,8 @@ follow the parameters (manual 3.1)."
 (public matchq)
 (defmacro matchq (pattern datum)
   "True if PATTERN, which is not evaluated, matches the value of DATUM. ?x matches anything, a
-second ?x only the same again; when all matches, each variable x is set to what its ?x matched.
-?() matches anything, other atoms what is called or counts the same (manual 5.1.1; reading 34)."
+second ?x only the same again; if all matches, each variable x is set to what its ?x matched. ?()
+matches anything, symbols match by name, numbers by value (manual 5.1.1; reading 34)."
   (with-gensyms (value)
     (multiple-value-bind (test temporaries) (pattern-test pattern value '())
       `(cl:let ((,value ,datum) ,@(mapcar #'cdr temporaries))

@@ -37,7 +37,7 @@
   "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if it is incomplete."
   (let ((*readtable* (find-readtable :standard)))
     (handler-case (values (read-from-string token))
-      ;; What holds TOKEN is no shorter than it should be.
+      ;; The text around TOKEN is complete, so that is no END-OF-FILE there.
       (end-of-file () (reject-syntax token "a name or number after ! or ?")))))
 
 (defun token-name (token)

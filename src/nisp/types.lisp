@@ -11,7 +11,7 @@
 
 (public lst)
 (deftype lst (&optional (type t))
-  "The type of the lists of objects of TYPE, which is not looked into (manual 3.1)."
+  "The type of lists of objects of TYPE, which is not checked (manual 3.1)."
   (declare (ignore type))
   'list)
 
@@ -47,8 +47,8 @@ arguments, or call it with them if it is written #'function."
                         `(lambda ,lambda-list ,constructor))))
 
 (defun make-object (type &rest arguments)
-  "Return a new object of the type called TYPE, made from ARGUMENTS as that type wants them. An
-unknown TYPE and a wrong number of ARGUMENTS are errors."
+  "Return a new object of the type called TYPE, made from ARGUMENTS. Signals UNKNOWN-NAME for an
+unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
   (let* ((known (find-nisp-type type))
          (maker (and known (nisp-type-maker known))))
     (unless maker
@@ -178,8 +178,8 @@ name of a function of the value and the object."
 ;;; Access by a name known at run time.
 
 (defun slot-ref (object slot)
-  "Return the slot of OBJECT called SLOT, a symbol or string. Can be set. A name that its type
-has no slot of is an error that lists those it has."
+  "Return the slot of OBJECT called SLOT, a symbol or string. Can be set. Signals UNKNOWN-NAME,
+which lists the slots, if there is none of that name."
   (funcall (ensure-slot-accessor slot) object))
 
 (defun (setf slot-ref) (value object slot)

@@ -11,11 +11,11 @@
 (define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
   :documentation "How the arguments of a :draw-function are written.")
 
-(defvar *said-by-code-p* t
-  "True where values of attributes come from code; false where they are data, as of a journal.")
+(defvar *from-code-p* t
+  "True where values of attributes come from code; false where they are data, as in a journal.")
 
 (defun call-with-data (function &rest arguments)
-  (let ((*said-by-code-p* nil)) (apply function arguments)))
+  (let ((*from-code-p* nil)) (apply function arguments)))
 
 (defun names-function-p (value)
   (and value (symbolp value) (fboundp value)
@@ -25,7 +25,7 @@
   (typecase value
     (null t)
     (function (callable-with-p value 6))
-    (symbol (or (not *said-by-code-p*)
+    (symbol (or (not *from-code-p*)
                 (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
 
 (defun draw-function-words (value)
@@ -36,12 +36,12 @@
           (if (and value (symbolp value) (not (keywordp value))) value "draw-it")
           +draw-arguments+ (consp value)))
 
-(defun draw-function-said (value)
-  "Return what to keep for VALUE of :draw-function. A name that code says may be called."
+(defun stored-draw-function (value)
+  "Return the value to store for VALUE of :draw-function. A name from code is marked as callable."
   ;; A name is kept rather than its function: it follows redefinitions, and can be saved.
   (let* ((name (and (functionp value) (nth-value 2 (function-lambda-expression value))))
          (value (if (and (names-function-p name) (eq value (fdefinition name))) name value)))
-    (when (and value (symbolp value) *said-by-code-p*) (setf (get value 'said-by-code-p) t))
+    (when (and value (symbolp value) *from-code-p*) (setf (get value 'from-code-p) t))
     value))
 
 (defun drawing-code (value)
@@ -49,7 +49,7 @@
 none, a second value says why, and what to do."
   (cond ((null value) nil)
         ((functionp value) value)
-        ((not (get value 'said-by-code-p))
+        ((not (get value 'from-code-p))
          (values nil (format nil "the name ~(~A~) is from a file of data, which runs nothing; if ~
                                   you trust it, say (set-attribute thing :draw-function '~:*~(~A~))"
                              value)))

@@ -38,7 +38,7 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function that copies an attachment for a copied thing, and seats it in the new group."
+  "Return a function that copies an attachment for a copied thing, and puts it into the new group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)
@@ -58,7 +58,7 @@
           copy)))))
 
 (defun put-other-members (group copy copier)
-  "Seat in COPY those members of GROUP that are on no thing any more, until they are taken out."
+  "Put into COPY the members of GROUP that were removed from things, until they are taken out."
   (when (group-dead group)
     (let ((row (group-row copy)))
       (loop for place from 0 below (* 3 (group-count group)) by 3
@@ -133,7 +133,7 @@
   (if (not (eq world (copier-option fork :world)))
       world
       (let ((copy (copy-slots world fork)))
-        ;; Their members are yet to be seated.
+        ;; Their members are put into the rows later.
         (dolist (group (world-kicker-groups world))
           (setf (group-row (copy-slots group fork))
                 (note-finished (copy-seq (group-row group)) fork)))

@@ -122,8 +122,8 @@ a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker
 any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
 thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
 Lisp's symbols, such as OPEN, or ours, or already has a value: such kickers are called by name.
-Redefinition affects things that have it. Chance goes by the seed, whether by CL:RANDOM, which
-begins anew in each tick, or by the world's dice: (roll-between 0 1 (world-dice *world* :user)).
+Redefinition affects things that have it. Random numbers depend on the seed, both of CL:RANDOM,
+which is seeded in each tick, and of the dice in (roll-between 0 1 (world-dice *world* :user)).
 Signals MALFORMED-DEFINITION. Return the name."
   (let ((definition (title "defkicker" name)))
     (expand-definition

@@ -60,10 +60,10 @@ with" :writable :export)
   (clause-kinds '() list "the names of the users' kinds of clauses that the map is written
 with" :writable :export)
   (cache nil (or null string pathname) "the file that caches its grid, or NIL" :writable)
-  (frame '(1 0 0 0) list "a list (size x y yaw): how many metres of elsewhere a side of the map's
-cells is, where its lower left corner lies there, in metres, and how far its x axis is turned there,
-radians against the clock. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP said something
-else" :addition)
+  (frame '(1 0 0 0) list "a list (size x y yaw) that relates the map to other coordinates: the
+side of a cell there, in metres, the position of the lower left corner there, in metres, and the
+counterclockwise turn of the x axis there, in radians. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP
+has set it" :addition)
   (resident nil t "the world of the map that top-level code works in, NIL before
 the first use" :writable :export))
 

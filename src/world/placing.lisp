@@ -152,8 +152,8 @@ about WHAT in a run is also printed if it is not read."
 (defun move-thing (thing location &optional (y nil y-p))
   "Move THING to LOCATION: a container, hand or storage bin, or a position, either a list (x y)
 or, as two arguments, its coordinates in metres. Walls, lids and capacities do not
-matter; that it ends inside a wall is a warning among the messages. Signals WRONG-ARGUMENT outside
-the map, MISUSE for prototypes, things destroyed, and a container put into itself. Return THING."
+matter, but a position inside a wall queues a warning. Signals WRONG-ARGUMENT outside the map,
+MISUSE for prototypes, destroyed things, and a container put into itself. Return THING."
   (check-movable 'move-thing thing)
   (let ((position (cond (y-p (list location y))
                         ((number-pair-p location) location))))
@@ -293,7 +293,7 @@ return NIL."
   "A number that a caller of KICK-THING converts inline. Ratios may be too large."
   '(or double-float single-float fixnum))
 
-;; Inline, so that what a kicker reckons in floats is not boxed.
+;; Inline, so that floats computed by a kicker are not boxed.
 (declaim (inline kick-thing))
 (public kick-thing)
 (defun kick-thing (thing dx dy kick-if-wall)

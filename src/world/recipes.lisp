@@ -12,13 +12,13 @@
 (define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
   "A thing to be made: NAME with ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."
   (name nil symbol)
-  (attributes '() list "what it is like, an object descriptor")
-  (contents '() list "the recipes of what is in it")
+  (attributes '() list "its attributes, an object descriptor")
+  (contents '() list "the recipes of its contents")
   (kickers '() list "the kickers on it")
   (x nil (or null double-float)
-     "where it is put, the x coordinate in metres; NIL if it is not said")
+     "the x coordinate where it is put, in metres, or NIL")
   (y nil (or null double-float)
-     "where it is put, the y coordinate in metres; NIL if it is not said"))
+     "the y coordinate where it is put, in metres, or NIL"))
 
 (defmethod reference ((recipe recipe))
   (list :recipe (recipe-name recipe) (recipe-attributes recipe) (recipe-contents recipe)

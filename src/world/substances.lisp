@@ -12,7 +12,7 @@
 (define-record (substance (:constructor make-substance (name %parameter)))
   "A type of substance."
   (name nil symbol "the symbol that the substance is called" :addition)
-  (%parameter 0d0 double-float "the parameter that things of it have unless they say otherwise"))
+  (%parameter 0d0 double-float "the default parameter of things of the substance"))
 
 (defmethod print-object ((substance substance) stream)
   (print-unreadable-object (substance stream :type t)

@@ -85,7 +85,7 @@ in a run."
 (defun checked-entry (operator name value)
   (let ((key (attribute-key name)))
     (check-attribute-value operator key value)
-    (list key (if (eq key :draw-function) (draw-function-said value) value))))
+    (list key (if (eq key :draw-function) (stored-draw-function value) value))))
 
 (defun normal-descriptor (operator descriptor)
   "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."

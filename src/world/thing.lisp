@@ -173,7 +173,7 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
 
 (addition thing-position)
 (defun thing-position (thing)
-  "Return, as two values, the coordinates of THING, metres: where what holds it is. NIL and NIL
+  "Return, as two values, the coordinates of THING or of what holds it, in metres. NIL and NIL
 if it is nowhere."
   (let* ((outermost (thing-outermost thing)) (location (thing-location outermost)))
     (case location

@@ -105,7 +105,7 @@ to 1e15"
 
 ;;; Building.
 
-;; A cell takes 20 bytes in its map, 2 while that is built and 9 in a world; and there are others.
+;; A cell takes 20 bytes in its map, 2 while it is built, and 9 in a world. Other data need room.
 (defconstant +cell-bytes+ 40 "How many bytes of the heap there must be for each cell of a map.")
 
 (defun check-room (definition width height)
