@@ -60,8 +60,8 @@
     (check "line 1: \"  negate: 0\" is no line such as resolution: 0.05"
            (format nil "  negate: 0~%~A" (floor-text)))
     (check "line 2: \"floor\" is no line such as" (format nil "# x~%floor~%"))
-    (check "line 1: an item of a list stands below no key" (format nil "- 1~%~A" (floor-text)))
-    (check "line 7: an item of a list stands below no key" (format nil "~A- 1~%" (floor-text)))
+    (check "line 1: an item of a list has no key above it" (format nil "- 1~%~A" (floor-text)))
+    (check "line 7: an item of a list has no key above it" (format nil "~A- 1~%" (floor-text)))
     (check "floor.yaml, line 2: it has bytes that are not UTF-8. Save the file in UTF-8."
            (format nil "# x~%# ~C~%~A" (code-char 255) (floor-text)))
     (check "it is an image; (import-map FILE) reads the .yaml that names it" (pgm-text *corner*))

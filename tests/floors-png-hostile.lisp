@@ -25,7 +25,7 @@
     (loop for (words image)
             in `(("the image is no PGM file, P2 or P5, and no PNG file by its first bytes"
                   ,(damaged-at 5 good))
-                 ("the chunk at byte 8 has a wrong name or check sum; copy or save it anew"
+                 ("the chunk at byte 8 has a wrong name or check sum; copy or save it again"
                   ,(damaged-at 20 good))
                  ("the chunk at byte 33 has a wrong name or check sum" ,(damaged-at 50 good))
                  ("the chunk at byte 33 has a wrong name"
@@ -53,8 +53,8 @@
     (check "no PNG images of colour type 3 with 16 bits" 3 1 16 3)
     (check "no PNG images of colour type 0 with 3 bits" 3 1 3 0)
     (check "no PNG images of colour type 6 with 0 bits" 3 1 0 6)
-    (check "compression, filter and interlace, 1, 0 and 0, are none" 3 1 8 0 '(1 0 0))
-    (check "compression, filter and interlace, 0, 0 and 2, are none" 3 1 8 0 '(0 0 2))
+    (check "compression, filter and interlace, 1, 0 and 0, do not exist" 3 1 8 0 '(1 0 0))
+    (check "compression, filter and interlace, 0, 0 and 2, do not exist" 3 1 8 0 '(0 0 2))
     (check "the image has 4294967295 by 4294967295 pixels, and the limit is 25000000"
            4294967295 4294967295 16 6)
     (check "interlaced (Adam7), which is not read here; convert the image, as with: convert ~
@@ -114,9 +114,9 @@
 
 (defun png-samples (image)
   "Return the samples of the PNG file IMAGE; NIL if it is refused."
-  (let ((tape (floors::make-tape #p"floor.png" (octets-of-image image))))
-    (and (floors::png-begins-p tape)
-         (handler-case (floors::image-samples (floors::read-png tape 10000 :trinary))
+  (let ((input (floors::make-input #p"floor.png" (octets-of-image image))))
+    (and (floors::png-begins-p input)
+         (handler-case (floors::image-samples (floors::read-png input 10000 :trinary))
            (ars:unusable-floor () nil)))))
 
 (defun with-right-sums (image)

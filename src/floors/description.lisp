@@ -65,7 +65,7 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
                     "a list [x, y, yaw] of numbers from -1e9 to 1e9, metres and radians"))
     numbers))
 
-(defun truth-in (file entry)
+(defun boolean-in (file entry)
   (let ((value (entry-value entry)))
     (cond ((member value '("0" "false") :test #'equalp) nil)
           ((member value '("1" "true") :test #'equalp) t)
@@ -118,7 +118,7 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
        :file file
        :resolution (resolution-in file (entry "resolution"))
        :origin (origin-in file (entry "origin"))
-       :negated-p (truth-in file (entry "negate"))
+       :negated-p (boolean-in file (entry "negate"))
        :free free :occupied occupied
        :mode (mode-in file (find-entry "mode" entries))
        :image (image-in file (entry "image"))))))

@@ -16,24 +16,24 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
   (white 255 :type (integer 1 65535) :read-only t)
   (samples (make-array 0 :element-type '(unsigned-byte 16)) :type samples :read-only t))
 
-(defstruct (tape (:constructor make-tape (file octets)) (:copier nil))
+(defstruct (input (:constructor make-input (file octets)) (:copier nil))
   "The OCTETS of FILE, read up to POSITION."
   (file nil :type pathname :read-only t)
   (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
   (position 0 :type fixnum))
 
-(defun reject-image (tape control &rest arguments)
-  (reject-floor (tape-file tape) nil "~?" control arguments))
+(defun reject-image (input control &rest arguments)
+  (reject-floor (input-file input) nil "~?" control arguments))
 
 (defparameter *conversion* "convert floor.png -colorspace gray -depth 8 floor.pgm"
   "A shell command that converts an image into one that can be read.")
 
-(defun check-pixels (tape width height limit)
+(defun check-pixels (input width height limit)
   (unless (and (plusp width) (plusp height))
-    (reject-image tape "the image has ~D by ~D pixels; save one that has some" width height))
+    (reject-image input "the image has ~D by ~D pixels; save one that has some" width height))
   (when (< limit (* width height))
-    (reject-image tape "the image has ~D by ~D pixels, and the limit is ~D; cut out what you need, ~
-                        or give IMPORT-MAP a higher :limit"
+    (reject-image input "the image has ~D by ~D pixels, and the limit is ~D; cut out what you ~
+                         need, or give IMPORT-MAP a higher :limit"
                   width height limit)))
 
 (defun read-octets (file limit)
@@ -61,9 +61,9 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
   "True if OCTET is a blank: a space, tab, line feed, vertical tab, form feed or return."
   (or (= octet 32) (<= 9 octet 13)))
 
-(defun skip-blanks (tape)
-  "Go on to the next word of TAPE, past blanks and comments."
-  (let* ((octets (tape-octets tape)) (end (length octets)) (position (tape-position tape)))
+(defun skip-blanks (input)
+  "Go on to the next word of INPUT, past blanks and comments."
+  (let* ((octets (input-octets input)) (end (length octets)) (position (input-position input)))
     (declare (type octets octets) (type fixnum end position))
     (loop while (< position end)
           do (let ((octet (aref octets position)))
@@ -71,70 +71,70 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
                      ((= octet 35)
                       (setf position (or (position 10 octets :start position) end)))
                      (t (return)))))
-    (setf (tape-position tape) position)))
+    (setf (input-position input) position)))
 
-(defun next-number (tape what)
-  "Return the next number in TAPE, at most 9 digits. WHAT names it in errors."
-  (skip-blanks tape)
-  (let ((octets (tape-octets tape)) (start (tape-position tape)) (number 0))
+(defun next-number (input what)
+  "Return the next number in INPUT, at most 9 digits. WHAT names it in errors."
+  (skip-blanks input)
+  (let ((octets (input-octets input)) (start (input-position input)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
     (loop for position of-type fixnum from start below (min (length octets) (+ start 10))
           for digit of-type fixnum = (- (aref octets position) 48)
           while (and (<= 0 digit 9) (< position (+ start 9)))
           do (setf number (+ (* 10 number) digit))
-             (setf (tape-position tape) (1+ position)))
-    (when (and (= 9 (- (tape-position tape) start))
-               (< (tape-position tape) (length octets))
-               (digit-char-p (code-char (aref octets (tape-position tape)))))
-      (reject-image tape "the image says at byte ~D that ~A has more than 9 digits; save one of a ~
-                          size that a map can have" start what))
-    (when (or (= start (tape-position tape))
-              (and (< (tape-position tape) (length octets))
-                   (not (white-octet-p (aref octets (tape-position tape))))
-                   (/= 35 (aref octets (tape-position tape)))))
-      (reject-image tape "the image is damaged: at byte ~D there is no number that could be ~A; ~
-                          save it anew as PGM" (tape-position tape) what))
+             (setf (input-position input) (1+ position)))
+    (when (and (= 9 (- (input-position input) start))
+               (< (input-position input) (length octets))
+               (digit-char-p (code-char (aref octets (input-position input)))))
+      (reject-image input "the image says at byte ~D that ~A has more than 9 digits; save one of a ~
+                           size that a map can have" start what))
+    (when (or (= start (input-position input))
+              (and (< (input-position input) (length octets))
+                   (not (white-octet-p (aref octets (input-position input))))
+                   (/= 35 (aref octets (input-position input)))))
+      (reject-image input "the image is damaged: at byte ~D there is no number that could be ~A; ~
+                           save it again as PGM" (input-position input) what))
     number))
 
 ;;; The pixels.
 
-(defun check-sample (tape sample white)
+(defun check-sample (input sample white)
   (when (< white sample)
-    (reject-image tape "the image is damaged: a pixel has the value ~D, above the greatest, ~D; ~
-                        save it anew" sample white)))
+    (reject-image input "the image is damaged: a pixel has the value ~D, above the greatest, ~D; ~
+                         save it again" sample white)))
 
-(defun read-text-samples (tape count white)
-  "Return the next COUNT values of TAPE, which are written in text."
+(defun read-text-samples (input count white)
+  "Return the next COUNT values of INPUT, which are written in text."
   (let ((samples (make-array count :element-type '(unsigned-byte 16))))
     (dotimes (index count)
-      (skip-blanks tape)
-      (when (= (tape-position tape) (length (tape-octets tape)))
-        (reject-image tape "the image has ~D of the ~D values that its head promises; save it anew"
-                      index count))
-      (let ((sample (next-number tape "a value")))
-        (check-sample tape sample white)
+      (skip-blanks input)
+      (when (= (input-position input) (length (input-octets input)))
+        (reject-image input "the image has ~D of the ~D values that its head promises; save it ~
+                             again" index count))
+      (let ((sample (next-number input "a value")))
+        (check-sample input sample white)
         (setf (aref samples index) sample)))
-    (skip-blanks tape)
-    (unless (= (tape-position tape) (length (tape-octets tape)))
-      (reject-image tape "the image goes on behind the ~D values that its head promises; save one ~
-                          image only" count))
+    (skip-blanks input)
+    (unless (= (input-position input) (length (input-octets input)))
+      (reject-image input "the image goes on behind the ~D values that its head promises; save one ~
+                           image only" count))
     samples))
 
-(defun check-octets-left (tape needed)
-  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in TAPE, perhaps with a line end."
-  (let* ((end (length (tape-octets tape))) (left (- end (tape-position tape))))
+(defun check-octets-left (input needed)
+  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in INPUT, perhaps with a line end."
+  (let* ((end (length (input-octets input))) (left (- end (input-position input))))
     (unless (or (= left needed)
-                (and (= left (1+ needed)) (= 10 (aref (tape-octets tape) (1- end)))))
-      (reject-image tape "the head of the image promises ~D bytes of pixels, but ~D follow; copy ~
-                          or save it anew, as bytes and not as text" needed left))))
+                (and (= left (1+ needed)) (= 10 (aref (input-octets input) (1- end)))))
+      (reject-image input "the head of the image promises ~D bytes of pixels, but ~D follow; copy ~
+                           or save it again, as bytes and not as text" needed left))))
 
-(defun read-binary-samples (tape count white)
-  "Return the next COUNT values of TAPE, which are bytes or pairs of them."
-  (incf (tape-position tape))
+(defun read-binary-samples (input count white)
+  "Return the next COUNT values of INPUT, which are bytes or pairs of them."
+  (incf (input-position input))
   (let ((wide (< 255 white)))
-    (check-octets-left tape (if wide (* 2 count) count))
+    (check-octets-left input (if wide (* 2 count) count))
     (let ((samples (make-array count :element-type '(unsigned-byte 16)))
-          (octets (tape-octets tape)) (start (tape-position tape)))
+          (octets (input-octets input)) (start (input-position input)))
       (declare (type octets octets) (type fixnum start count))
       (if wide
           (dotimes (index count)
@@ -142,25 +142,25 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
                                                (aref octets (+ start 1 (* 2 index))))))
           (replace samples octets :start2 start :end2 (+ start count)))
       (let ((high (find-if (lambda (sample) (< white sample)) samples)))
-        (when high (check-sample tape high white)))
+        (when high (check-sample input high white)))
       samples)))
 
-(defun pgm-kind (tape)
-  "Return 2 or 5 if TAPE begins with P2 or P5, else NIL."
-  (let ((octets (tape-octets tape)))
+(defun pgm-kind (input)
+  "Return 2 or 5 if INPUT begins with P2 or P5, else NIL."
+  (let ((octets (input-octets input)))
     (and (< 2 (length octets)) (= 80 (aref octets 0)) (find (aref octets 1) #(50 53))
          (- (aref octets 1) 48))))
 
-(defun read-pgm (tape limit)
-  "Return the PGM image in TAPE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (setf (tape-position tape) 2)
-  (let ((width (next-number tape "the width")) (height (next-number tape "the height")))
-    (check-pixels tape width height limit)
-    (let ((white (next-number tape "the greatest value")) (count (* width height)))
+(defun read-pgm (input limit)
+  "Return the PGM image in INPUT, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (setf (input-position input) 2)
+  (let ((width (next-number input "the width")) (height (next-number input "the height")))
+    (check-pixels input width height limit)
+    (let ((white (next-number input "the greatest value")) (count (* width height)))
       (unless (<= 1 white 65535)
-        (reject-image tape "the greatest value of a pixel is ~D; save the image with one from 1 to ~
-                            65535, usually 255" white))
+        (reject-image input "the greatest value of a pixel is ~D; save the image with one from 1 ~
+                             to 65535, usually 255" white))
       (make-image width height white
-                  (if (= 2 (pgm-kind tape))
-                      (read-text-samples tape count white)
-                      (read-binary-samples tape count white))))))
+                  (if (= 2 (pgm-kind input))
+                      (read-text-samples input count white)
+                      (read-binary-samples input count white))))))

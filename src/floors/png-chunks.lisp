@@ -15,7 +15,7 @@
   "The chunks of a PNG file: WIDTH by HEIGHT pixels with CHANNELS of DEPTH bits. If PALETTE-P is
 true, the only channel is an index in PALETTE, which has three octets for each colour. TRANSPARENCY
 is the content of tRNS, or NIL. PIXELS are compressed."
-  (tape nil :type tape :read-only t)
+  (input nil :type input :read-only t)
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (depth 8 :type (integer 1 16) :read-only t)
@@ -25,18 +25,18 @@ is the content of tRNS, or NIL. PIXELS are compressed."
   (transparency nil :type (or null octets))
   (pixels (make-array 0 :element-type '(unsigned-byte 8)) :type octets))
 
-(defun png-begins-p (tape)
-  (let ((octets (tape-octets tape)))
+(defun png-begins-p (input)
+  (let ((octets (input-octets input)))
     (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
 
-(defun reject-png (tape control &rest arguments)
-  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which has to be converted."
-  (reject-image tape "~?; convert the image, as with: ~A, and name that in the .yaml file"
+(defun reject-png (input control &rest arguments)
+  "Signal UNUSABLE-FLOOR about the PNG file INPUT, which has to be converted."
+  (reject-image input "~?; convert the image, as with: ~A, and name that in the .yaml file"
                 control arguments *conversion*))
 
-(defun reject-damaged (tape control &rest arguments)
-  "Signal UNUSABLE-FLOOR about the PNG file TAPE, which is damaged."
-  (reject-image tape "the image is damaged: ~?; copy or save it anew" control arguments))
+(defun reject-damaged (input control &rest arguments)
+  "Signal UNUSABLE-FLOOR about the PNG file INPUT, which is damaged."
+  (reject-image input "the image is damaged: ~?; copy or save it again" control arguments))
 
 ;;; Numbers and check sums.
 
@@ -76,17 +76,17 @@ is the content of tRNS, or NIL. PIXELS are compressed."
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
 
-(defun next-chunk (tape)
-  "Return the name of the next chunk in TAPE, and the start and end of its content."
-  (let* ((octets (tape-octets tape)) (start (+ 8 (tape-position tape)))
+(defun next-chunk (input)
+  "Return the name of the next chunk in INPUT, and the start and end of its content."
+  (let* ((octets (input-octets input)) (start (+ 8 (input-position input)))
          (end (and (<= start (length octets)) (+ start (number-at octets (- start 8))))))
     (unless (and end (<= (+ end 4) (length octets)))
-      (reject-damaged tape "it has ~D bytes, and ends before its last chunk, IEND"
+      (reject-damaged input "it has ~D bytes, and ends before its last chunk, IEND"
                       (length octets)))
     (let ((name (chunk-name octets (- start 4))))
       (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
-        (reject-damaged tape "the chunk at byte ~D has a wrong name or check sum" (- start 8)))
-      (setf (tape-position tape) (+ end 4))
+        (reject-damaged input "the chunk at byte ~D has a wrong name or check sum" (- start 8)))
+      (setf (input-position input) (+ end 4))
       (values name start end))))
 
 ;;; The head.
@@ -96,49 +96,49 @@ is the content of tRNS, or NIL. PIXELS are compressed."
   :documentation "For each type of colour, how many channels it has, and what depths. 0 and 4 are
 grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is alpha.")
 
-(defun check-encoding (tape compression filter interlace)
+(defun check-encoding (input compression filter interlace)
   "Signal UNUSABLE-FLOOR if this encoding of pixels is not supported."
   (when (= 1 interlace)
-    (reject-png tape "the image is interlaced (Adam7), which is not read here"))
+    (reject-png input "the image is interlaced (Adam7), which is not read here"))
   (unless (= 0 compression filter interlace)
-    (reject-damaged tape "compression, filter and interlace, ~D, ~D and ~D, are none that PNG has"
+    (reject-damaged input "compression, filter and interlace, ~D, ~D and ~D, do not exist in PNG"
                     compression filter interlace)))
 
-(defun png-of-head (tape octets limit)
+(defun png-of-head (input octets limit)
   "Return a PNG by OCTETS, the content of IHDR, of at most LIMIT pixels."
   (let ((width (number-at octets 0)) (height (number-at octets 4)))
-    (check-pixels tape width height limit)
+    (check-pixels input width height limit)
     (destructuring-bind (depth colour . encoding) (coerce (subseq octets 8) 'list)
-      (apply #'check-encoding tape encoding)
+      (apply #'check-encoding input encoding)
       (destructuring-bind (&optional channels &rest depths) (rest (assoc colour +png-colours+))
         (unless (member depth depths)
-          (reject-damaged tape "there are no PNG images of colour type ~D with ~D bits"
+          (reject-damaged input "there are no PNG images of colour type ~D with ~D bits"
                           colour depth))
-        (make-png :tape tape :width width :height height :depth depth :channels channels
+        (make-png :input input :width width :height height :depth depth :channels channels
                   :palette-p (= 3 colour))))))
 
-(defun read-head (tape limit)
-  "Return a PNG by the first chunk of TAPE, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (multiple-value-bind (name start end) (next-chunk tape)
+(defun read-head (input limit)
+  "Return a PNG by the first chunk of INPUT, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (multiple-value-bind (name start end) (next-chunk input)
     (unless (and (string= "IHDR" name) (= 13 (- end start)))
-      (reject-damaged tape "its first chunk is ~A with ~D bytes, not IHDR with 13"
+      (reject-damaged input "its first chunk is ~A with ~D bytes, not IHDR with 13"
                       name (- end start)))
-    (png-of-head tape (subseq (tape-octets tape) start end) limit)))
+    (png-of-head input (subseq (input-octets input) start end) limit)))
 
 ;;; The other chunks.
 
 (defun check-palette (png content)
   (unless (and (null (png-palette png)) (zerop (mod (length content) 3))
                (<= 1 (floor (length content) 3) 256))
-    (reject-damaged (png-tape png) "a palette has 3 to 768 bytes, 3 for each colour, and this has ~
-                                    ~D, or is the second one" (length content))))
+    (reject-damaged (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this has ~
+                                     ~D, or is the second one" (length content))))
 
 (defun check-transparency (png content)
   (when (= 3 (png-channels png))
-    (reject-png (png-tape png) "one of the image's colours stands for transparent (tRNS), which is ~
-                                read here of grey and of palettes only"))
+    (reject-png (png-input png) "one of the image's colours stands for transparent (tRNS), which ~
+                                 is read here of grey and of palettes only"))
   (unless (or (png-palette-p png) (= 2 (length content)))
-    (reject-damaged (png-tape png) "the chunk tRNS has ~D bytes, not 2" (length content))))
+    (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
 (defun keep-chunk (png name content)
   "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown but needed."
@@ -149,8 +149,8 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
          (check-transparency png content)
          (setf (png-transparency png) content))
         ((and (upper-case-p (char name 0)) (string/= "PLTE" name))
-         (reject-png (png-tape png) "the image has a chunk ~A, which is not known here or out of ~
-                                     place" name))))
+         (reject-png (png-input png) "the image has a chunk ~A, which is not known here or out of ~
+                                      place" name))))
 
 (defun join-pieces (octets pieces)
   "Return the octets of OCTETS in PIECES, conses of start and end, the last one first."
@@ -161,16 +161,16 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
              (replace joined octets :start1 place :start2 start :end2 end))
     joined))
 
-(defun read-chunks (tape limit)
-  "Return the PNG that TAPE holds, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (setf (tape-position tape) 8)
-  (let ((png (read-head tape limit)) (octets (tape-octets tape)) (pieces '()))
+(defun read-chunks (input limit)
+  "Return the PNG that INPUT holds, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  (setf (input-position input) 8)
+  (let ((png (read-head input limit)) (octets (input-octets input)) (pieces '()))
     (loop
-      (multiple-value-bind (name start end) (next-chunk tape)
+      (multiple-value-bind (name start end) (next-chunk input)
         (cond ((string= "IDAT" name) (push (cons start end) pieces))
               ((string= "IEND" name) (return))
               (t (keep-chunk png name (subseq octets start end))))))
     (when (and (png-palette-p png) (null (png-palette png)))
-      (reject-damaged tape "its palette, PLTE, is missing"))
+      (reject-damaged input "its palette, PLTE, is missing"))
     (setf (png-pixels png) (join-pieces octets pieces))
     png))

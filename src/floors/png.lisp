@@ -77,24 +77,24 @@ the octets to the left of it, in ABOVE, and to the left of that."
   "Signal UNUSABLE-FLOOR if the compressed data of PNG cannot give NEEDED octets."
   ;; From one octet zlib makes 1032 at most.
   (when (< (* 1032 (length (png-pixels png))) needed)
-    (reject-damaged (png-tape png) "its pixels take ~D bytes, and ~D bytes of compressed data are ~
-                                    too few for that" needed (length (png-pixels png)))))
+    (reject-damaged (png-input png) "its pixels take ~D bytes, and ~D bytes of compressed data are ~
+                                     too few for that" needed (length (png-pixels png)))))
 
 (defun fill-with-rows (png inflater buffer size)
   "Put the next SIZE octets that INFLATER, of PNG, decompresses into BUFFER."
   (let ((made (inflate-into buffer size inflater)))
     (cond ((null made)
-           (reject-png (png-tape png) "the image is damaged, or compressed in a way that is not ~
-                                       known here: its pixels cannot be decompressed"))
+           (reject-png (png-input png) "the image is damaged, or compressed in a way that is not ~
+                                        known here: its pixels cannot be decompressed"))
           ((< made size)
-           (reject-damaged (png-tape png) "its pixels end before the last row")))))
+           (reject-damaged (png-input png) "its pixels end before the last row")))))
 
 (defun check-all-inflated (png inflater)
   "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends behind the last row."
   (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
-    (reject-damaged (png-tape png) "its pixels go on behind the last row"))
+    (reject-damaged (png-input png) "its pixels go on behind the last row"))
   (unless (ignore-errors (chipz:finish-dstate (inflater-state inflater)))
-    (reject-damaged (png-tape png) "the check sum of its pixels is missing or wrong")))
+    (reject-damaged (png-input png) "the check sum of its pixels is missing or wrong")))
 
 (defun call-with-row (function png buffer start y row above)
   "Copy the row of PNG at START of BUFFER into ROW, unfiltered, and call FUNCTION with Y and ROW."
@@ -102,7 +102,7 @@ the octets to the left of it, in ABOVE, and to the left of that."
   (let ((step (png-step png)))
     (replace row buffer :start1 step :start2 (1+ start))
     (unless (undo-filter (aref buffer start) row above step)
-      (reject-damaged (png-tape png) "row ~D has the filter ~D, and there are 0 to 4"
+      (reject-damaged (png-input png) "row ~D has the filter ~D, and there are 0 to 4"
                       (1+ y) (aref buffer start)))
     (funcall function y row)))
 
@@ -206,7 +206,7 @@ behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 (defun check-places (png samples)
   "Signal UNUSABLE-FLOOR if a pixel of PNG has a colour that its palette lacks."
   (when (and (png-palette-p png) (find +no-colour+ (the samples samples)))
-    (reject-damaged (png-tape png) "a pixel has a colour that its palette, of ~D, lacks"
+    (reject-damaged (png-input png) "a pixel has a colour that its palette, of ~D, lacks"
                     (floor (length (png-palette png)) 3))))
 
 ;;; Several channels. Of two octets the high one is the first.
@@ -239,10 +239,10 @@ behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
         (lambda (y row)
           (shade-row-by-sums row channels (floor depth 8) step samples (* y width) width rule)))))
 
-(defun read-png (tape limit mode)
-  "Return the PNG image in TAPE, of at most LIMIT pixels, in grey. MODE says how alpha counts.
+(defun read-png (input limit mode)
+  "Return the PNG image in INPUT, of at most LIMIT pixels, in grey. MODE says how alpha counts.
 Signals UNUSABLE-FLOOR."
-  (let* ((png (read-chunks tape limit)) (rule (alpha-rule png mode)))
+  (let* ((png (read-chunks input limit)) (rule (alpha-rule png mode)))
     (check-pixels-there png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))
                                :element-type '(unsigned-byte 16))))
@@ -253,8 +253,8 @@ Signals UNUSABLE-FLOOR."
 (defun read-image (file limit mode)
   "Return the image in FILE, of at most LIMIT pixels, for MODE: PGM or PNG, by its first bytes.
 Signals UNUSABLE-FLOOR."
-  (let ((tape (make-tape file (read-octets file limit))))
-    (cond ((png-begins-p tape) (read-png tape limit mode))
-          ((pgm-kind tape) (read-pgm tape limit))
-          (t (reject-image tape "the image is no PGM file, P2 or P5, and no PNG file by its first ~
-                                 bytes; save it as one, as with: ~A" *conversion*)))))
+  (let ((input (make-input file (read-octets file limit))))
+    (cond ((png-begins-p input) (read-png input limit mode))
+          ((pgm-kind input) (read-pgm input limit))
+          (t (reject-image input "the image is no PGM file, P2 or P5, and no PNG file by its first ~
+                                  bytes; save it as one, as with: ~A" *conversion*)))))

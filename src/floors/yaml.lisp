@@ -205,7 +205,7 @@ quotes, or behind a backslash in double ones, does not close them."
 (defun add-item (file line text entry)
   "Append the item in TEXT, on LINE of FILE, to the list of ENTRY above it."
   (unless (and entry (or (consp (entry-value entry)) (string= "" (entry-value entry))))
-    (reject-floor file line "an item of a list stands below no key; write the list behind its key, ~
+    (reject-floor file line "an item of a list has no key above it; write the list behind its key, ~
                              as in origin: [0.0, 0.0, 0.0]"))
   (setf (entry-value entry)
         (append (and (consp (entry-value entry)) (entry-value entry))
