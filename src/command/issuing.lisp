@@ -55,7 +55,7 @@
                          (lambda-list-of continuation)
                          told)))))
 
-;;; One simulation inside of another.
+;;; One simulation inside another.
 
 (defun asked-elsewhere (world)
   "Return the key for requests to WORLD in this tick from a simulation of another world."

@@ -89,7 +89,7 @@ no longer changes (manual 3.2.2)."
 (define-operator 'make-odometer '(robot name) #'make-odometer)
 
 (defun reset-by-program (odometer part)
-  "Reset PART of ODOMETER for a program; return ODOMETER. The journal omits destroyed odometers."
+  "Reset PART of ODOMETER for a program; return ODOMETER. If it was destroyed, no journal has this."
   (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
     (if (eq odometer (robot-odometer robot name))
         (changing ((robot-world robot) reset-odometer robot name part)

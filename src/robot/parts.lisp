@@ -91,7 +91,7 @@
 
 ;; Parts of another run are not copied.
 (defun copy-of-robots (object robot copier)
-  "Return what COPIER has for OBJECT, which is ROBOT or belongs to it."
+  "Return the copy by COPIER of OBJECT, which is ROBOT or belongs to it."
   (if (eq (robot-world robot) (copier-option copier :world))
       (copy-slots object copier)
       object))

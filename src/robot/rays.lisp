@@ -100,8 +100,9 @@ before BODY runs for the direction before, so that the processor divides while B
 (declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
   "Return how the index changes where a ray crosses borders of one axis, the distance of the first
-crossing, and the largest number of crossings. PER is the distance from border to border, BACK is
-true towards smaller coordinates; BEHIND and AHEAD are the distances to the next borders."
+crossing, and the largest number of crossings. PER is the distance from border to border; BACK is
+true towards smaller coordinates. BEHIND and AHEAD are the distances to the next borders,
+LEFT-BEHIND and LEFT-AHEAD the numbers of borders."
   (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
   (if back
       (values (- stride) (* per behind) left-behind)

@@ -22,8 +22,8 @@
        (min coordinate (* (float (1+ cell) 1d0) (- 1d0 double-float-negative-epsilon)))))
 
 (define-constant +contact-gap+ 1d-6
-  :documentation "How far from what blocks it a robot stops, in metres. No farther than this from a
-corner, along either axis, a line passes through it.")
+  :documentation "How far from an obstacle a robot stops, in metres. A line no farther than this
+from a corner, along both axes, passes through it.")
 
 (define-constant +blocking+ (logior +wall+ +obsmove+)
   :documentation "The flags of a cell that keeps robots out.")
@@ -109,7 +109,7 @@ there and passes."
 ;;; next to a robot that stands at the cell. Where a robot has arrived is always within its reach.
 
 (define-constant +contact+ (* 1.001d0 +contact-gap+)
-  :documentation "No farther than this from a cell, in metres, a robot stands at it: the gap, and
+  :documentation "A robot no farther than this from a cell, in metres, stands at it: the gap, and
 what rounding adds to it.")
 (define-constant +farthest-reach+ 1.001d0
   :documentation "No robot reaches farther than this along an axis, in metres.")

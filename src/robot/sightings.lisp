@@ -24,7 +24,7 @@
 ;;; Things have a direction from the robot unless they are exactly where it is.
 
 (defconstant +no-distance+ 1d-9
-  "At no more than this, in metres, things have no direction.")
+  "Things no farther than this, in metres, have no direction.")
 
 (defun distance-to (robot x y)
   "Return the distance from ROBOT to (X,Y), in metres."
@@ -103,7 +103,7 @@ some thing in WORLD, a different one for each."
 ;;; Designators.
 
 (defun unchanged-p (sighting camera)
-  "True if what SIGHTING is of is still where CAMERA saw it, and the camera with it."
+  "True if CAMERA and what SIGHTING denotes are both still where they were."
   (let ((thing (sighting-denotation sighting))
         (robot (camera-robot camera)) (x (sighting-x sighting)) (y (sighting-y sighting)))
     (and (or (not (thing-p thing))

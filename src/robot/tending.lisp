@@ -163,7 +163,7 @@ not count, as the approach reports it (reading 112)."
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose-track (camera designator dice)
-  "Point CAMERA at DESIGNATOR, unless chance makes it lose that (readings 220, 235)."
+  "Point CAMERA at DESIGNATOR, unless by chance it loses the track (readings 220, 235)."
   (if (and (not no-sensor-error*)
            (chance (per-tick-probability (if (designator-denotation designator)
                                              prob-lose-track*
