@@ -80,12 +80,12 @@ that breaks is stopped there until the semaphore is signalled."
      (live (simulation)
        (driver:begin-plan (rpl:interp-lambda () (break "look")))
        (let ((interface driver::*interface*))
-         (awaiting (driver::asks-p interface))
+         (awaiting (driver::in-debugger-p interface))
          (let ((text (trouble-of #'driver:print-plans)))
            (is-true (has-words-p text "stopped in a debugger" "plans of" "print-plans t t")
                     "~A" text))
          (base:signal-semaphore answered)
-         (awaiting (not (driver::asks-p interface))))))))
+         (awaiting (not (driver::in-debugger-p interface))))))))
 
 ;;; A live run that is started inside of a headless one.
 

@@ -39,7 +39,7 @@
 ;;; Running. A frame of one of these remembers a goal-run.
 
 (defstruct (goal-run (:constructor make-goal-run (operator goal)) (:copier nil))
-  "That OPERATOR is being done for GOAL, an instance such as (on a b). VALUE is what came of it."
+  "A run of OPERATOR for GOAL, an instance such as (on a b). VALUE is its result."
   (operator nil :type symbol :read-only t)
   (goal nil :read-only t)
   (value nil))
@@ -68,8 +68,8 @@
                      :known (mapcar #'goal-pattern (goals-of (goal-run-operator goal-run))))))))
 
 (defun ask-belief (frame otherwise)
-  "Begin the plan that says whether the goal of FRAME is believed; without one, let OTHERWISE be
-what it says. Return what a step returns."
+  "Begin the plan that finds whether the goal of FRAME is believed; without one, OTHERWISE is its
+value. Return what a step returns."
   (multiple-value-bind (goal values) (choose-goal 'belief (goal-run-goal (frame-data frame)))
     (if goal
         (enter-goal goal values frame)

@@ -58,7 +58,7 @@
   (check-argument at-location attempts (whole-p attempts 0) "an integer from 0 to 1e9")
   attempts)
 
-(defun given-p (key form)
+(defun option-given-p (key form)
   "True if FORM, an AT-LOCATION, has KEY, even with NIL."
   (and (get-properties (rest (second form)) (list key)) t))
 
@@ -98,7 +98,7 @@ as GO fails. Several plans of one robot: those whose place fits run without driv
 order of arrival, until no plan is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
 process modules.)"
   (:code (progn
-           (unless (and (given-p :there form) (given-p :go form))
-             (reject-clause (author) form "(at-location (place :there test :go form) form...)"))
+           (unless (and (option-given-p :there form) (option-given-p :go form))
+             (reject-clause (text-title) form "(at-location (place :there test :go form) form...)"))
            (plan-code (note-expansion (at-location-text place there go (or attempts 10) body) form)
                       scope))))

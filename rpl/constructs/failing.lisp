@@ -49,10 +49,10 @@
 (defun check-clause (clause form scope)
   (unless (and (typep clause '(cons t (cons list t))) (proper-list-p clause)
                (typep (second clause) '(or null (cons t null))))
-    (reject-clause (author) (if (consp clause) clause form)
+    (reject-clause (text-title) (if (consp clause) clause form)
                    "clauses such as (type (variable) form...), with one variable or none"))
   (unless (failure-specifier-p (first clause))
-    (reject-clause (author) clause
+    (reject-clause (text-title) clause
                    (format nil "~A, or (or type...): ~(~S~) matches no failure"
                            "t, the class of a failure or a condition type first"
                            (abridged (first clause)))))
@@ -98,10 +98,10 @@ BODY again. At the end of the handler the failure propagates. Return all values 
   (:code
    (progn
      (unless (proper-list-p clauses)
-       (reject-clause (author) form "a list of clauses such as (type (variable) form...)"))
+       (reject-clause (text-title) form "a list of clauses such as (type (variable) form...)"))
      (when (and clauses (atom (first clauses)))
-       (reject-clause (author) clauses (format nil "a list of clauses: write (~(~S~))"
-                                               (abridged clauses))))
+       (reject-clause (text-title) clauses (format nil "a list of clauses: write (~(~S~))"
+                                                   (abridged clauses))))
      (dolist (clause clauses)
        (check-clause clause form scope)
        (dolist (code (ensure-list (first clause))) (doubt-code code body form)))
@@ -144,7 +144,7 @@ BODY again. At the end of the handler the failure propagates. Return all values 
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
-       (reject-clause (author) form "retry only in a handler of handle-failure"))))
+       (reject-clause (text-title) form "retry only in a handler of handle-failure"))))
 
 ;;; A counter is a variable; another one, that only macros know, holds what it started with.
 
@@ -187,7 +187,7 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
 
 (addition reset-counter)
 (defmacro reset-counter (counter &environment environment)
-  "Let COUNTER, of WITH-RETRY-COUNTERS, be what it was at first. Return that. (CRAM's.)"
+  "Set COUNTER, of WITH-RETRY-COUNTERS, to its first value, and return that. (CRAM's.)"
   (check-counter "reset-counter" counter environment)
   `(setq ,counter ,(start-variable counter)))
 
@@ -206,7 +206,7 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
   (shiftf (frame-data frame) nil))
 
 (defun after-cleanup (first signal task)
-  "SIGNAL ended a cleanup that FIRST was the reason for: return what is to go on."
+  "Return the signal to go on with after SIGNAL has ended a cleanup that FIRST had caused."
   (let ((failed (typep signal 'plan-failure)))
     (when (or (eq first :evaporate) (and failed (not (completion-p first))))
       (when failed (note-suppressed first signal task))

@@ -169,4 +169,4 @@ pattern that differs only in its variables replaces the definition. Signals MALF
 have here.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
              (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
-             (reject-clause (author) form "succeed-with only in the body of a def-goal"))))
+             (reject-clause (text-title) form "succeed-with only in the body of a def-goal"))))

@@ -78,7 +78,7 @@ does not take these."
 
 (defun check-in-clause (form environment)
   (unless (local-variable-p +use-variable+ environment)
-    (reject-clause (author) form
+    (reject-clause (text-title) form
                    (format nil "~(~A~) only in a clause of define-policy or make-policy, where it ~
                                 remembers, and outside of any other interp-lambda there"
                            (first form)))))
@@ -110,7 +110,7 @@ long as the policy is in force. Return VALUE (CRAM's)."
 
 (defun clause-code (kind parameters clauses environment)
   "Return code for the plan of the clause of KIND in CLAUSES; NIL if there is none. There always is
-an :INIT, which sees whether the arguments are right."
+an :INIT, which checks the arguments."
   (let ((clause (or (assoc kind clauses) (and (eq kind :init) '(:init t)))))
     (and clause
          (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
@@ -202,10 +202,10 @@ the variables around it. (CRAM's, where it takes a name.)"
 
 (defun policies-text (policies body form)
   (unless (proper-list-p policies)
-    (reject-clause (author) form "(with-policies ((policy (argument...))...) form...)"))
+    (reject-clause (text-title) form "(with-policies ((policy (argument...))...) form...)"))
   (dolist (policy policies)
     (unless (typep policy '(cons t (cons list null)))
-      (reject-clause (author) policy "(policy (argument...)) for each policy")))
+      (reject-clause (text-title) policy "(policy (argument...)) for each policy")))
   (loop with text = `(seq ,@body)
         for (policy arguments) in (reverse policies)
         do (setf text (policed-text policy arguments (list text)))
@@ -215,7 +215,7 @@ the variables around it. (CRAM's, where it takes a name.)"
   (when (and (consp arguments)
              (name-without-quote-p (first arguments) scope)
              (fboundp (first arguments)))
-    (reject-clause (author) form
+    (reject-clause (text-title) form
                    (format nil "the list of the policy's arguments before the body, () if it takes ~
                                 none: (with-named-policy ~(~S~) () ~(~A~) ...)"
                            (abridged (second form)) (form-text arguments 40)))))

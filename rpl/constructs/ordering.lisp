@@ -128,13 +128,13 @@ for that."
               (and (symbolp name)
                    (not (constantp name))
                    (known-variable-p name (scope-environment scope))))
-    (reject-clause (author) form
+    (reject-clause (text-title) form
                    (format nil "in :order tags that are in scope, not ~(~S~)" (abridged name)))))
 
 (defun read-orders (steps constraints form scope)
   (loop for constraint in (constraint-list constraints)
         do (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
-             (reject-clause (author) constraint "(:order earlier later)"))
+             (reject-clause (text-title) constraint "(:order earlier later)"))
            (check-visible form (second constraint) steps scope)
            (check-visible form (third constraint) steps scope)
         collect (list (second constraint) (third constraint))))
@@ -176,7 +176,7 @@ for that."
 (defun check-orders (orders steps form)
   (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
                                  (nested-tags steps)))
-    (reject-clause (author) form "constraints without a circle: some steps could never start")))
+    (reject-clause (text-title) form "constraints without a circle: some steps could never start")))
 
 (defun orders-lambda (steps constraints form scope)
   (let ((orders (read-orders steps constraints form scope)))

@@ -28,7 +28,7 @@
   "Operators in which (return value) gives them the value.")
 
 (defun value-lost-in (policy)
-  "Return the (return value) that ends POLICY, a WHENEVER whose value nobody gets; or NIL."
+  "Return the (return value) that ends POLICY, a WHENEVER whose value is lost; or NIL."
   (and (operator-in-p policy '("WHENEVER"))
        (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
                         (cddr policy)))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun checked-target (target task operator what)
-  "Return TARGET, for OPERATOR of TASK, WHAT in words. Signals WRONG-ARGUMENT and MISUSE."
+  "Return TARGET, to which TASK does OPERATOR, WHAT in words. Signals WRONG-ARGUMENT and MISUSE."
   (unless (task-p target)
     (reject-argument operator 'target target "a task, such as the name of a :tag"))
   (check-together task target)
@@ -44,7 +44,7 @@ of TASK is :blocked meanwhile (CRAM's, of 2009)."
 
 (defun do-reaction (reaction task frame)
   "Run REACTION, a leaf, with the task variables of TASK at FRAME. Its errors become messages."
-  (let ((*speaking-task* task)
+  (let ((*calling-task* task)
         (*asker* task)
         (innermost (shiftf (task-frame task) frame)))
     (unwind-protect

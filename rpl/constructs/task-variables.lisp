@@ -30,7 +30,7 @@ does is ours)."
   (dolist (binding bindings bindings)
     (unless (and (typep binding '(cons symbol (cons t null)))
                  (task-variable-p (first binding) (scope-environment scope)))
-      (reject-clause (author) form
+      (reject-clause (text-title) form
                      "bindings (name value) of variables defined by define-task-variable"))))
 
 (define-construct with-task-variables (bindings &body body)

@@ -48,11 +48,11 @@ Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
    (when (and memory (in-state-p thinking)) (stand-no-longer (task-runner task)))
    nil))
 
-;;; What has a price. Its steps are not charged for, and its end, well or not, comes when it is due.
+;;; A body with a price. Its steps are not charged for, and its end comes when the price is paid.
 
 (defstruct (thought (:constructor make-thought (ticks alone start)) (:copier nil))
   "What a frame of WITH-CHARGE remembers: that it takes TICKS from the tick START on, perhaps ALONE,
-and what its body has come to: a RESULT, or a SIGNAL."
+and how its body has ended: with a RESULT, or a SIGNAL."
   (ticks 0 :type real :read-only t)
   (alone nil :read-only t)
   (start 0 :type real :read-only t)
@@ -92,7 +92,7 @@ at once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
           (body node (body-code body scope)))
   (:steps
    (begin
-    ;; A price that is none fails before there is a thought.
+    ;; An invalid price fails before there is a thought.
     (setf memory (begin-thought task (funcall span environment) (funcall alone environment)))
     (next inside)
     (start-priced-branch body task environment))

@@ -167,7 +167,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
            (> (line-level line) (line-level other)))))
 
 ;;; The lines of a valve are a treap: a tree in which each line has more weight than those below it.
-;;; Weights are as good as drawn, so that it is hardly ever deep.
+;;; Weights are pseudo-random, so that it is hardly ever deep.
 
 (defun split-lines (tree line)
   "Return a tree of the lines of TREE that go before LINE, and one of the others."
@@ -265,7 +265,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   "Return CLAIMS without CLAIM, which is mostly the newest of them."
   (if (eq claim (first claims)) (rest claims) (remove claim claims)))
 
-(defun give-back (claim)
+(defun release-valves (claim)
   (leave-queues claim)
   (let ((valves (shiftf (claim-taken claim) '())))
     (dolist (valve valves)

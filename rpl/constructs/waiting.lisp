@@ -31,7 +31,8 @@
 (defun check-unit (unit form)
   (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))
              (not (member unit '(:ticks :seconds))))
-    (reject-clause (author) form (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
+    (reject-clause (text-title) form
+                   (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
 (defun span-lambda (operator span unit form scope)
   "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, in ticks."
@@ -113,7 +114,7 @@ TIMEOUT is a number up to 1e15."
                +parked+))))
    (waiting (values (frame-up frame) value))))
 
-;;;; Reacting to whatever happens
+;;;; Reacting to events
 
 (defun count-event (watcher value trouble)
   "Let the task of WATCHER run the body of its WHENEVER, or count an event to be answered later."
@@ -167,7 +168,8 @@ SCOPE. Signals MALFORMED-DEFINITION."
         ((and (typep condition '(cons t (cons (eql :missed) (cons t null))))
               (typep (third condition) '(or (member :once :all) (and symbol (not keyword)) cons)))
          (list (first condition) (third condition)))
-        (t (reject-clause (author) condition "(fluent :missed :once) or (fluent :missed :all)"))))
+        (t (reject-clause (text-title) condition
+                          "(fluent :missed :once) or (fluent :missed :all)"))))
 
 (define-construct whenever (fluent &body body)
   "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if it
@@ -200,7 +202,7 @@ each event."
      (when (watcher-p source) (unwatch source)))
    nil))
 
-;;;; Waiting for what need be no fluent
+;;;; Waiting for any condition
 
 (defun wait-until-text (condition)
   "Return plan text that waits until CONDITION, a form, is true, and has its value."

@@ -33,7 +33,7 @@
     (when (and (name-without-quote-p valve scope) (fboundp valve))
       (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
                          ((~:*~(~A~))) ...)"
-                        (author) valve)))
+                        (text-title) valve)))
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)
@@ -59,17 +59,17 @@ If tasks wait for each other's valves, an error message says so (manual D; prior
     (next inside)
     (enter body environment frame))
    (inside
-    (give-back (shiftf memory nil))
+    (release-valves (shiftf memory nil))
     (values (frame-up frame) value)))
   (:unwind
-   (when memory (give-back (shiftf memory nil)))
+   (when memory (release-valves (shiftf memory nil)))
    nil))
 
 (defun split-valves (valves)
   "Return those of VALVES that come before :priority, and the form after that."
   (let ((rest (member-if #'keywordp valves)))
     (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
-      (reject-clause (author) valves "(valve... [:priority number])"))
+      (reject-clause (text-title) valves "(valve... [:priority number])"))
     (values (ldiff valves rest) (second rest))))
 
 (define-construct with-valves ((&rest valves) &body body)

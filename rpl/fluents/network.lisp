@@ -289,7 +289,7 @@ each other's values.")
           (derived-queued fluent) nil
           (derived-successor fluent) nil)))
 
-(defun acquire-in-any-case (fluent)
+(defun acquire-despite-abort (fluent)
   "Note one more user of FLUENT. If its function aborts, that is an error of FLUENT."
   (restart-case (acquire fluent)
     (abort ()
@@ -310,5 +310,5 @@ each other's values.")
     (dolist (watcher all)
       (setf (watcher-previous watcher) nil
             (watcher-next watcher) nil)
-      (acquire-in-any-case (watcher-fluent watcher))
+      (acquire-despite-abort (watcher-fluent watcher))
       (join-watchers watcher))))

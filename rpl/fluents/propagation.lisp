@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(apply-settings give-back-all))
+(export '(apply-settings copy-back-values))
 
 ;;; A change notifies first the watchers of the fluent that was set, in order of arrival, and then
 ;;; the dependent fluents in order of height. So each is computed at most once, and never from a
@@ -61,7 +61,7 @@ views that are true for the instant at which that change happened.")
         (unless successor (setf (svref (backlog-tails backlog) height) nil))
         (values derived (shiftf (derived-queued derived) nil))))))
 
-(defun announce (fluent)
+(defun notify-watchers (fluent)
   "Notify the watchers of FLUENT, changed or pulsed just now, if it is true or in error."
   (let ((value (fluent-now fluent))
         (trouble (and (derived-p fluent) (derived-trouble fluent))))
@@ -86,10 +86,10 @@ reports what has happened."
          (changed (and (eq t how) (recompute derived))))
     (cond (changed
            (unless (and (eq :back kind) true-p (null (derived-trouble derived)))
-             (announce derived))
+             (notify-watchers derived))
            t)
           ((and (eq :pulse kind) (not (view-p derived)))
-           (announce derived)
+           (notify-watchers derived)
            :pulsed))))
 
 (defun spread-by-height (backlog &optional (kind :change))
@@ -138,7 +138,7 @@ reports what has happened."
 
 (defun spread (fluent kind)
   "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse: see RENEW."
-  (announce fluent)
+  (notify-watchers fluent)
   (when (fluent-first-link fluent)
     (spread-to-dependents fluent kind)))
 
@@ -148,7 +148,7 @@ reports what has happened."
       (spread (first fluents) kind)
       (let ((backlog (backlog-now)))
         (spreading
-          (mapc #'announce fluents)
+          (mapc #'notify-watchers fluents)
           (dolist (fluent fluents) (enqueue-dependents fluent backlog))
           (spread-by-height backlog kind)))))
 
@@ -178,7 +178,7 @@ reports what has happened."
 
 ;;; A change for another runner is posted to that runner, or made at once while no thread has it.
 
-(defun elsewhere (fluent)
+(defun other-home (fluent)
   "Return the home in which FLUENT is to be changed, if this thread is not in it; else NIL."
   (let ((home (home-of fluent)))
     (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
@@ -193,7 +193,7 @@ reports what has happened."
     (note-change :set fluent value)
     (spread fluent :change)))
 
-(defun set-elsewhere (home fluent value)
+(defun set-in-home (home fluent value)
   "Set FLUENT, of HOME, to VALUE: now if no thread has HOME or serves it, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
@@ -210,14 +210,14 @@ plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
   (unless *runner* (note-outside-change *interface* #'set-value fluent value))
-  (let* ((fluent (here fluent)) (home (elsewhere fluent)))
+  (let* ((fluent (here fluent)) (home (other-home fluent)))
     (if home
-        (set-elsewhere home fluent value)
+        (set-in-home home fluent value)
         (set-now fluent value))
     ;; Another thread may have just begun to wait for it.
     (unless (or home *runner*)
-      (let ((home (elsewhere fluent)))
-        (when home (set-elsewhere home fluent value)))))
+      (let ((home (other-home fluent)))
+        (when home (set-in-home home fluent value)))))
   value)
 
 (defun (setf fluent-value) (value fluent)
@@ -253,7 +253,7 @@ it takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
   (unless *runner* (note-outside-change *interface* #'pulse fluent value))
-  (let* ((fluent (here fluent)) (home (elsewhere fluent)))
+  (let* ((fluent (here fluent)) (home (other-home fluent)))
     (cond (home (post home `((:pulse ,fluent ,value))))
           (t (before-change fluent)
              (incf (fluent-pulses fluent))
@@ -281,14 +281,14 @@ all together. So a task woken by the pulses sees the values that came with them 
 
 ;;; A run that was rewound continues in a fork. When that is over, its values are copied back.
 
-(defun give-back (fluent from)
+(defun copy-back-value (fluent from)
   "Set FLUENT, a base fluent, to the value of its twin in the realm FROM."
   (let ((value (fluent-now (entity-in fluent from))) (home (home-of fluent)))
     (cond ((eql value (fluent-now fluent)))
-          (home (set-elsewhere home fluent value))
+          (home (set-in-home home fluent value))
           (t (set-now fluent value)))))
 
-(defun give-back-all (from realm)
+(defun copy-back-values (from realm)
   "Set the base fluents of REALM to the values of their twins in FROM, a fork of it that is over."
   (let ((*realm* realm))
     (loop for each = from then (realm-parent each)
@@ -298,4 +298,4 @@ all together. So a task woken by the pulses sees the values that came with them 
                  (when (and (fluent-p first)
                             (eq realm (entity-realm first))
                             (not (derived-p first)))
-                   (give-back first from)))))))
+                   (copy-back-value first from)))))))

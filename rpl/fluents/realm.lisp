@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*realm* +root+ fork-realm leave-realm source-realm entity entity-like here fresh-twin
+(export '(*realm* +root+ fork-realm leave-realm source-realm entity twin-here here fresh-twin
           foreign-p next-token))
 
 ;;; Plans, vectors, networks and global variables refer to fluents. A fork needs states of its own
@@ -73,7 +73,7 @@ Can be set" :writable :export)
        (with-lock ((realm-lock realm))
          (gethash (entity-token entity) (realm-twins realm)))))
 
-(defun entity-like (entity)
+(defun twin-here (entity)
   "Return the twin here of ENTITY, of this run or of any fork with the same origin."
   (or (known-twin entity *realm*) (here entity)))
 
@@ -189,7 +189,7 @@ of REALM and of its other forks, unless REALM is no fork itself."
   (:documentation "True if REALM, a fork, may need a twin of ENTITY.")
   (:method (entity realm) (declare (ignore entity realm)) t))
 
-(defun serve-forks (entity)
+(defun make-fork-twins (entity)
   "Make the twins of ENTITY in the forks made since it changed last."
   (let ((realm (entity-realm entity)))
     (loop for (number . weak) in (realm-forks realm)
@@ -203,4 +203,4 @@ of REALM and of its other forks, unless REALM is no fork itself."
 (defun before-change (entity)
   "Make the twins of ENTITY that forks need, before its state changes. To be called each time."
   (when (< (entity-seen entity) (realm-count (entity-realm entity)))
-    (serve-forks entity)))
+    (make-fork-twins entity)))

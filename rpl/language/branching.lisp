@@ -45,12 +45,12 @@
   (cond
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
-    ;; What is wrong with the forms themselves comes first.
+    ;; Mistakes in the forms themselves are reported first.
     (t (prog1 (steps-code forms scope)
          (check-after-whenever forms)))))
 
 (defun binding-body-code (forms scope)
-  "Return code for FORMS, a body that may start with declarations; these are for the reader only."
+  "Return code for FORMS, a body that may start with declarations, which are ignored."
   (body-code (remove-if #'declaration-p forms) scope))
 
 (defun declaration-p (form)

@@ -9,25 +9,25 @@
 ;;; when all has been read that is compiled or loaded together, as Lisp does with its functions.
 ;;; Calls in Lisp code are checked by Lisp.
 
-(defun say-of-form (warn form control arguments)
+(defun warn-at-form (warn form control arguments)
   "Let WARN, a function, say of FORM, at its place, what is formatted from CONTROL and ARGUMENTS."
   (call-at-place form
                  (lambda ()
-                   (funcall warn "~A~@[ (~A)~]: ~A" (author) (clause-place form)
+                   (funcall warn "~A~@[ (~A)~]: ~A" (text-title) (clause-place form)
                             (let ((*print-case* :downcase) (*print-pretty* nil))
                               (apply #'format nil control arguments))))))
 
 (defun warn-of-form (form control &rest arguments)
-  (say-of-form #'warn-of-definition form control arguments))
+  (warn-at-form #'warn-of-definition form control arguments))
 
 (defun doubt-form (form control &rest arguments)
   "Warn of FORM as DOUBT-DEFINITION does."
-  (say-of-form #'doubt-definition form control arguments))
+  (warn-at-form #'doubt-definition form control arguments))
 
 (defun doubt-own-form (form control &rest arguments)
   "Do as DOUBT-FORM if FORM is of the plan's own text."
   (when (own-text-p form)
-    (say-of-form #'doubt-definition form control arguments)))
+    (warn-at-form #'doubt-definition form control arguments)))
 
 (defun known-operators (&optional (package *package*))
   "Return the names, longer than a letter, that calls in PACKAGE could be meant for."
@@ -50,7 +50,7 @@
       (warn-of-form form "~(~A~) takes ~A, not ~A."
                     (first form) (shape-text lambda-list) trouble))))
 
-(defun nisps-own (name)
+(defun nisp-namesake (name)
   "Return the construct or function of NISP that is called like NAME and is another, or NIL."
   (multiple-value-bind (symbol status)
       ;; To packages with local nicknames NISP may mean another.
@@ -64,7 +64,7 @@ construct of NISP, as WAIT-FOR is in packages that do not use NISP."
     (when (and *definition*
                (lisps-own-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
-               (nisps-own name))
+               (nisp-namesake name))
       (doubt-form form "~(~A~) is not that of plans; NISP has one. Write (in-package :ars-user), ~
                         or nisp:~:*~(~A~)." (symbol-name name)))))
 
@@ -80,7 +80,7 @@ function, and what to write; or NIL. Layers that know more names have methods.")
            (format nil "~(~S~). If the plan of another package is meant, write ~(~S~)."
                    name (procedure-name namesake)))
           (advice (format nil "~(~A~): ~A" name advice))
-          ((nisps-own name)
+          ((nisp-namesake name)
            (format nil "~(~S~); NISP has one. Write (in-package :ars-user), or use the package ~
                         NISP in yours." name)))))
 
@@ -93,7 +93,7 @@ function, and what to write; or NIL. Layers that know more names have methods.")
            (doubt-form form "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
                        name (nearest-operator name))))))
 
-(defun look-at-call (form)
+(defun check-known-call (form)
   "Warn if the call FORM is wrong, as far as is known now."
   (let ((name (first form)))
     (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
@@ -104,8 +104,8 @@ function, and what to write; or NIL. Layers that know more names have methods.")
              (when known (check-fit form arguments))))
           (t (warn-of-unknown form)))))
 
-(defun look-later (look form)
-  "Call LOOK with FORM when all has been read, as if at this place."
+(defun check-later (check form)
+  "Call CHECK with FORM when all has been read, as if at this place."
   (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
         (loaded *load-truename*))
     (at-end-of-unit form
@@ -113,16 +113,16 @@ function, and what to write; or NIL. Layers that know more names have methods.")
                       (when (package-name package) ; which may have been deleted
                         (let ((*definition* definition) (*package* package)
                               (*compile-file-truename* file) (*load-truename* loaded))
-                          (funcall look form)))))))
+                          (funcall check form)))))))
 
 (defun check-call (form scope)
-  "Warn if FORM, a call of a plan or of what is unknown, is not right, when all has been read."
+  "Warn, when all has been read, if FORM, a call of a plan or an unknown function, is wrong."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
         (check-fit form (fourth local))
-        (look-later #'look-at-call form))))
+        (check-later #'check-known-call form))))
 
-(defun look-at-lisp-call (form)
+(defun check-lisp-call (form)
   "Warn if FORM, a call in a Lisp form that a plan cannot wait inside, turns out to call a plan."
   (when (procedure-name-p (first form))
     (warn-of-form form "~(~A~) is a plan procedure, defined only later. It cannot be called inside ~
@@ -161,8 +161,8 @@ of LAMBDA-LIST's, or what stands there for such a list; or NIL."
                                     (slip-in-construct (cons (first form) part) expected))))))))
 
 (defun find-call (test forms)
-  "Return the first call in FORMS for which TEST is true, or NIL; not in what is called later, nor
-in a call of which TEST says :NOWHERE."
+  "Return the first call in FORMS for which TEST is true, or NIL. Code that is called later is not
+searched, nor a call for which TEST returns :NOWHERE."
   (loop for tail = forms then (rest tail)
         while (consp tail)
         thereis (let* ((form (first tail)) (answer (and (consp form) (funcall test form))))
@@ -219,5 +219,5 @@ in a call of which TEST says :NOWHERE."
   (let ((twice (loop for (variable . more) on variables
                      when (member variable more) return variable)))
     (when twice
-      (reject-clause (author) form
+      (reject-clause (text-title) form
                      (format nil "each variable once: ~(~A~) is bound twice" twice)))))

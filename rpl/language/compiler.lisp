@@ -40,7 +40,7 @@
           (t (keep-place `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
-  "Return what FORM, a call in the plan's own text, means; FORM itself if just what it says."
+  "Return what FORM, a call in the plan's own text, means; FORM itself if it is as in Lisp."
   (let ((name (or (plan-operator-name form) "")))
     (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
       (mapc #'check-condition (rest form)))
@@ -63,7 +63,7 @@
             (t form)))))
 
 (defun ccase-meaning (form)
-  "Return what FORM, a CCASE, means: what another key is stored into is not the fluent."
+  "Return what FORM, a CCASE, means: another key is stored into a variable, not into the fluent."
   (with-gensyms (key)
     `(let ((,key (operand-value ,(second form))))
        (,(first form) ,key ,@(cddr form)))))
@@ -103,9 +103,9 @@
         ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
         ((plan-in-leaf-p form) (values form t))
         ((construct-behind form) (reject-in-lisp (construct-behind form)))
-        (t (look-at-counting form environment)
-           (look-at-assignments form environment)
-           (look-at-arguments form environment)
+        (t (check-counting form environment)
+           (check-assignments form environment)
+           (check-fluent-arguments form environment)
            (doubt-namesake form)
            (let ((meaning (if (local-function-p (first form) environment)
                               form
@@ -177,7 +177,7 @@ SUSPENSION."
 
 (defun reject-shape (form lambda-list)
   (let ((*print-case* :downcase))
-    (reject-clause (author) form
+    (reject-clause (text-title) form
                    (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
                            (slip-in-construct form lambda-list)))))
 

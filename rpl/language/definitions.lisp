@@ -58,7 +58,7 @@ plans (manual D.2)."
   "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
 the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
-                                      (if *definition* (author) "interp-lambda")))
+                                      (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))
         (inside-p (and *own-conses* t)))
     (with-own-text (form)

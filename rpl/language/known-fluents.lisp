@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.language)
 
-;;; Most of Lisp's functions take values. Which arguments they can take the compiler knows, and of
-;;; some expressions that they are fluents: the robot's variables, what CREATE-FLUENT and the like
-;;; return, what lifted operators make of these, and variables that are bound to such, for good.
+;;; Most of Lisp's functions take values. The compiler knows which arguments they take, and that
+;;; some expressions are fluents: the robot's variables, what CREATE-FLUENT and the like return,
+;;; what lifted operators make of these, and variables that are bound to such and never assigned.
 
 (defvar *fluents-here* '() "The variables of the plan that are known to hold fluents.")
 
@@ -34,7 +34,7 @@
 (defun check-condition (form)
   (let ((kind (vector-variable form)))
     (when kind
-      (reject-clause (author) form
+      (reject-clause (text-title) form
                      (format nil "one of the fluents in that vector: (vref ~(~A~) ~A)"
                              form kind)))))
 
@@ -132,7 +132,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
        (known-fluent-p (second form) environment)
        (second form)))
 
-(defun look-at-counting (form environment)
+(defun check-counting (form environment)
   (when (and (operator-in-p form '("INCF" "DECF"))
              (typep form '(cons t (cons t (or null (cons t null)))))
              (known-fluent-p (second form) environment))
@@ -142,7 +142,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
                     `(set-value ,fluent (,(if (same-name-p name 'incf) '+ '-)
                                          (fluent-value ,fluent) ,by))))))
 
-(defun look-at-assignments (form environment)
+(defun check-assignments (form environment)
   "Warn if FORM, of the plan's text, puts a value in the place of a fluent."
   (when (operator-in-p form '("SETQ" "SETF"))
     (loop for (place value) on (rest form) by #'cddr
@@ -153,7 +153,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
                                    Write ~S."
                              (first form) value place `(set-value ,place ,value)))))
 
-(defun look-at-arguments (form environment)
+(defun check-fluent-arguments (form environment)
   "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it."
   (let ((name (first form)))
     (when (and (proper-list-p form)
@@ -169,7 +169,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
                                   Write (fluent-value ~:*~S) for its value now, or (fl-funcall ~
                                   #'~(~3:*~A~) ...) for a network."
                             name fluent found)))
-          (look-later #'look-at-lisp-call form)))))
+          (check-later #'check-lisp-call form)))))
 
 ;;; Variables.
 

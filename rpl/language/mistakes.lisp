@@ -95,7 +95,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
 (define-mistake pulse-tested :text (form)
   "FORM tests the value of a fluent that is only pulsed."
   (let ((pulse (if (and (operator-in-p form '("WAIT-UNTIL")) (proper-list-p form))
-                   ;; It waits for what gives a fluent.
+                   ;; A form whose value is a fluent is waited for.
                    (and (operator-in-p (second form) '("FLUENT-VALUE"))
                         (pulse-in-test (second form)))
                    (some #'pulse-in-test (append (tests-in-loop form) (tested-in form))))))
@@ -121,7 +121,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
          (format nil "~A is never true: a pulse takes no time, and no two come at once. To wait ~
                       for all of them write (par~{ (wait-for ~A)~})." join (joined-pulses join)))))
 
-;;; Commands return nothing, and those that are not the plan's own tell no fluent of their end.
+;;; Commands return nothing, and commands that are not those of plans set no fluent at their end.
 
 (defun values-used-in-plan (form)
   "Return the forms whose values FORM, a call in a plan's text, uses."
@@ -176,7 +176,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
        (format nil "~(~A~) does not handle failures of plans, as FAIL makes them. Write ~
                     (handle-failure ((class (e) ...)) body...)." (first form))))
 
-;;; What lets time pass, and not for plans.
+;;; Operators that let time pass, but not for plans.
 
 (defparameter *vain-waits*
   '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
@@ -198,7 +198,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                     ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
                     (t (format nil "(wait-time ~S), for so many ticks" time)))))))
 
-;;; In ordinary Lisp code, what is no plan, a fluent is an object like any other.
+;;; In Lisp code outside of plans a fluent is an object like any other.
 
 (defun read-fluent (form)
   "Return the variable of the fluent whose value FORM reads, or NIL."

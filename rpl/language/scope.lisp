@@ -19,7 +19,7 @@
   (dolist (variable variables)
     (let ((trouble (variable-trouble variable environment)))
       (when trouble
-        (reject-clause (author) (if form-p form variable)
+        (reject-clause (text-title) (if form-p form variable)
                        (format nil "the name of a lexical variable; ~(~S~) ~A"
                                (abridged variable) trouble))))))
 
@@ -63,7 +63,7 @@ robot: then they may be the first form of a body, with no list of parameters bef
                          if there are none."
                         definition name))))
 
-(defun plain-parameters (parameters form environment &optional (definition (author)))
+(defun plain-parameters (parameters form environment &optional (definition (text-title)))
   "Return the lambda list PARAMETERS, of FORM in DEFINITION, without types; or signal
 MALFORMED-DEFINITION."
   (flet ((reject (trouble)
@@ -83,19 +83,19 @@ MALFORMED-DEFINITION."
 (defun check-bindings (form environment)
   (let ((bindings (second form)))
     (unless (proper-list-p bindings)
-      (reject-clause (author) form "(variable value) for each variable, in a list that ends"))
-    (dolist (entry (untyped-bindings bindings (author)))
+      (reject-clause (text-title) form "(variable value) for each variable, in a list that ends"))
+    (dolist (entry (untyped-bindings bindings (text-title)))
       (unless (typep entry '(or symbol (cons t (or null (cons t null)))))
-        (reject-clause (author) (if (consp entry) entry form)
+        (reject-clause (text-title) (if (consp entry) entry form)
                        "(variable value) for each variable"))
       (check-variables (list (first (ensure-list (or entry '(nil))))) environment form))))
 
 (defun check-local-functions (form environment)
   (unless (proper-list-p (second form))
-    (reject-clause (author) form "(name parameters form...) for each, in a list that ends"))
+    (reject-clause (text-title) form "(name parameters form...) for each, in a list that ends"))
   (dolist (definition (second form))
     (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
-      (reject-clause (author) (if (consp definition) definition form)
+      (reject-clause (text-title) (if (consp definition) definition form)
                      "(name parameters form...) for each"))
     (plain-parameters (second definition) definition environment)))
 
@@ -141,7 +141,7 @@ nodes" :writable :export)
        ,inner)))
 
 (defun layered-scope (scope layer level &rest additions)
-  "Return SCOPE with LAYER, at LEVEL, as its innermost; macros get to see ADDITIONS."
+  "Return SCOPE with LAYER, at LEVEL, as its innermost; macros see ADDITIONS."
   (inner-scope scope
                :level level
                :layers (cons layer (scope-layers scope))
@@ -158,7 +158,7 @@ nodes" :writable :export)
 (defun check-lexical (variables environment)
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
-      (reject-clause (author) variable
+      (reject-clause (text-title) variable
                      "the name of a lexical variable; bind this one by with-task-variables"))))
 
 (defun variable-scope (scope variables)
@@ -170,7 +170,7 @@ nodes" :writable :export)
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause (author) special "the name of a lexical variable; this one is special"))
+      (reject-clause (text-title) special "the name of a lexical variable; this one is special"))
     (inner-scope (layered-scope scope (list :variables level variables) level
                                 :variable (remove-duplicates variables))
                  :fluents (set-difference (scope-fluents scope) variables))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(author misplaced misplaced-advice misplaced-container misplaced-form
+(export '(text-title misplaced misplaced-advice misplaced-container misplaced-form
           misplaced-suspension operator-in-p note-own-text note-expansion form-as-written
           in-plans-only))
 
@@ -13,7 +13,7 @@
 ;;; That holds for the plan's own text only: an AND that DOTIMES or PUSH expands into stays Lisp's.
 ;;; So the conses of the text are recorded, and those of expansions of macros that are not Lisp's.
 
-(defun author ()
+(defun text-title ()
   "Return the name, for messages, of the text that is being compiled."
   (if *definition*
       (let ((form (defining-form *definition*)))
@@ -83,14 +83,14 @@ that have the names of iterate's are left out."
     (call-at-place form
                    (lambda ()
                      (error 'misplaced-suspension
-                            :definition (author) :clause form
+                            :definition (text-title) :clause form
                             :expected (format nil "nothing that waits inside ~A. ~A"
                                               (operator-text container)
                                               (string-right-trim "." advice))
                             :form form :container container :advice advice
                             :place (clause-place form))))))
 
-;;; What a construct expands to, where a macro of the author's asks.
+;;; What a construct expands to within a macro of a user.
 
 (defun plan-called-in (form)
   "Return the name of the plan that FORM, met in ordinary Lisp code, is most likely to carry out, as
@@ -118,7 +118,7 @@ otherwise, as in ordinary Lisp code."
   (reject-in-lisp form))
 
 (defun construct-behind (form)
-  "Return the construct that FORM stands for, an author's macro's expansion; or NIL."
+  "Return the construct that FORM, in the expansion of a user's macro, stands for; or NIL."
   (typecase form
     ((cons (eql in-plans-only)) (second form))
     ((cons (eql construct-form)) (second (second form)))))

@@ -48,12 +48,13 @@ LET that binds a task variable; or if it binds what cannot be bound."
                      environment))
     (unless (or (not (operator-in-p form '("IF")))
                 (typep form '(cons t (cons t (cons t (or null (cons t null)))))))
-      (reject-clause (author) form "(if test then [else]): put several forms into (seq ...)"))))
+      (reject-clause (text-title) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun check-operator (form)
   "Signal MALFORMED-DEFINITION if FORM, of the plan's text, starts with no operator."
   (unless (or (typep (first form) '(cons (eql lambda))) (not (own-text-p form)))
-    (reject-clause (author) form "an operator first of all: data is written '(...) or (list ...)")))
+    (reject-clause (text-title) form
+                   "an operator first of all: data is written '(...) or (list ...)")))
 
 (defun call-suspends (form scope environment)
   "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."

@@ -48,7 +48,7 @@ BODY is the code of and of the node that it stands for: see Replacing below."
 
 (define-plan-form ":TAG" :must (name &rest body) (form scope)
   (unless (tag-name-p name)
-    (reject-clause (author) form "(:tag name form...), with a symbol as the name of the task"))
+    (reject-clause (text-title) form "(:tag name form...), with a symbol as the name of the task"))
   (destructuring-bind (&optional level index) (cdr (assoc name (scope-task-tags scope)))
     `(make-tagged :form ',(form-as-written form) :name ',name
                   :place ,(if level

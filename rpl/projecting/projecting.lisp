@@ -186,7 +186,7 @@ run cannot be forked (ours)."
           (branches simple-vector
                     (if branches
                         `(vector ,@(loop for branch in branches collect (plan-code branch scope)))
-                        (reject-clause (author) form "at least one branch"))))
+                        (reject-clause (text-title) form "at least one branch"))))
   (:steps
    (begin
     (next chosen)

@@ -123,7 +123,7 @@ run, the tick, and how many questions plans have asked before in that."
                      (loop for trial from 1 to (option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
-(defun tell-of-errors (question projections)
+(defun report-function-errors (question projections)
   "Say once in how many rollouts of PROJECTIONS functions of QUESTION failed, and why first."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
                            projections))
@@ -138,7 +138,7 @@ run, the tick, and how many questions plans have asked before in that."
   "Return a list of projections, one for each branch of QUESTION, or of the one that there is."
   (let ((projections (loop for branch below (max 1 (length (question-branches question)))
                            collect (project-branch question moment branch))))
-    (tell-of-errors question projections)
+    (report-function-errors question projections)
     projections))
 
 ;;; Questions of plans.

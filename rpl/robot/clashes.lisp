@@ -12,8 +12,8 @@
   "How often plans may take one part of the robot from each other before time has to pass.")
 
 (defconstant +takeover-warning-ticks+ 5
-  "After how many ticks plans that go on so are named again. Meanwhile each takeover may be a
-message, and the queue of these forgets the oldest.")
+  "After how many ticks plans that go on so are named again: messages of takeovers may have pushed
+the first warning out of the queue.")
 
 (defun takeover-count (interface resource)
   (let ((tick (simulation-tick (interface-simulation interface))))
@@ -29,8 +29,8 @@ message, and the queue of these forgets the oldest.")
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever,
-the same words whichever of them it is that takes it."
+  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever.
+The text does not depend on their order."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
@@ -56,7 +56,7 @@ the same words whichever of them it is that takes it."
   (let ((count (takeover-count interface resource))
         (runner (interface-runner interface))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
-    ;; Plans that take a part from one another make way in the end: that is no rush of one.
+    ;; Commands of plans that take a part from each other are no endless commands of one plan.
     (unless same-plan-p (setf (runner-note runner 'commands) nil))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
@@ -65,7 +65,7 @@ the same words whichever of them it is that takes it."
       (exhaust-reaction runner))))
 
 (defun waits-for-tick-p (interface)
-  "True if plans have taken a part from each other so often in this tick that another is to come."
+  "True if plans have taken over a part so often in this tick that they must wait for the next."
   (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
        (loop for (nil . count) in (interface-takeovers interface)
                thereis (< *most-takeovers* count))))
@@ -77,8 +77,8 @@ the same words whichever of them it is that takes it."
 with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
 (defun commands-in-tick (runner task)
-  "Return a cons of TASK, a top-level task of RUNNER, and how many commands it has given in this
-tick, and in those before that TAKEOVERS have cut short."
+  "Return a cons of TASK, a top-level task of RUNNER, and how many commands it has issued in this
+tick, and in ticks just before that takeovers have cut short."
   (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
     (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
       (setf note (setf (runner-note runner 'commands) (list tick))))
@@ -93,7 +93,7 @@ tick, and in those before that TAKEOVERS have cut short."
         (format nil "(vref ~A)" name)
         name)))
 
-(defun wait-text (outcome resource)
+(defun end-wait-text (outcome resource)
   "Return how a plan waits for the end of a command on RESOURCE, which OUTCOME tells of; or NIL."
   (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
     (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
@@ -108,7 +108,7 @@ has given as many as it may in this tick."
                                  a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
                                  parts of a plan take the robot from one another, let each own ~
                                  it: (with-valve ((rpl-robot-valve)) ...)"
-                            (command-name command) (wait-text outcome resource))))))
+                            (command-name command) (end-wait-text outcome resource))))))
 
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
@@ -151,7 +151,7 @@ has given as many as it may in this tick."
             (and (task-parent task) (task-label task))
             (task-label (task-top task)))))
 
-(defun gentle-p (action)
+(defun unobtrusive-p (action)
   "True if ACTION takes no time, stops the robot, or cleans up."
   (or (action-cleanup-p action)
       (command-instant-p (action-command action))
@@ -161,7 +161,7 @@ has given as many as it may in this tick."
   "Say once if the action NEWER of INTERFACE has interrupted OLDER, of a task beside its own."
   (when (and newer
              (clash-p (action-task older) (action-task newer))
-             (not (gentle-p newer))
+             (not (unobtrusive-p newer))
              ;; A task that gives way to a higher priority expects it.
              (notany (lambda (loser) (part-of-p (action-task older) loser))
                      (valve-losers (interface-valve interface))))
@@ -188,8 +188,8 @@ action NEWER, most likely by mistake; NIL if that may be meant, as where it reac
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))
-         (not (gentle-p older))
-         (not (gentle-p newer))
+         (not (unobtrusive-p older))
+         (not (unobtrusive-p newer))
          (not (reacting-to-events-p task nil))
          (or (= 0 ticks)
              (and (= 1 ticks)
@@ -209,4 +209,4 @@ action NEWER, most likely by mistake; NIL if that may be meant, as where it reac
                   out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
                  (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
                  (action-name newer) (action-resource older)
-                 (wait-text (action-outcome older) (action-resource older))))))
+                 (end-wait-text (action-outcome older) (action-resource older))))))

@@ -68,24 +68,24 @@
   (loop for outer = (part-location hand) then (outer-location outer)
         while outer count t))
 
-(defun went-into (hand destination)
+(defun note-entry (hand destination)
   (setf (hand-way-in hand)
         (cons destination (last (hand-way-in hand) (1- (depth-inside hand)))))
   destination)
 
-(defun came-out (hand)
-  "Return what HAND, which came out of something, was told to go into before that; NIL for nothing."
+(defun note-exit (hand)
+  "Return what HAND, which came out of something, had gone into before that; NIL for nothing."
   (first (setf (hand-way-in hand)
                (last (hand-way-in hand) (depth-inside hand)))))
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
-  (:when (null err) (:set hand-inside* (went-into resource destination)))
+  (:when (null err) (:set hand-inside* (note-entry resource destination)))
   (:error hand-error*)
   (:pulse hand-moved*))
 
 ;; As reading 180 says.
 (define-outcome (hand-remove) ()
-  (:when (null err) (:set hand-inside* (came-out resource)))
+  (:when (null err) (:set hand-inside* (note-exit resource)))
   (:error hand-error*)
   (:pulse hand-moved*))
 

@@ -161,7 +161,7 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 WRONG-ARGUMENT, and MISUSE without a robot."
   (find-part kind index 'rpl-robot-part))
 
-;;; What a grab ends is told to plans before the one that grabs goes on: it has nothing to wait for.
+;;; A grab sets the fluents of what it ends at once, as the plan that grabs has nothing to wait for.
 
 (public rpl-grab-robot)
 (defun rpl-grab-robot ()

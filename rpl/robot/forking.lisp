@@ -114,7 +114,7 @@ if that is NIL, the runner of plans."
            (if (consp name)
                (destructuring-bind (variable index) name
                  (if index (aref (symbol-value variable) index) (symbol-value variable)))
-               (entity-like name))
+               (twin-here name))
            value))
 
 (defun note-change (function fluent value)
@@ -145,7 +145,7 @@ if that is NIL, the runner of plans."
 (defun give-fluents-back (old new)
   "Set the fluents of OLD, a rewound run, to their values in NEW, its continuation, which is over."
   (let ((from (realm-of new)) (realm (realm-of old)))
-    (unless (or (null realm) (eq from realm)) (give-back-all from realm))))
+    (unless (or (null realm) (eq from realm)) (copy-back-values from realm))))
 
 (attend *rewound-end-hooks* give-fluents-back)
 
@@ -156,7 +156,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
   (declare (ignore robot options))
   (let ((from (global-value '*realm*)))
     (unless (eq from +root+)
-      (give-back-all from +root+)
+      (copy-back-values from +root+)
       (setf (global-value '*realm*) +root+)
       (when (eq from *realm*) (setf *realm* +root+)))))
 
@@ -198,7 +198,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
       (call-if-free (interface-lock interface)
                     (lambda ()
                       (call-holding (lambda ()
-                                      ;; What was left halfway is put in order.
+                                      ;; This repairs what an interrupt has left.
                                       (at-home ((interface-runner interface)))
                                       (funcall function))
                                     interface)))
@@ -206,7 +206,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
 
 (defmethod participant-at-rest ((interface interface) function)
   (cond ((interface-resting-p interface) (funcall function))
-        (t (check-not-kept interface)
+        (t (check-not-hogged interface)
            (call-holding-at-rest interface function))))
 
 (defmethod call-as-participant-makes-way ((interface interface) function)

@@ -129,7 +129,7 @@ for that, or some plan is ready. For any thread."
            (outside-request-p (interface-runner interface)))
        t))
 
-(defun asks-p (interface)
+(defun in-debugger-p (interface)
   "True if the thread of the plans of INTERFACE waits for an answer in a debugger. For any thread."
   (let ((calls (interface-calls interface)))
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
@@ -137,20 +137,20 @@ for that, or some plan is ready. For any thread."
 (defun hog-of (interface)
   ;; The watcher sees only at its next sample that it has gone on.
   (let ((task (interface-hog interface)))
-    (and task (eq :running (task-state task)) (not (asks-p interface)) task)))
+    (and task (eq :running (task-state task)) (not (in-debugger-p interface)) task)))
 
 ;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
 ;; shows it elsewhere.
-(defun check-not-asking (interface)
+(defun check-not-in-debugger (interface)
   "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in a debugger."
-  (when (and (asks-p interface)
+  (when (and (in-debugger-p interface)
              (foreign-hook)
              (not (eq (current-thread) (interface-thread interface))))
     (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose there how ~
                  they go on; before that, (print-plans t t) shows them there, with their variables."
                 (interface-robot interface) (thread-name (interface-thread interface)))))
 
-(defun check-not-kept (interface)
+(defun check-not-hogged (interface)
   (let ((task (hog-of interface)))
     (when (and task (not (eq (current-thread) (interface-thread interface))))
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
@@ -173,8 +173,8 @@ that is to be called when it has them. Interrupts wait, but for the extent of AL
 (defun call-with-plans (function interface)
   "Call FUNCTION while no other thread touches the plans of INTERFACE. Signals MISUSE if one of them
 is known to be at Lisp code that does not return. One that waits in a debugger can be answered."
-  (check-not-kept interface)
-  (check-not-asking interface)
+  (check-not-hogged interface)
+  (check-not-in-debugger interface)
   (if (holding-p interface)
       (funcall function)
       (call-wanting-plans
@@ -223,12 +223,12 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
          t)))
 
 (defun tell-once (interface key control &rest arguments)
-  "Say once by KEY in the run of INTERFACE what is formatted from CONTROL and ARGUMENTS."
+  "Warn once by KEY in the run of INTERFACE, with the text formatted from CONTROL and ARGUMENTS."
   (warn-once key (simulation-world (interface-simulation interface))
              (apply #'format nil control arguments)))
 
 (defun usable-p (interface)
-  "True if there is an INTERFACE, valid and for the world that we are in, if any."
+  "True if there is an INTERFACE, valid and for the current world, if any."
   (and interface
        (interface-valid-p interface)
        (or (null *world*)

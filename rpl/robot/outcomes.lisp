@@ -120,8 +120,8 @@ and the results, makes settings of its end. Return nothing."
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
 (defun fluent-form (kind clauses part)
-  "Return the form of the fluent that CLAUSES, of a command on PART, the name of its argument, say
-in a clause of KIND (:pulse, which tells of its end, or :error) is the first to be set; or NIL."
+  "Return the form of the fluent in the first of CLAUSES, of a command on PART, that is of KIND,
+:pulse or :error; or NIL. PART is the name of the command's argument."
   (let ((fluent (second (assoc kind clauses))))
     (and fluent (fluent-in-plan fluent part))))
 

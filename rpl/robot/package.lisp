@@ -63,10 +63,10 @@
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
                 #:call-with-client-still
                 #:note-plan-trouble #:note-seen #:*realm*
-                #:give-back-all #:+root+
+                #:copy-back-values #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
                 #:all-tasks #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
-                #:entity-realm #:entity-like
+                #:entity-realm #:twin-here
                 #:note-outside-call #:task-now #:advice-on-call #:advice-on-goal))

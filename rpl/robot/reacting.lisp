@@ -120,8 +120,8 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
                  (thinking-budget timeline))))
 
 (defun plans-dice (interface)
-  "Return what plans of INTERFACE roll by CL:RANDOM: of a run that is or was live dice of their own,
-which its forks take along; or NIL for what all programs of the run roll."
+  "Return the random state of plans of INTERFACE for CL:RANDOM: in a run that is or was live their
+own, which forks copy; else NIL, for that of all programs of the run."
   (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
     (when (simulation-plans-dice-p simulation)
       (or (runner-lisps-dice runner)

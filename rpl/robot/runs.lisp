@@ -64,7 +64,7 @@ called with that before anything else can happen."
     (ensure-thread interface)
     (call-to-plans interface)))
 
-(defun tell-if-begun-for-later (plan interface)
+(defun warn-if-no-ticks-pass (plan interface)
   "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
   (let ((robot (interface-robot interface)))
     (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *ticks-follow-p*))
@@ -80,7 +80,7 @@ called with that before anything else can happen."
 it runs as ticks pass; live in a thread of its own. Signals UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
     (prog1 (begin-in interface plan arguments #'identity)
-      (tell-if-begun-for-later plan interface))))
+      (warn-if-no-ticks-pass plan interface))))
 
 (defconstant +longest-report+ 4000
   "How many characters a report of plans has at most.")

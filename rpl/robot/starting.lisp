@@ -5,8 +5,8 @@
 (export '(*robot-to-drive*))
 
 (defun end-plans-here (interface)
-  "Let the plans of INTERFACE, which is to end, end in this thread. What interrupts that leaves one
-thing that they do to clean up, at most."
+  "End the plans of INTERFACE, which is to end, in this thread. An interrupt breaks off one of their
+cleanups at most."
   (flet ((end ()
            (with-plans (interface) (react-fully interface))))
     (in-any-case (end)
@@ -130,8 +130,8 @@ there. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than th
   (or (interface-tick-wanted-p interface) (woken-by-tick-p interface)))
 
 (defun rest-fully (interface)
-  "Let it be the next tick for the plans of INTERFACE, which no other thread touches, if they all
-wait, and for something else. True if so. Most ticks are like that."
+  "Set the tick of the plans of INTERFACE, which no other thread touches, without a reaction, if
+none has to run in it. True if so, as in most ticks."
   (let* ((simulation (interface-simulation interface))
          (timeline (simulation-timeline simulation)))
     (not (or (interface-closing-p interface)
@@ -145,7 +145,7 @@ wait, and for something else. True if so. Most ticks are like that."
 
 ;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
-  (look-for-outside interface)
+  (note-outside-command interface)
   (cond ((thread-of interface)
          (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
            (wake-plans interface)))

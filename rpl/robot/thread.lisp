@@ -8,30 +8,30 @@
 ;;; that takes step after step the warning comes from the runner; it is ended if it goes on after
 ;;; the simulator has stopped.
 
-(defstruct (look (:constructor make-look (rests steps task)) (:copier nil))
+(defstruct (sample (:constructor make-sample (rests steps task)) (:copier nil))
   "A sample of the plans' thread: its counts of rests and of steps, and the running TASK, or NIL."
   (rests 0 :read-only t)
   (steps 0 :read-only t)
   (task nil :read-only t))
 
-(defun look-at (interface thread)
+(defun sample-thread (interface thread)
   (let ((*runner* (interface-runner interface)))
-    (make-look (interface-rests interface)
-               (runner-steps *runner*)
-               (and (eq thread (interface-holder interface))
-                    (current-task)))))
+    (make-sample (interface-rests interface)
+                 (runner-steps *runner*)
+                 (and (eq thread (interface-holder interface))
+                      (current-task)))))
 
-(defun busy-since-p (look earlier)
-  "True if the plans have not come to rest between EARLIER and LOOK."
+(defun busy-since-p (sample earlier)
+  "True if the plans have not come to rest between EARLIER and SAMPLE."
   (and earlier
-       (look-task look)
-       (look-task earlier)
-       (eql (look-rests look) (look-rests earlier))))
+       (sample-task sample)
+       (sample-task earlier)
+       (eql (sample-rests sample) (sample-rests earlier))))
 
-(defun stuck-since-p (look earlier)
-  "True if the plans were in the same step at EARLIER and LOOK."
-  (and (busy-since-p look earlier)
-       (eql (look-steps look) (look-steps earlier))))
+(defun stuck-since-p (sample earlier)
+  "True if the plans were in the same step at EARLIER and SAMPLE."
+  (and (busy-since-p sample earlier)
+       (eql (sample-steps sample) (sample-steps earlier))))
 
 (defun end-requested-p (interface task)
   (or (interface-closing-p interface)
@@ -50,31 +50,31 @@
              (holding-p interface))
     (abort)))
 
-(defun end-hog (interface thread look stuck-p)
-  "End the plan that LOOK is of: its Lisp code if it is STUCK-P in that, else between two steps."
-  (let ((steps (look-steps look)))
+(defun end-hog (interface thread sample stuck-p)
+  "End the plan that SAMPLE is of: its Lisp code if it is STUCK-P in that, else between two steps."
+  (let ((steps (sample-steps sample)))
     (if stuck-p
         (interrupt-thread thread (lambda () (abort-step interface steps)))
-        (stop-plan (interface-runner interface) (task-top (look-task look))))))
+        (stop-plan (interface-runner interface) (task-top (sample-task sample))))))
 
 (defun watch-plans (interface thread calls ended)
   "Watch the plans' THREAD, with the users' CALLS that it makes, until the semaphore ENDED says that
 it has ended: warn of plans that keep it, and end them if they are to end."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
-        do (let ((look (look-at interface thread)))
-             (setf stuck (if (stuck-since-p look earlier) (1+ stuck) 1)
-                   busy (if (busy-since-p look earlier) (1+ busy) 1)
-                   earlier look
-                   (interface-hog interface) (and (<= 3 stuck) (look-task look)))
+        do (let ((sample (sample-thread interface thread)))
+             (setf stuck (if (stuck-since-p sample earlier) (1+ stuck) 1)
+                   busy (if (busy-since-p sample earlier) (1+ busy) 1)
+                   earlier sample
+                   (interface-hog interface) (and (<= 3 stuck) (sample-task sample)))
              (unless (user-calls-waiting-p calls)
-               (when (= 3 stuck) (warn-of-plan (look-task look)))
-               (when (and (<= 3 busy) (end-requested-p interface (look-task look)))
-                 (end-hog interface thread look (<= 3 stuck)))))
+               (when (= 3 stuck) (warn-of-plan (sample-task sample)))
+               (when (and (<= 3 busy) (end-requested-p interface (sample-task sample)))
+                 (end-hog interface thread sample (<= 3 stuck)))))
         finally (setf (interface-hog interface) nil)))
 
-;;; It lives as long as there are plans and ticks pass by themselves, and sleeps only while none of
-;;; the plans is ready. The next tick that finds plans starts another.
+;;; The thread exists while there are plans and ticks pass by themselves. It sleeps only while no
+;;; plan is ready. The next tick that finds plans starts another.
 
 (defun leave-to-ticks (interface)
   "Run the plans of INTERFACE in the ticks from now on, without a thread."
@@ -123,7 +123,7 @@ it has ended: warn of plans that keep it, and end them if they are to end."
       ;; A tick may have come meanwhile without a call to wake.
       (:idle (unless (woken-by-tick-p interface)
                ;; With a listener for messages, as at the prompt, that is reported anyway.
-               (unless (message-queue-listener *message-queue*) (look-for-stranded interface))
+               (unless (message-queue-listener *message-queue*) (warn-of-stranded-plans interface))
                (rest-plans interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)

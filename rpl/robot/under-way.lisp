@@ -56,7 +56,7 @@ OUTCOME makes settings of an answer."
 
 ;;; Answers.
 
-(defun ends-p (command err)
+(defun final-answer-p (command err)
   "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
   (or err (not (trait-p :begins command))))
 
@@ -119,12 +119,12 @@ time, and is carried out first, or goes on in the background."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))
-      (let ((answer (make-answer action err settings (ends-p (action-command action) err))))
+      (let ((answer (make-answer action err settings (final-answer-p (action-command action) err))))
         (add-answer answer interface)
         (post (interface-runner interface) (lambda () (apply-answer answer interface)))
         (when (answer-last-p answer) (setf (action-over-p action) t))))))
 
-(defun answering (interface action)
+(defun continuation-of (interface action)
   (setf (action-continuation action)
         (lambda (err resource &rest results)
           (declare (ignore resource))
@@ -132,7 +132,7 @@ time, and is carried out first, or goes on in the background."
 
 ;;; Telling before the simulator does.
 
-(defun tell-interrupted (action)
+(defun report-interrupted (action)
   "Report to plans that ACTION was interrupted, as soon as its task has reached its wait."
   (setf (action-told-p action) t)
   (notify-at-rest (action-task action)
@@ -166,7 +166,7 @@ time, and is carried out first, or goes on in the background."
                  (funcall test action))
         (warn-of-clash interface action except)
         (warn-of-haste interface action except)
-        (tell-interrupted action)
+        (report-interrupted action)
         (count-takeover interface resource (action-task action) (task-at-work interface))))))
 
 ;;; Issuing.
@@ -192,7 +192,7 @@ the robot is gone, end the plan at work."
       (progn (call-on-robot interface
                             (lambda ()
                               (apply (command-name command) resource
-                                     (append arguments (list (answering interface action))))))
+                                     (append arguments (list (continuation-of interface action))))))
              (setf issued-p t))
       (unless issued-p (forget-action action interface)))
     (take-over interface resource :except action)))
@@ -227,7 +227,7 @@ the robot is gone, end the plan at work."
                (not (action-cleanup-p action))
                (not (command-instant-p (action-command action))))
       (withdraw-action action interface)
-      (tell-interrupted action))))
+      (report-interrupted action))))
 
 ;;; Fluents are set by the commands of plans only. The end of a command of the prompt or a program
 ;;; sets none, so a plan such as (whenever robot-stopped* ...) does not react to it. A wait for one
@@ -252,7 +252,7 @@ commands of the robot such as COMMAND; or NIL."
                  (fluent-text (symbol-value (pulse-of-command command)))
                  (plan-call-text command)))))
 
-(defun look-for-outside (interface)
+(defun note-outside-command (interface)
   (let* ((robot (interface-robot interface))
          (event (resource-event robot))
          (command (and (operation-p event)

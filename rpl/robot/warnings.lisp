@@ -134,7 +134,7 @@ end of the same command."
   (if (eq :evaporated (task-state (action-task action)))
       (format nil "What gave it was ended before, as by a deadline. ~
                    If the command is to end as well, stop it: (rpl-robot-stop).")
-      (let ((wait (wait-text (action-outcome action) (action-resource action))))
+      (let ((wait (end-wait-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
 
 (defun warn-of-unawaited (interface task)
@@ -205,13 +205,13 @@ end of the same command."
             for parts = (stranded-parts interface task)
             when parts collect (list task parts)))))
 
-(defun look-for-stranded (interface)
+(defun warn-of-stranded-plans (interface)
   "Say so if plans of INTERFACE were begun and wait in vain."
   (loop for (task parts) in (stranded-plans interface)
         do (warn-of-stranded interface task parts)))
 
 (defmethod participant-after-ticks ((interface interface) simulation)
-  (unless (simulation-over simulation) (look-for-stranded interface)))
+  (unless (simulation-over simulation) (warn-of-stranded-plans interface)))
 
 (defun stranded-plan-text ()
   "Return in a sentence that a plan that was begun in the current simulation waits in vain, or NIL."

@@ -84,12 +84,12 @@
   (function #'list function))
 (declaim-final block-hook)
 
-(defun tell-blocked (task)
+(defun notify-blocked-parts (task)
   "Notify the parts of TASK, newest first, and then its own expressions, innermost first, that they
 are stopped; except those that were stopped before."
   (unless (task-ending-p task)
     (dolist (child (reverse (task-children task)))
-      (unless (plusp (task-blocked child)) (tell-blocked child)))
+      (unless (plusp (task-blocked child)) (notify-blocked-parts child)))
     (dolist (frame (frame-chain (task-frame task)))
       (when (block-hook-p (frame-data frame))
         (funcall (block-hook-function (frame-data frame)) task frame)))))
@@ -111,7 +111,7 @@ are stopped; except those that were stopped before."
       (incf (runner-blocks (task-runner task)))
       (note-event task :block)
       (interrupt-parts task)
-      (unless blocked (tell-blocked task)))))
+      (unless blocked (notify-blocked-parts task)))))
 
 (defun unblock-task (task &optional suspension)
   "Undo one BLOCK-TASK with the same SUSPENSION."

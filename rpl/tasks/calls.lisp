@@ -39,14 +39,14 @@
                 (member '&allow-other-keys seen))))
 
 (defun shape-text (lambda-list)
-  "Return LAMBDA-LIST as people write it."
+  "Return LAMBDA-LIST as text, in lower case."
   (printing-words ()
     (let ((*print-case* :downcase) (*print-pretty* nil))
       (format nil "~:A" lambda-list))))
 
 (defun keyword-slip (shape rest &key (wrong-p #'keywordp))
-  "Return in words the keyword among REST, arguments or forms after the others, that is none of
-SHAPE's, or NIL. Those that WRONG-P is not true of may be keywords yet."
+  "Return in words the keyword in REST, the arguments or forms after the others, that SHAPE does not
+take; or NIL. Elements for which WRONG-P is false may still be keywords."
   (unless (or (shape-open shape)
               (loop for (key value) on rest by #'cddr
                     thereis (and (eq key :allow-other-keys) value)))
@@ -74,7 +74,7 @@ WRONG-P is as for KEYWORD-SLIP."
 unless WAIT is NIL. CALL has the names of its arguments, the first a part if the robot may have
 several. FLUENT, a form, or NIL, then has one of CODES if the command failed; RESULTS, forms of
 fluents, have what was found."
-  (setf (get name 'twin) (list call wait)
+  (setf (get name 'plan-call) (list call wait)
         (get (first call) 'end) (list (second call) wait results)
         (get (first call) 'codes) (list fluent codes)))
 
@@ -89,18 +89,18 @@ fluents, have what was found."
 
 (defun has-plan-function-p (name)
   "True if plans call another function instead of the one called NAME."
-  (and (symbolp name) (get name 'twin) t))
+  (and (symbolp name) (get name 'plan-call) t))
 
 (defun wait-form-text (wait)
   (let ((*print-pretty* nil)) (and wait (format nil "(wait-for ~(~A~))" wait))))
 
 (defun pulse-of-command (name)
   "Return the form of the fluent that is pulsed when a command called NAME of a plan ends, or NIL."
-  (second (get name 'twin)))
+  (second (get name 'plan-call)))
 
 (defun plan-call-text (name)
   "Return in words what plans write instead of a call of NAME."
-  (destructuring-bind (call wait) (get name 'twin)
+  (destructuring-bind (call wait) (get name 'plan-call)
     (let ((*print-pretty* nil))
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 

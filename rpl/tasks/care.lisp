@@ -170,7 +170,7 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
 
-(defun end-current (runner)
+(defun end-current-plan (runner)
   "Evaporate the plan of the running task of RUNNER; if that was cleaning up, not to the end."
   (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
@@ -181,7 +181,7 @@ counts as the steps that take as long, so that a plan that only fails uses up it
   (let ((task (runner-current runner)))
     (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task)))))
 
-(defun put-in-order (runner)
+(defun repair-after-exit (runner)
   "Repair RUNNER after a step was left by a non-local exit: the plan that took it ends."
   (let ((task (running-task runner)))
     (when task
@@ -279,10 +279,10 @@ or fails that task."
   (let ((outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
          (setf (values outcome result anywhere-p) (call-to-outcome runner function))
-      (cond ((null outcome) (put-in-order runner))
+      (cond ((null outcome) (repair-after-exit runner))
             ((or anywhere-p (eq outcome :end)) (repair runner))))
     (ecase outcome
       (:done result)
       (:fail (fail-current runner result) nil)
-      (:end (report-abort runner) (end-current runner) nil)
-      (:leave (end-current runner) nil))))
+      (:end (report-abort runner) (end-current-plan runner) nil)
+      (:leave (end-current-plan runner) nil))))

@@ -12,8 +12,8 @@
 ;;; those of a task that runs away.
 
 (defun set-charges (runner charged-p budget)
-  "Let RUNNER be charged for thoughts from now on if CHARGED-P is true, and have BUDGET steps a
-tick, or as many as it needs if that is NIL."
+  "Charge RUNNER for thoughts from now on if CHARGED-P is true, and give it BUDGET steps a tick, or
+as many as it needs if that is NIL."
   (unless (and (eq charged-p (runner-charged-p runner))
                (eql budget (runner-budget runner)))
     (setf (runner-charged-p runner) charged-p
@@ -31,26 +31,26 @@ tick, or as many as it needs if that is NIL."
 
 ;;; Giving steps.
 
-(defun allow (runner steps)
+(defun allow-steps (runner steps)
   (setf (runner-exhausted runner) nil
         (runner-uncounted runner) 0
         (runner-limit runner) (+ (runner-steps runner) steps)))
 
 (defun give-budget (runner)
-  "Let the reaction of RUNNER that begins take its steps: what is left of this tick's budget."
+  "Allow the reaction of RUNNER that begins what is left of this tick's budget of steps."
   (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
     (setf (runner-slice runner)
           (max 1 (min +slice+ (floor (or budget *runaway-limit*) 10))))
-    (cond ((null budget) (allow runner *runaway-limit*))
-          ((not (runner-charged-p runner)) (allow runner budget))
+    (cond ((null budget) (allow-steps runner *runaway-limit*))
+          ((not (runner-charged-p runner)) (allow-steps runner budget))
           ((not (eql tick (runner-allotted runner)))
            (let ((paid (min budget (runner-debt runner))))
              (decf (runner-debt runner) paid)
              (setf (runner-allotted runner) tick)
-             (allow runner (- budget paid)))))))
+             (allow-steps runner (- budget paid)))))))
 
-(defun give-back (runner steps)
-  "Let STEPS that a task of RUNNER has taken not count, unless these are too many in one tick."
+(defun uncount-steps (runner steps)
+  "Do not count STEPS that a task of RUNNER has taken, unless there are too many in one tick."
   (decf (runner-uncovered runner) steps)
   (when (runner-budget runner)
     (incf (runner-uncounted runner) steps)

@@ -5,11 +5,11 @@
 (export '(complete complete-when-alone decide fail-or-escape receive status-word stop-waiting
           unwind withdraw))
 
-;;; What ends tells the construct that it is part of, which may then end too, and so on up. A task
-;;; that is to evaporate does so at once, unless something in it has to be cleaned up first.
+;;; A task that ends notifies the construct that it is part of, which may then end too, and so on
+;;; up. A task evaporates at once, unless something in it has to be cleaned up first.
 
 (defun status-word (task state)
-  "Return what the status fluent of TASK, in STATE, is to say."
+  "Return the value of the status fluent of TASK in STATE."
   (cond ((member state '(:created :succeeded :failed :evaporated)) state)
         ((task-gate task) :created)
         ((plusp (task-suspensions task)) :suspended)
@@ -21,7 +21,7 @@
     (set-value (task-status-fluent task) (status-word task state))))
 
 (defun finish (task state result &optional (how state))
-  "End TASK in STATE with RESULT. HOW says it to the construct that TASK is part of."
+  "End TASK in STATE with RESULT. HOW is what the construct around TASK is told."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
               (and (eq state :failed) result)
               (and (eq how :succeeded) result))
@@ -69,7 +69,7 @@
       (wake parent value)))
 
 (defun fail-or-escape (task how result)
-  "Let TASK fail or be left as its child did that ended as HOW with RESULT. True if it did so."
+  "Let TASK do as its child if that has failed or escaped, by HOW and RESULT. True if so."
   (when (member how '(:failed :escaped))
     (decide task result)
     t))
@@ -141,9 +141,9 @@ none does and TASK has ended, +PARKED+."
   (loop for child = (task-newest-child task) then older
         while child
         for older = (task-older child)
-        do (unless (beyond-evaporating-p child) (evaporate-here child))))
+        do (unless (cannot-evaporate-p child) (evaporate-here child))))
 
-(defun beyond-evaporating-p (task)
+(defun cannot-evaporate-p (task)
   (or (task-over-p task) (task-ending-p task) (eq (task-state task) :created)))
 
 (addition evaporate)
@@ -153,7 +153,7 @@ Does nothing if TASK has not started, is over or evaporates already. From outsid
 takes effect before that goes on. Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
   (let ((task (task-meant task)))
-    (cond ((beyond-evaporating-p task))
+    (cond ((cannot-evaporate-p task))
           ((not (inside-plans-p (task-runner task)))
            (note-from-outside #'evaporate task)
            (request-end task))

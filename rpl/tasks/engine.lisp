@@ -36,7 +36,7 @@ Lisp code that runs for more than SLOW seconds.
                                    :charged-p (and charged t) :clock clock
                                    :slow slow :dice dice :ticks-per-second ticks-per-second
                                    :tick tick :client client :busy-p busy-p :on-post on-post
-                                   :attended-p attended-p :repairer #'put-in-order
+                                   :attended-p attended-p :repairer #'repair-after-exit
                                    :on-end on-end)))
     (when trace (trace-changes runner))
     runner))

@@ -5,9 +5,9 @@
 (export '(failure-matches-p failure-passed-on-by failure-subject failure-text make-failure
           write-failure))
 
-;;; A failure is a condition but no error: a plan that fails is part of the plan's business, and
-;;; IGNORE-ERRORS in a plan's Lisp code must not swallow it. It spreads from a task to the
-;;; construct that the task is part of, until something handles it.
+;;; A failure is a condition but no error: failing is normal in plans, and IGNORE-ERRORS in a plan's
+;;; Lisp code must not swallow it. It spreads from a task to the construct that the task is part of,
+;;; until something handles it.
 
 (addition plan-failure)
 (define-condition plan-failure (serious-condition)
@@ -18,7 +18,7 @@
    (tick :initform nil :accessor failure-tick)
    (cause :initarg :cause :initform nil :accessor failure-cause)
    (suppressed :initform '() :accessor failure-suppressed)
-   ;; What the last clause was for that has handled it, and let it go on.
+   ;; The type of the last clause that has handled it and let it propagate.
    (passed-on-by :initform nil :accessor failure-passed-on-by)
    (expressions :initform '() :accessor failure-plan-backtrace))
   (:report (lambda (failure stream) (write-string (report-of failure) stream)))
@@ -86,8 +86,8 @@ innermost first.")
     (with-output-to-string (stream) (write-failure failure stream))))
 
 (defun failure-text (failure)
-  "Return what FAILURE, or another condition, reports: of what is deep, long or circular a part; its
-type if that signals an error."
+  "Return the report of FAILURE, or another condition, cut if it is deep, long or circular; its type
+if that signals an error."
   (reporting (failure) (or (our-text failure) (report-briefly failure))))
 
 (defun make-failure (arguments)
@@ -120,7 +120,7 @@ the failure or of the Lisp error behind it; or (or TYPE...)."
         ((typep failure 'lisp-failure) (typep (lisp-failure-condition failure) type))))
 
 (defun failure-subject (failure type)
-  "Return what a clause for TYPE gets to see of FAILURE: the Lisp condition, if it asked for that."
+  "Return what a clause for TYPE receives: FAILURE, or its Lisp condition if TYPE is for that."
   (if (and (typep failure 'lisp-failure)
            (symbolp type) (not (eq type t)) (find-class type nil)
            (not (typep failure type)))

@@ -10,12 +10,12 @@
 ;;; waits in succeeds. A task with children receives a signal only when the last child is gone.
 
 (define-record (escape (:constructor make-escape (target value)))
-  "A signal to leave for the node TARGET, which knows what to do with VALUE."
+  "A signal that unwinds to the node TARGET, which uses VALUE."
   (target nil node "the node that the escape leaves for" :export)
   (value nil t "the value that the escape brings" :export))
 
 (define-record (completion (:constructor make-completion (value)))
-  "The signal by which a construct ends well, with VALUE."
+  "The signal by which a construct succeeds with VALUE."
   (value nil t))
 
 (define-record (bundle (:constructor make-bundle (values)))

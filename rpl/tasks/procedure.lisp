@@ -8,7 +8,7 @@
 
 ;;; A name that a plan calls refers to a cell, whether or not a procedure of that name exists yet.
 ;;; So procedures can be defined in any order, and redefined while plans run: a call uses what is
-;;; in the cell when it happens. Calls go by the very symbol. Callers by name, such as RUN-PLAN,
+;;; in the cell when it happens. Calls use the symbol itself. Callers by name, such as RUN-PLAN,
 ;;; need not know the package that a procedure was defined in.
 
 (addition procedure-p)
@@ -99,8 +99,8 @@ or (interp-lambda parameters form...)" :writable :addition)
         (reject-name "plan procedure" name (procedures-to-offer)))))
 
 (defun find-procedure (name &optional (errorp t))
-  "Return the plan procedure called NAME, a symbol or string: that of the very symbol, or else the
-one defined last of those called the same in other packages. If there is none, signal UNKNOWN-NAME,
+  "Return the plan procedure called NAME, a symbol or string: that of the symbol itself, or else the
+one defined last of that name in other packages. If there is none, signal UNKNOWN-NAME,
 or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
     (cond ((and known (defined-p known)) known)
@@ -115,7 +115,7 @@ or return NIL if ERRORP is NIL."
 ;;; Which names are plans' is also known while the file that defines them is compiled.
 
 (defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
-  "Lists of their lambda list by the names that a DEF-INTERP-PROC has been compiled or loaded for.")
+  "Lists of a lambda list, by the names for which a DEF-INTERP-PROC was compiled or loaded.")
 
 (defun declare-procedure (name lambda-list)
   "Declare NAME, to plans compiled from now on, as a plan procedure with LAMBDA-LIST."
@@ -215,7 +215,7 @@ or return NIL if ERRORP is NIL."
                            (listed-p procedure arguments))))
 
 (defun listed-p (procedure arguments)
-  "True if ARGUMENTS are a list of a list, of what PROCEDURE takes."
+  "True if ARGUMENTS has one element, a list of arguments that PROCEDURE takes."
   (and (typep arguments '(cons cons null))
        (proper-list-p (first arguments))
        (null (misfit (shape-of (procedure-lambda-list procedure)) (first arguments)

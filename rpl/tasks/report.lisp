@@ -69,7 +69,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
                (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
 
 (defun missed-clause (failure)
-  "Return the type of a clause around FAILURE that was meant for its class, and that; or NIL."
+  "Return the type of a clause around FAILURE that was meant for its class, and that class; or NIL."
   (let* ((own (failure-class failure))
          (class (if (and own (symbolp own)) own (type-of failure))))
     (loop for form in (failure-plan-backtrace failure)
@@ -77,7 +77,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
           when type return (values type class))))
 
 (defun clause-for-errors (failure)
-  "Return what a clause around FAILURE is for if that is for errors of Lisp and FAILURE is none."
+  "Return the type of a clause around FAILURE that is for Lisp errors, if FAILURE is none; or NIL."
   (unless (typep failure 'lisp-failure)
     (loop for form in (failure-plan-backtrace failure)
           thereis (find-if (lambda (type)
@@ -108,7 +108,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
     (format stream "  Lisp:~%~A" (cut (lisp-failure-backtrace failure) 4000))))
 
 (defun failure-story (failure)
-  "Return in a line what FAILURE is, when and where it happened, and after what."
+  "Return FAILURE on a line: what it is, when and where it happened, and its cause."
   (format nil "~A~@[ at tick ~D~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
                ~@[; ~A~]~@[; ~A~]"
           (one-line (brief-failure-text failure))

@@ -201,7 +201,7 @@ VALUE are what the last step returned; return what it should have."
       (run-steps task frame value))
     (let ((taken (- (runner-steps runner) start)))
       (decf (task-slice task) taken)
-      (when (task-uncounted-p task) (give-back runner taken)))))
+      (when (task-uncounted-p task) (uncount-steps runner taken)))))
 
 (defun check-room (runner)
   (unless (< (runner-alive runner) *plan-task-limit*)

@@ -190,7 +190,7 @@ frames of one list run one expression."
         (current-form (frame-node frame) frame)
         (node-form (task-node task)))))
 
-(defun written (object)
+(defun object-text (object)
   "Return how OBJECT is written; in part, if it is data that takes long to print."
   (if (typep object '(or cons string bit-vector number symbol))
       (unqualified-text object)
@@ -202,7 +202,7 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
         (*print-length* length) (*print-level* level) (*print-base* 10) (*print-radix* nil))
     (cut (substitute #\Space #\Newline
-                     (handler-case (written form)
+                     (handler-case (object-text form)
                        ((or error storage-condition) () "what cannot be printed")))
          width)))
 

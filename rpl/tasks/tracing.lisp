@@ -38,7 +38,7 @@ TRACE-ENTRY, are evaluated only then."
                      subject value)))
 
 (defun trace-changes (runner)
-  (setf (runner-wrapper runner) #'on-behalf
+  (setf (runner-wrapper runner) #'keep-asker
         (runner-on-change runner)
         (lambda (kind fluent value) (trace-doing runner kind fluent value))))
 
@@ -60,7 +60,7 @@ TRACE-ENTRY, are evaluated only then."
 
 ;;; What is posted.
 
-(defun on-behalf (entry)
+(defun keep-asker (entry)
   "Return a function that applies ENTRY, which is posted, on behalf of the current asker."
   (let ((asker *asker*))
     (lambda ()

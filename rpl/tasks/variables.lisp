@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*speaking-task* install-task-variable make-task-bindings task-variable task-variable-p))
+(export '(*calling-task* install-task-variable make-task-bindings task-variable task-variable-p))
 
 ;;; Special variables belong to the thread, which all tasks share. A task variable is looked up
 ;;; from the calling task outwards: in its frames (those that bind variables have TASK-BINDINGS as
@@ -17,12 +17,12 @@
 (defvar *defaults* (make-hash-table :test 'eq :synchronized t)
   "The values of task variables where no task says otherwise.")
 
-(defvar *speaking-task* nil
+(defvar *calling-task* nil
   "The task on whose behalf Lisp code runs, if it is not the running one.")
 
-(defun speaking-task ()
+(defun calling-task ()
   "Return the task on whose behalf the caller runs, or NIL outside of plans."
-  (or *speaking-task*
+  (or *calling-task*
       (and *runner* (running-task *runner*))))
 
 (defun own-cell (name task)
@@ -34,12 +34,12 @@
 
 (defun task-variable (name)
   "Return the value that the task variable NAME has for the task that asks."
-  (let ((cell (loop for task = (speaking-task) then (task-parent task)
+  (let ((cell (loop for task = (calling-task) then (task-parent task)
                     while task thereis (own-cell name task))))
     (if cell (cdr cell) (values (gethash name *defaults*)))))
 
 (defun (setf task-variable) (value name)
-  (let* ((task (speaking-task))
+  (let* ((task (calling-task))
          (cell (and task (own-cell name task))))
     (cond (cell (setf (cdr cell) value))
           (task (push (cons name value) (task-variables task)))
