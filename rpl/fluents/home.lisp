@@ -22,7 +22,7 @@
   (inbox '() t :writable)
   (outbox '() list :writable)
   (on-post #'list function "the function that is called after each post" :writable)
-  (attended-p (constantly nil) function "true if a thread is there that will apply posts" :writable)
+  (attended-p (constantly nil) function "says whether a thread is there to apply posts" :writable)
   (left-p nil boolean
           "a thread has it, or the last one left it in the middle of something" :writable)
   (closed-p nil boolean "the home accepts no changes any more. Can be set" :writable :export)
@@ -31,7 +31,7 @@
   (repairer #'identity function "the function called first with the home in that case" :writable)
   (on-change nil (or null function) "the function that is called before watchers are notified of
 a change, or NIL: with :SET or :PULSE, a base fluent and its value. Can be set" :writable :export)
-  (wrapper nil (or null function) "of an entry: returns what is posted instead; or NIL" :writable))
+  (wrapper nil (or null function) "returns what to post instead of an entry; or NIL" :writable))
 
 (defvar *runner* nil
   "The plan runner that this thread has, while plans run.")

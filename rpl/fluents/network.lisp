@@ -9,7 +9,7 @@
 
 (declaim (inline stored-value))
 (defun stored-value (source)
-  "Return what SOURCE, a fluent in use or any other object, stands for."
+  "Return the value of SOURCE, a fluent in use, or SOURCE, any other object."
   (if (fluent-p source) (fluent-now source) source))
 
 (defun compute (derived)

@@ -102,7 +102,7 @@ for them to be WIDTH pixels wide; and how high these are together."
   (reduce #'+ (mapcar #'row-height rows)))
 
 (defun name-to-fit (row width)
-  "Return what ROW is called; where WIDTH, in pixels, is little, little of it says how deep it is."
+  "Return the label of ROW; if WIDTH, in pixels, is small, with little indentation."
   (if (< width 250) (row-label row 1 7) (row-label row)))
 
 (defun labels-width (rows least most)
@@ -154,13 +154,13 @@ for them to be WIDTH pixels wide; and how high these are together."
 (defconstant +title-line+ 17 "How far lines of the title are apart, in pixels.")
 
 (defun title-lines (canvas page title width)
-  "Return TITLE, or if it is NIL from when to when the ticks of PAGE are, as lines of WIDTH pixels."
+  "Return TITLE, or if it is NIL the range of ticks of PAGE, as lines of WIDTH pixels."
   (lines-within (or title (format nil "Plans from tick ~D to ~D" (page-start page) (page-end page)))
                 width (character-width canvas +title-size+)))
 
 (defun draw-timeline (canvas bars most &optional title)
   "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
-from when to when they are. Return width and height in pixels."
+the range of ticks. Return width and height in pixels."
   (let* ((page (make-timeline-page bars most)) (rows (page-rows page))
          (left (labels-width rows 120 +label-width+))
          (scale (make-scale (page-start page) (page-end page) left

@@ -134,7 +134,7 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
     interface))
 
 (defun moment-with (question)
-  "Return a fork of the run that QUESTION, asked from outside, is about, with it in it."
+  "Return a fork of the run of QUESTION, asked from outside, which contains its twin."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-asker* (question-operator question)))

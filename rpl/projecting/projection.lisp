@@ -14,7 +14,7 @@ its answer, by taking its BRANCH, a number; or, without a MOMENT, in a world bel
 (addition rollout-p)
 (define-record (rollout (:constructor make-rollout
                             (scene trial seed state result ticks cost steps ways &optional broken)))
-  "One trial of what a projection is about."
+  "One trial of a projection."
   (scene nil scene)
   (trial 0 fixnum "the number of the trial")
   (seed 0 integer "the integer from which all chance in the rollout came" :addition)

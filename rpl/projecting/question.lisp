@@ -51,7 +51,7 @@ the asking task does has ended."
           (question-result question) result)))
 
 (defun note-signal (question signal)
-  "Note that what the task of QUESTION does is left by SIGNAL. A RETURN-FROM is a good end."
+  "Note that what the task of QUESTION does is left by SIGNAL. A RETURN-FROM is a success."
   (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
         ((escape-p signal) (note-ended question :succeeded nil))
         ((eq signal :evaporate) (note-ended question :evaporated nil))))

@@ -9,7 +9,7 @@
         (t (how-over interface (task-top (wish-task question))))))
 
 (defun cost-p (object)
-  "True of real numbers, and of positive infinity, the worst; not of what is no number."
+  "True of real numbers, and of positive infinity, the worst; not of a NaN."
   (typecase object
     (float (or (finite-p object) (positive-infinity-p object)))
     (real t)))
@@ -25,8 +25,8 @@
         cost))))
 
 (defun broken-off (condition &optional option)
-  "Return what a rollout is that CONDITION broke off, an error of the function OPTION or of others:
-how it has ended, with which result, at no cost, and OPTION."
+  "Return the values of a rollout that CONDITION, an error of the function OPTION or of others, has
+broken off: how it has ended, its result, no cost, and OPTION."
   (values :failed (make-condition 'lisp-failure :condition condition) nil option))
 
 (defun with-cost (question how result)

@@ -130,7 +130,7 @@ time, and is carried out first, or goes on in the background."
           (declare (ignore resource))
           (post-answer interface action err results))))
 
-;;; Telling before the simulator does.
+;;; Interruptions, reported before the simulator does.
 
 (defun report-interrupted (action)
   "Report to plans that ACTION was interrupted, as soon as its task has reached its wait."

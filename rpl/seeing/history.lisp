@@ -140,8 +140,8 @@ text" :export)
   (call-p nil boolean "the bar is of a call of a procedure, within a task" :writable :export))
 
 (defun bar-label (bar &optional (text #'form-text))
-  "Return what says which task BAR is of, or which call within a task: a short text, unless the
-function TEXT makes another of an expression."
+  "Return a label for the task of BAR, or the call within a task. The function TEXT makes text of an
+expression, by default a short one."
   (cond ((bar-call-p bar) (funcall text (bar-form bar)))
         ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
         (t (format nil "~D ~A" (bar-serial bar) (funcall text (bar-form bar))))))

@@ -69,7 +69,7 @@ their values, and the valves that tasks have or want."
 ;;; the visible rows, from top to bottom, up to a given number. Other rows are only counted.
 
 (define-record task-image
-  "What is to be seen of a task."
+  "What is shown of a task."
   (serial 0 fixnum "the number of the task" :export)
   (depth 0 fixnum "of how many tasks the task is part" :export)
   (look :running keyword "how the task is, as a keyword: :running, :waiting, :blocked, :cleaning,
