@@ -157,7 +157,7 @@
     :components ((:file "estimates") (:file "text-table") (:file "report")))
    (:module "src/experiment/comparison" :serial t
     :components ((:file "differences") (:file "contrasts") (:file "verdicts")
-                 (:file "meaning") (:file "comparing")))
+                 (:file "designators") (:file "comparing")))
    (:module "src/experiment/pictures" :serial t
     :components ((:file "charts") (:file "pictures")))
    (:module "src/experiment/replay" :serial t

@@ -242,7 +242,7 @@
                                         (mapcar (lambda (x) (+ x (if (zerop number) shift 0)))
                                                 (noise))
                                         (noise)))))
-        (ars-magna.experiment::adjust-for-all differences)
+        (ars-magna.experiment::adjust-p-values differences)
         differences))))
 
 (test compare.tells-a-plain-difference-among-hundreds-of-tests
@@ -273,7 +273,7 @@
 (defun verdict-on (firsts seconds)
   "Return the verdict on x, measured as FIRSTS in a and as SECONDS in b, trial by trial."
   (let ((difference (experiment::mean-difference "x" firsts seconds)))
-    (experiment::adjust-for-all (list difference))
+    (experiment::adjust-p-values (list difference))
     (experiment::verdict difference (experiment::make-contrast nil "a" "b"))))
 
 (defun verdict-on-all (first second)

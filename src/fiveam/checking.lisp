@@ -8,7 +8,7 @@
 
 (defun subject-text (check)
   (if (check-subject check)
-      (text-of (subject-form (check-subject check)) check)
+      (checked-form-text (subject-form (check-subject check)) check)
       (format nil "~(~A~), ~A" (experiment-name (check-experiment check))
               (condition-name (check-condition check)))))
 
@@ -55,7 +55,7 @@
 
 ;;;; The check
 
-(defun condition-given (experiment condition)
+(defun designated-condition (experiment condition)
   "Return the condition of EXPERIMENT for the designator CONDITION; its only one if that is NIL."
   (let ((all (experiment-conditions experiment)))
     (cond (condition (find-condition experiment condition))
@@ -88,7 +88,7 @@ rate of success is AT-LEAST. Report that to FiveAM; return true if so."
 
 (defun check-experiment-rate (name condition at-least trials level workers)
   (let ((experiment (find-experiment name)))
-    (decide-check experiment (condition-given experiment condition) nil
+    (decide-check experiment (designated-condition experiment condition) nil
                   at-least (or trials (experiment-trials experiment)) level workers)))
 
 (defun experiment-clause (form options)

@@ -167,7 +167,7 @@ MALFORMED-DEFINITION, too."
 
 ;;; As a text.
 
-(defun text-of (form check)
+(defun checked-form-text (form check)
   "Return the text of FORM in the package of CHECK, on one line if it is short."
   (let* ((text (form-in-package form (experiment-package (check-experiment check))))
          (line (one-line text)))
@@ -192,7 +192,7 @@ MALFORMED-DEFINITION, too."
 (defun repetition-text (check result)
   "Return a form, as text, that repeats the trial of CHECK that RESULT is of."
   (let ((subject (check-subject check)))
-    (flet ((text (form) (text-of form check)))
+    (flet ((text (form) (checked-form-text form check)))
       (if subject
           (format nil "(~A ~A~%    ~{~A ~A~^ ~})" (text 'repeat-trial) (text (subject-form subject))
                   (mapcar #'text (repetition-options subject (result-seed result))))

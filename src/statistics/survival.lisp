@@ -13,13 +13,13 @@
                      "a list or vector of T (or 1, done at that time) and NIL (or 0, cut short)"))
   (check-same-length operator events-name events times))
 
-(defun dated (times events &optional mark)
+(defun sorted-events (times events &optional mark)
   "Return a vector of lists (time done-p mark), sorted by TIMES."
   (sort (map 'vector (lambda (time event) (list time (and (member event '(t 1)) t) mark))
              times events)
         #'< :key #'first))
 
-(defun same-time-end (dated start)
+(defun next-time-start (dated start)
   "Return the index of the first element of DATED that is later than the one at START."
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
@@ -28,7 +28,7 @@
   "Call FUNCTION with start and end, in DATED, of the elements of each time with an event."
   (loop with start = 0
         while (< start (length dated))
-        do (let ((end (same-time-end dated start)))
+        do (let ((end (next-time-start dated start)))
              (when (find t dated :key #'second :start start :end end)
                (funcall function start end))
              (setf start end))))
@@ -60,7 +60,7 @@ then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIME
 1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
   (check-survival 'survival-curve 'times times 'events events)
   (let* ((z (normal-critical-value (check-share survival-curve confidence)))
-         (dated (dated times events)) (size (length dated))
+         (dated (sorted-events times events)) (size (length dated))
          (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
     (flet ((note (start end)
              (let* ((at-risk (- size start)) (done (count-done dated start end))
@@ -126,7 +126,7 @@ does."
   (check-survival 'log-rank-test 'first-times first-times 'first-events first-events)
   (check-survival 'log-rank-test 'second-times second-times 'second-events second-events)
   (multiple-value-bind (observed expected variance)
-      (log-rank-sums (merge 'vector (dated first-times first-events t)
-                            (dated second-times second-events) #'< :key #'first))
+      (log-rank-sums (merge 'vector (sorted-events first-times first-events t)
+                            (sorted-events second-times second-events) #'< :key #'first))
     (let ((square (if (zerop variance) 0d0 (/ (expt (- observed expected) 2) variance))))
       (values (chi-square-tail square 1) square observed expected))))

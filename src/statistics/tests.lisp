@@ -40,7 +40,7 @@ unless FIRST and SECOND are integers from 0 to 1e9."
   (loop for size across sizes
         sum (* size (- 1 (* 2 (negative-share (* size tilt))))) of-type double-float))
 
-(defun tilt-for (sizes sum)
+(defun find-tilt (sizes sum)
   "Return the tilt for which the mean sum of SIZES, the largest of which is 1, is SUM."
   (declare (type doubles sizes) (type double-float sum))
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
@@ -64,7 +64,7 @@ unless FIRST and SECOND are integers from 0 to 1e9."
 (defun tail-share (sizes sum grain resamples dice)
   "Return the probability that SIZES, at most 1, with random signs sum up to at least SUM or at most
 -SUM, by RESAMPLES tilted draws."
-  (let* ((tilt (tilt-for sizes sum))
+  (let* ((tilt (find-tilt sizes sum))
          (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
     (flet ((weight (sum) (exponential (max -700d0 (- logs (* tilt sum))))))

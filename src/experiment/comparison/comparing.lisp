@@ -4,7 +4,7 @@
 
 ;;; Measures.
 
-(defun names-in-all (results)
+(defun common-measures (results)
   (let ((measures (remove-if-not (lambda (name)
                                    (every (lambda (other)
                                             (member name (results-measures other)
@@ -16,7 +16,7 @@
 (defun compared-names (operator results measure)
   "Return the names of the measures to compare in all of RESULTS: MEASURE, an argument of OPERATOR,
 or if that is NIL all that they have in common."
-  (let ((known (names-in-all results)))
+  (let ((known (common-measures results)))
     (flet ((known-name (name)
              (unless (typep name '(or symbol string))
                (reject-argument operator 'measure name "the name of a measure, or a list of them"))
@@ -73,7 +73,7 @@ is the noun for a side that differs."
             ((null (rest seconds)) (format nil "each ~A against ~A" kind (first seconds)))
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
-(defun end-comparison (comparison stream control &rest arguments)
+(defun finish-comparison (comparison stream control &rest arguments)
   "Correct the tests of COMPARISON, print it to STREAM, if any, and return it. Signals MISUSE with
 the text of CONTROL and ARGUMENTS if no contrast has trials."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
@@ -82,7 +82,7 @@ the text of CONTROL and ARGUMENTS if no contrast has trials."
   ;; The comparison over all and those of single conditions are separate questions. So comparing
   ;; twelve conditions as well does not weaken the result over all.
   (dolist (contrasts (list (comparison-contrasts comparison) (comparison-overall comparison)))
-    (adjust-for-all (loop for contrast in contrasts append (contrast-differences contrast))))
+    (adjust-p-values (loop for contrast in contrasts append (contrast-differences contrast))))
   (when stream (print-comparison comparison stream))
   comparison)
 
@@ -91,7 +91,7 @@ the text of CONTROL and ARGUMENTS if no contrast has trials."
   (let ((contrasts (loop for (first second) in pairs
                          for contrast = (contrast-of-conditions results first second place)
                          collect (contrast-samples contrast results first results second names))))
-    (end-comparison
+    (finish-comparison
      (make-comparison
       (sample-experiment (first (first pairs)))
       (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
@@ -215,7 +215,7 @@ experiment.txt in the directories AFTER and BEFORE, which may be NIL."
 
 ;;;; Comparing versions
 
-(defun results-given (operator name value)
+(defun results-and-name (operator name value)
   "Return the results for VALUE, the argument NAME of OPERATOR, and their name."
   (cond ((results-p value)
          (values value (if (results-directory value)
@@ -269,7 +269,7 @@ of conditions that only one of them has."
                               for contrast = (make-contrast (sample-condition sample) first second)
                               collect (contrast-samples contrast after sample before other
                                                         names))))
-        (end-comparison
+        (finish-comparison
          (make-comparison
           experiment (format nil "~A against ~A, before" after-name before-name)
           :versions contrasts
@@ -294,8 +294,8 @@ The comparison tells:
 MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS. Signals DAMAGED-TABLE and
 MISUSE, too, as READ-RESULTS does, and if the tables are of different experiments."
   (check-stream 'compare-results stream)
-  (multiple-value-bind (old old-name) (results-given 'compare-results 'before before)
-    (multiple-value-bind (new new-name) (results-given 'compare-results 'after after)
+  (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
+    (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)
       (comparison-of-versions old new old-name new-name
                               (compared-names 'compare-results (list new old) measure)
                               stream))))

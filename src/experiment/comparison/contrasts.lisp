@@ -90,7 +90,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
              name (filter-both #'finite-value-p firsts seconds)))
           (t nil))))
 
-(defun count-left-out (difference pairs)
+(defun set-left-out (difference pairs)
   "Set the number of PAIRS, an integer, that DIFFERENCE, or NIL, leaves out. Return DIFFERENCE."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
@@ -105,12 +105,12 @@ other, by the texts beside the tables; NIL of conditions" :addition)
                     (loop for (nil . j) in pairs collect (aref other j)))
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
-             (count-left-out (difference-of-values (string-downcase name) firsts seconds)
-                             (length pairs)))
+             (set-left-out (difference-of-values (string-downcase name) firsts seconds)
+                           (length pairs)))
             ;; Never measured in both: reported as not comparable.
             ((or (some #'finite-value-p column) (some #'finite-value-p other))
-             (count-left-out (mean-difference (string-downcase name) '() '())
-                             (length pairs)))))))
+             (set-left-out (mean-difference (string-downcase name) '() '())
+                           (length pairs)))))))
 
 ;;; Contrasts.
 
@@ -157,7 +157,7 @@ the measures NAMES. Return CONTRAST."
   (append (comparison-contrasts comparison) (comparison-overall comparison)))
 
 (defun tested-differences (contrasts)
-  "Return the differences of CONTRASTS that count as tests: see ADJUST-FOR-ALL."
+  "Return the differences of CONTRASTS that count as tests: see ADJUST-P-VALUES."
   (loop for contrast in contrasts
         append (remove-if-not #'tested-p (contrast-differences contrast))))
 

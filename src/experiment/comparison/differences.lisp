@@ -120,7 +120,7 @@ smallest possible p does not depend on the draws."
 (defun tested-p (difference)
   (and (paired-p difference) (not (paired-rounding difference))))
 
-(defun adjust-for-all (differences)
+(defun adjust-p-values (differences)
   "Set the adjusted p of each of DIFFERENCES by Holm's correction."
   (let* ((with-p (remove nil differences :key #'paired-p))
          (tested (remove-if-not #'tested-p with-p)))

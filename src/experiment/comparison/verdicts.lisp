@@ -22,7 +22,7 @@
           (reach (max (last-decimal reach) (min 3 (+ 13 (last-decimal reach)))))
           (t 3))))
 
-(defun power-text (number decimals)
+(defun scientific-text (number decimals)
   "Return the text of NUMBER with a power of ten, rounded to DECIMALS decimals."
   (let* ((power (power-of-ten number))
          (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
@@ -37,7 +37,7 @@
           ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
           ((or (zerop number) (<= -6 (power-of-ten number) 14))
            (decimal-text number (max 0 decimals)))
-          (t (power-text number decimals)))))
+          (t (scientific-text number decimals)))))
 
 (defun number-writer (difference)
   "Return a function that writes the numbers of DIFFERENCE, without units."
@@ -51,7 +51,7 @@
 
 ;;; Parts of sentences.
 
-(defun p-figure (p)
+(defun probability-text (p)
   "Return the text of the probability P without a leading 0: .032, .15."
   (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
 
@@ -60,9 +60,9 @@
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
-        (t (format nil "= ~A" (p-figure p)))))
+        (t (format nil "= ~A" (probability-text p)))))
 
-(defun bare-p (p)
+(defun bare-p-text (p)
   (string-left-trim "= " (p-text p)))
 
 (defun amount-words (difference value)
@@ -83,7 +83,7 @@
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
             (< 1 tests) tests
-            (and (string/= (p-text p) (p-text adjusted)) (bare-p p)))))
+            (and (string/= (p-text p) (p-text adjusted)) (bare-p-text p)))))
 
 (defun both-words (difference)
   (let ((write (number-writer difference)))
@@ -133,7 +133,7 @@
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
                    ~D or more~@[, or compare fewer measures~]"
-              seeds (p-figure (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
+              seeds (probability-text (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
 
 (defun not-significant-words (difference)
   "Return why DIFFERENCE is not significant although its interval leaves out 0."
@@ -265,7 +265,7 @@ are corrected separately. Each interval is for one difference alone."
             (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
             (format nil "~A (~A to ~A)" (text (paired-estimate difference))
                     (text (paired-low difference)) (text (paired-high difference)))
-            (bare-p (paired-adjusted-p difference)) (bare-p (paired-p difference))))))
+            (bare-p-text (paired-adjusted-p difference)) (bare-p-text (paired-p difference))))))
 
 (defun contrast-heading (contrast)
   (let ((table (let ((success (difference-called "success" contrast)))

@@ -45,7 +45,7 @@ values, if it is only one."
         text
         (common-name sample places factors))))
 
-(defun series-of (samples places factors)
+(defun group-series (samples places factors)
   (loop for group in (grouped samples (lambda (sample) (series-name sample places factors)))
         collect (cons (series-name (first group) places factors) group)))
 
@@ -65,7 +65,7 @@ values, if it is only one."
 (defun panels (samples places factors &optional where)
   "Return panels for SAMPLES, as few as can hold all series. The factors at PLACES of FACTORS make
 the series."
-  (let ((series (series-of samples places factors)) (title (series-title places factors)))
+  (let ((series (group-series samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (chunk-panels series where title))
           (t (let ((last (last places)))
@@ -197,7 +197,7 @@ the series."
 ;;; Survival. A trial that does not succeed is never done: it counts until the end, and is not
 ;;; censored earlier.
 
-(defun limit-of (results)
+(defun tick-limit (results)
   "Return the limit of ticks of the experiment of RESULTS; the most ticks of a trial if unknown."
   (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
@@ -228,7 +228,7 @@ the series."
   (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. What failed, broke off or came ~
                to the limit of ~D ticks is never done."
           (and band-p (if (results-until results) "the last look's confidence" "95 %"))
-          (limit-of results)))
+          (tick-limit results)))
 
 (defun survival-picture (results panel horizon errors)
   (let ((band-p (<= (length (panel-series panel)) +most-bands+)))
@@ -248,7 +248,7 @@ the series."
 (defun survival-pictures (results summaries)
   (let ((samples (results-samples results)))
     (when (any-value-p (mapcar #'summary-ticks summaries))
-      (loop with horizon = (horizon samples (limit-of results))
+      (loop with horizon = (horizon samples (tick-limit results))
             for panel in (panels samples (free-factors results) (results-factors results))
             collect (survival-picture results panel horizon (errors-words summaries))))))
 

@@ -132,7 +132,7 @@ CLAUSE if it has none."
 
 ;;; Names. What varies is a parameter, :ROBOTS, :THINKING, or a variable.
 
-(defun check-legible (definition clause name)
+(defun check-visible-name (definition clause name)
   "Signal MALFORMED-DEFINITION about CLAUSE unless the symbol NAME can name a column."
   (unless (and (string/= "" name) (every #'writable-char-p (symbol-name name)))
     (reject-clause definition clause
@@ -204,7 +204,7 @@ CLAUSE if it has none."
   (unless (and (proper-list-p case) (symbolp (first case)) (first case) (rest case)
                (every (lambda (part) (typep part '(cons t (cons t null)))) (rest case)))
     (reject-clause definition case "a condition (name (what form)...)"))
-  (check-legible definition case (first case))
+  (check-visible-name definition case (first case))
   (check-names definition case (mapcar #'first (rest case)))
   (mapc (lambda (part) (check-factor-name definition part)) (rest case)))
 
@@ -233,7 +233,7 @@ CLAUSE if it has none."
   "Signal MALFORMED-DEFINITION if two columns of a table would have one name: those TAKEN, the
 factors in CLAUSES, and the names in the clause KEY."
   (flet ((check (name clause)
-           (check-legible definition clause name)
+           (check-visible-name definition clause name)
            (when (member name taken :test #'string-equal)
              (reject-clause definition clause
                             (format nil "another name; the table has a column ~(~A~) already"
@@ -285,7 +285,7 @@ factors in CLAUSES, and the names in the clause KEY."
      (check-each definition clause (lambda (part) (typep part 'named-form)))
      (dolist (part (rest clause)) (doubt-quoted-measure definition part)))))
 
-(defun check-whole (definition name clauses)
+(defun check-all-clauses (definition name clauses)
   (check-clauses definition clauses)
   (dolist (clause clauses) (check-clause definition clause))
   (flet ((given-p (key) (nth-value 1 (clause-arguments key clauses))))

@@ -123,8 +123,8 @@ tells what is kept."
        (lambda ()
          (unless (and name (symbolp name) (not (keywordp name)))
            (reject-clause definition name "a symbol as the name"))
-         (check-legible definition name name)
-         (check-whole definition name clauses)
+         (check-visible-name definition name name)
+         (check-all-clauses definition name clauses)
          (list (definition-form name documentation clauses form)))))))
 
 ;;; Evaluating.

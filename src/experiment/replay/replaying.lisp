@@ -183,7 +183,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
                              (funcall then))))
              (stop ()
                (let ((result (make-result condition trial 0)))
-                 (note-end result)
+                 (note-final-state result)
                  (unless (shiftf stopped-p t) (look-around))
                  (throw 'stopped result))))
       (let ((result (catch 'stopped

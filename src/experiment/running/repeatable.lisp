@@ -7,7 +7,7 @@
 
 (defvar *directory-given-p* t "True if the user has given the directory of the rows.")
 
-(defun restart-advice ()
+(defun start-again-advice ()
   (if *directory-given-p* "begin in another directory" "run the experiment again"))
 
 (defun differing-column (columns texts others)
@@ -47,7 +47,7 @@ TEXTS-WITH-CHECKSUM."
                    or closure that trials change, the clock, a file, or a function of SBCL that ~
                    differs in another version. Correct that, and ~A."
                   trial (condition-name condition) (differing-column columns texts again)
-                  (restart-advice)))))
+                  (start-again-advice)))))
 
 (defparameter *seconds-for-checks* 10
   "For how long trials that have rows are run again before an experiment is resumed.")
@@ -102,7 +102,7 @@ a function; or NIL."
               (remove-duplicates (mapcar #'part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
               (sharing-advice changed condition)
-              (restart-advice)))
+              (start-again-advice)))
 
 (defun call-noting-refusal (function directory)
   "Call FUNCTION. If it signals MISUSE, record in DIRECTORY that its rows were refused."

@@ -103,15 +103,15 @@ MISUSE for rows with other fingerprints."
 (defparameter *most-trials* 1000000
   "The default for the most trials of a condition if :until is given.")
 
-(defun put-in-order (experiment directory)
+(defun sort-tables (experiment directory)
   (let ((file (series-file directory)))
-    (write-in-order (list (rows-file directory)) (rows-file directory)
-                    (mapcar #'condition-name (experiment-conditions experiment))
-                    (lambda (rows)
-                      (when (experiment-series experiment)
-                        (write-series-in-order (list file) rows file))))))
+    (write-sorted-rows (list (rows-file directory)) (rows-file directory)
+                       (mapcar #'condition-name (experiment-conditions experiment))
+                       (lambda (rows)
+                         (when (experiment-series experiment)
+                           (write-sorted-series (list file) rows file))))))
 
-(defun run-in (experiment directory trials until shard workers time-limit stream)
+(defun run-in-directory (experiment directory trials until shard workers time-limit stream)
   (let ((parts (prepare-experiment experiment)))
     (when (existing-path (rows-file directory)) (check-not-refused directory))
     (multiple-value-bind (presence samples) (find-existing-rows experiment parts directory)
@@ -128,7 +128,7 @@ MISUSE for rows with other fingerprints."
                           store workers time-limit stream))
            (check-run-again store parts (seconds-since begun))))
        experiment directory)
-      (put-in-order experiment directory))))
+      (sort-tables experiment directory))))
 
 (defun shard-p (shard)
   (or (null shard)
@@ -153,7 +153,7 @@ MISUSE for rows with other fingerprints."
 
 (defun run-and-read (experiment directory trials until shard workers time-limit stream)
   (flet ((run ()
-           (run-in experiment directory trials until shard workers time-limit stream)
+           (run-in-directory experiment directory trials until shard workers time-limit stream)
            (let ((results (results-in (rows-file directory))))
              (setf (results-until results) until
                    (results-conditions results)

@@ -6,16 +6,16 @@
 
 ;;; Origins. They do not affect trials, so they are not in fingerprints.
 
-(defun libraries-of (system)
+(defun dependency-names (system)
   "Return the names of the libraries that SYSTEM, a system's name, depends on, through its core."
   (loop for name in (remove-if-not #'stringp (asdf:system-depends-on (asdf:find-system system)))
         if (string= "ars-magna" (asdf:primary-system-name name))
-          append (libraries-of name)
+          append (dependency-names name)
         else collect name))
 
 (defparameter *libraries*
   (and (asdf:find-system "ars-magna" nil)
-       (loop for name in (libraries-of "ars-magna")
+       (loop for name in (dependency-names "ars-magna")
              for library = (asdf:registered-system name)
              collect (format nil "~A~@[ ~A~]" name
                              (and library (asdf:component-version library)))))

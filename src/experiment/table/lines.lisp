@@ -32,7 +32,7 @@ from 1. Return the position after the last one."
       columns)))
 
 (defun check-beginning (file columns)
-  "Signal DAMAGED-TABLE unless FILE is empty or its first line, or a part of it, is COLUMNS."
+  "Signal DAMAGED-TABLE unless FILE is empty, or its first line is COLUMNS, perhaps cut off."
   (multiple-value-bind (line cut-off-p) (first-line file)
     (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
            (text (and line (line-text line))))
@@ -177,7 +177,7 @@ by it. If it cannot be written signals DAMAGED-TABLE and leaves FILE unchanged."
                  the experiment affects its trials; no table can have both."
                 (indexed-number other) (native-name (indexed-file other))))
 
-(defun in-order-p (rows)
+(defun sorted-rows-p (rows)
   "True if ROWS, a vector, are sorted, and no two are of one trial."
   (loop for index from 1 below (length rows)
         always (row-before-p (aref rows (1- index)) (aref rows index))))
@@ -195,7 +195,7 @@ LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two of one tria
            (setf last row last-line line)
         finally (return count)))
 
-(defun write-in-order (files file order &optional (check #'identity))
+(defun write-sorted-rows (files file order &optional (check #'identity))
   "Write the rows of FILES, tables, to FILE, sorted and each once; FILE may be one of them. Return
 the number of rows. ORDER is a list of names of conditions. CHECK is called with the path of the new
 table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE, and leaves FILE unchanged then."
@@ -203,7 +203,7 @@ table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE, and leaves FILE
     (check-groups groups)
     (rank-groups groups order)
     (let ((columns (header-of (first files))) (count (length rows)))
-      (cond ((and (equal files (list file)) (in-order-p rows))
+      (cond ((and (equal files (list file)) (sorted-rows-p rows))
              (funcall check file))
             (t (setf rows (stable-sort rows #'row-before-p))
                (call-with-line-reader

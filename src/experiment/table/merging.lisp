@@ -13,7 +13,7 @@
 
 (defun join-series (directories target rows)
   (let ((files (remove-if-not #'existing-path (mapcar #'series-file directories))))
-    (when files (write-series-in-order files rows (series-file target)))))
+    (when files (write-sorted-series files rows (series-file target)))))
 
 (defun join-machine-tables (directories target)
   "Concatenate the files machine.csv of DIRECTORIES in TARGET."
@@ -49,10 +49,10 @@ series of a condition, TO has none of it."
      (lambda ()
        (call-plainly
         (lambda ()
-          (write-in-order (mapcar #'rows-file sources) (rows-file target)
-                          (remove-duplicates (mapcan #'conditions-described sources)
-                                             :test #'string= :from-end t)
-                          (lambda (rows) (join-series sources target rows)))))
+          (write-sorted-rows (mapcar #'rows-file sources) (rows-file target)
+                             (remove-duplicates (mapcan #'conditions-described sources)
+                                                :test #'string= :from-end t)
+                             (lambda (rows) (join-series sources target rows)))))
        (join-machine-tables sources target)
        (copy-description sources target))
      target)

@@ -124,7 +124,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (if (zerop count) -1 (aref (sample-trials sample) (1- count)))))
 
 ;; A table is sorted unless the run that writes it continues, or was killed.
-(defun results-in-order (file)
+(defun results-if-sorted (file)
   "Return the results in the table FILE; NIL if it is not sorted."
   (let* ((columns (header-of file))
          (results (%make-results columns))
@@ -135,24 +135,24 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (do-rows (texts file)
       (unless (and samples (row-of-sample-p (first samples) texts))
         (when (some (lambda (sample) (row-of-sample-p sample texts)) samples)
-          (return-from results-in-order nil))
+          (return-from results-if-sorted nil))
         (push (make-sample (first texts) (second texts) (third texts) (subseq texts 3 seed)
                            (loop repeat measures collect (column)))
               samples))
       (unless (< (last-trial (first samples)) (parse-integer (nth (1+ seed) texts)))
-        (return-from results-in-order nil))
+        (return-from results-if-sorted nil))
       (note-row (first samples) (nthcdr seed texts) measures shared))
     (setf (results-samples results) (reverse samples))
     results))
 
 (defun results-in (file)
-  (or (results-in-order file)
+  (or (results-if-sorted file)
       (call-with-temporary-directory
        (lambda (directory)
          (let ((copy (rows-file directory)))
-           (write-in-order (list file) copy
-                           (conditions-described (uiop:pathname-directory-pathname file)))
-           (results-in-order copy))))))
+           (write-sorted-rows (list file) copy
+                              (conditions-described (uiop:pathname-directory-pathname file)))
+           (results-if-sorted copy))))))
 
 (note-kind-of-file :table (format nil "~{~A,~}" *columns-before*)
                    (format nil "it is the table of an experiment; (read-results DIRECTORY) reads ~

@@ -245,7 +245,7 @@ MISUSE if a trial has none, but others of its condition have."
                                 do (write-lines (block-lines block line-of) out)))
                         file))
 
-(defun write-series-in-order (files rows file)
+(defun write-sorted-series (files rows file)
   "Write the lines in FILES, tables of series, of trials in the table ROWS to FILE, in the order of
 ROWS and each once; FILE may be one of them. Signals DAMAGED-TABLE and MISUSE, and leaves FILE
 unchanged then."

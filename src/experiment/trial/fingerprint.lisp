@@ -57,8 +57,8 @@ VARIABLES special variables. WEAK-PARTS are such lists for what variables hold w
     (cond ((null known) (push (list file written) (reach-files reach)))
           (written (setf (second known) written)))))
 
-;;; Functions typed at the prompt have no file, and no source is left. So each has a number of its
-;;; own: typed again, or in another Lisp, it is a different function.
+;;; Functions typed at the prompt have no file, and no source is left. So each has its own number:
+;;; typed again, or in another Lisp, it is a different function.
 
 (defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "Numbers of functions that were typed at the prompt.")
@@ -239,7 +239,7 @@ one at which it was loaded, or NIL."
   "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-OF."
   (call-in-trial (lambda () (definitions-of (current-simulation))) experiment condition 1))
 
-(defun reach-of (experiment condition definitions)
+(defun find-reach (experiment condition definitions)
   (let ((reach (make-reach)))
     (dolist (entry (remove nil (mapcar #'definition-entry definitions)))
       (visit-definition entry reach))
@@ -255,7 +255,7 @@ one at which it was loaded, or NIL."
 (defun fingerprint-parts (experiment condition)
   "Return the sorted parts of the fingerprint of CONDITION of EXPERIMENT, and its reach."
   (let* ((definitions (definitions-in-trial experiment condition))
-         (reach (reach-of experiment condition definitions)))
+         (reach (find-reach experiment condition definitions)))
     (values
      (sort (remove-duplicates (append (configuration-parts experiment condition)
                                       (reach-parts reach)
@@ -299,7 +299,7 @@ one at which it was loaded, or NIL."
   (call-plainly
    (lambda ()
      (set-reach condition
-                (reach-of experiment condition (definitions-in-trial experiment condition))))))
+                (find-reach experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
   "Call PREPARE-CONDITION for all conditions of EXPERIMENT; return a list of the values. Signals

@@ -105,7 +105,7 @@ that, return the values that RUN-PLAN would have returned, and set the error of 
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
-(defun note-end (result)
+(defun note-final-state (result)
   (note-series result)
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
@@ -194,7 +194,7 @@ first of VALUES, those of :run: a failure is true, and may have been taken for a
 (defun complete-trial (experiment result)
   (call-sampling (lambda ()
                    (call-noting-errors (lambda () (evaluate-trial experiment result)) result)
-                   (note-end result))
+                   (note-final-state result))
                  experiment result))
 
 (defun run-trial (experiment condition trial &key gate)

@@ -1,4 +1,4 @@
-;;;; meaning.lisp -- designators of conditions, and which conditions are compared.
+;;;; designators.lisp -- designators of conditions, and which conditions are compared.
 
 (in-package :ars-magna.experiment)
 
