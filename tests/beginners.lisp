@@ -23,7 +23,7 @@
 
 (test with-simulation.says-what-is-wrong-with-its-form
   (is-true (complains-p '(run:with-simulation (rover rovr) 1)
-                        "several robots are a list of their own: (with-simulation ((rover rovr))"))
+                        "put several robots into a list: (with-simulation ((rover rovr))"))
   (is-true (complains-p '(run:with-simulation (rover :sead 1) 1)
                         "there is no keyword :sead; did you mean :seed?"))
   (is-true (complains-p '(run:with-simulation (rover :seed) 1) ":seed has no value"))

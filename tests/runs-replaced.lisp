@@ -279,9 +279,9 @@ function and its arguments."
 (test with-simulation.that-is-interrupted-at-its-end-ends-its-run
   (with-yard ()
     (let ((simulation nil))
-      (is (eq :left (coming-between (run::look-at-end (look &rest arguments)
+      (is (eq :left (coming-between (run::warn-at-end (warn &rest arguments)
                                       (interrupt-here)
-                                      (apply look arguments))
+                                      (apply warn arguments))
                       (interrupted (run:with-simulation (dray)
                                      (setf simulation time:*simulation*))))))
       (is-true (run:simulation-over simulation)))))

@@ -86,7 +86,7 @@ dice, as a live run where each thread has its own, they are made."
 tick, and CANNOT-FORK."
   (when (simulation-ticking-p simulation)
     (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
-  (when (eq simulation *simulation*) (follow-settings simulation))
+  (when (eq simulation *simulation*) (record-settings simulation))
   (let ((copy (with-copier (copier :environment (environment-of-fork simulation)
                                    :options (fork-options simulation continuations decisions))
                 (copy-of-run simulation copier)))

@@ -62,7 +62,7 @@ KEEP-FORKS, and is over at the end."
           (append variables (mapcar #'robot-name robots) *simulation-variables*
                   (list *lisps-dice*)))
     (progv (simulation-variables simulation)
-        (append (robots-meant variables) robots (mapcar #'symbol-value *simulation-variables*)
+        (append (robots-named variables) robots (mapcar #'symbol-value *simulation-variables*)
                 (list (or (simulation-dice simulation)
                           (seeded-lisps-dice (simulation-seed simulation)))))
       (note-environment simulation)
@@ -70,14 +70,14 @@ KEEP-FORKS, and is over at the end."
         (call-telling-names
          (remove-duplicates (append variables (mapcar #'robot-name robots)))
          (lambda ()
-           (call-telling-errors
+           (call-reporting-errors
             (lambda ()
               (when keep (keep-forks keep simulation))
               (funcall function))
             simulation)))
         (restore-outer-globals)))))
 
-(defun call-telling-errors (function simulation)
+(defun call-reporting-errors (function simulation)
   "Call FUNCTION in the headless SIMULATION; then end the run. Show or signal unread errors, by the
 error policy of its message queue."
   (let ((queue (simulation-messages simulation)) (left-p t))
@@ -86,7 +86,7 @@ error policy of its message queue."
           (multiple-value-prog1 (funcall function)
             (signal-trouble queue)
             (setf left-p nil))
-          (look-at-end simulation left-p)
+          (warn-at-end simulation left-p)
           (show-unseen queue)
           (end-headless simulation)
           ;; What the end interrupts is no error.
@@ -96,7 +96,7 @@ error policy of its message queue."
                                         (not (eq message (message-queue-unsignalled queue))))))))
       (signal-trouble queue))))
 
-(defun look-at-end (simulation left-p)
+(defun warn-at-end (simulation left-p)
   "Warn if SIMULATION, which ends, has passed no ticks or too few for its requests. Do not if it is
 LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have passed in the fork."
   (let ((text (and (not left-p)
@@ -124,7 +124,7 @@ LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have p
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
-(defun robots-meant (names)
+(defun robots-named (names)
   "Return the robots of the current simulation that are called NAMES, symbols of any package."
   ;; Their definitions may no longer exist.
   (loop with robots = (world-robots *world*)
@@ -163,7 +163,7 @@ of names."
                  (or (some #'consp (rest form))
                      (known-function-p head environment)))))))
 
-(defun doubt-values-of-commands (body)
+(defun warn-of-used-values (body)
   "Warn about each form in BODY, that of a WITH-SIMULATION, that uses the value of a command."
   (map-calls (lambda (form)
                (let ((call (find-if (lambda (used)
@@ -224,7 +224,7 @@ requested, or if a plan waits for what nothing in the run will bring about."
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (unquoted robots)))
          (variables (if form-p '() (variables-among robots))))
-    (doubt-values-of-commands body)
+    (warn-of-used-values body)
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)
@@ -240,5 +240,5 @@ requested, or if a plan waits for what nothing in the run will bring about."
     (cond ((null head) "name a robot: (with-simulation (ROBOT) ...)")
           ((symbolp head) (format nil "write (with-simulation (~(~A~)) ...)" head))
           ((rest names)
-           (format nil "several robots are a list of their own: (with-simulation (~(~A~)) ...)"
+           (format nil "put several robots into a list: (with-simulation (~(~A~)) ...)"
                    (abridged names))))))

@@ -82,7 +82,7 @@ keyword and plain data, if it does not belong to one run; else NIL.")
   (members (make-array 4 :adjustable t :fill-pointer 0) :type vector :read-only t))
 
 (defstruct (inventory (:constructor make-inventory ()) (:copier nil))
-  "The objects of a run. STATES maps each object found to :MET or :NUMBERED and, at the end, the
+  "The objects of a run. STATES maps each object found to :FOUND or :NUMBERED and, at the end, the
 latter to their numbers."
   (states (make-hash-table :test 'eql) :type hash-table :read-only t)
   (outer '() :type list)
@@ -170,23 +170,23 @@ Signals MISUSE."
                                  (make-batch shape (shape-fields shape)))))))
     (vector-push-extend object (batch-members batch))))
 
-(defun meet (object numbered-p inventory)
+(defun mark-found (object numbered-p inventory)
   "Note that OBJECT was found. It gets a number if NUMBERED-P is true or it was found before; return
 true in the latter case."
   (let ((state (gethash object (inventory-states inventory))))
-    (when (or (eq :met state) (and numbered-p (null state)))
+    (when (or (eq :found state) (and numbered-p (null state)))
       (setf (gethash object (inventory-states inventory)) :numbered)
       (add-to-batch object inventory))
     (unless (or state numbered-p)
-      (setf (gethash object (inventory-states inventory)) :met))
+      (setf (gethash object (inventory-states inventory)) :found))
     state))
 
-(defun meet-object (object inventory)
+(defun mark-numbered (object inventory)
   "Note OBJECT, which gets a number. If it belongs to the run, its contents are surveyed later."
   (unless (gethash object (inventory-states inventory))
     (multiple-value-bind (name other-p) (current-outer-name object)
       (cond ((null name)
-             (meet object t inventory)
+             (mark-found object t inventory)
              (push object (inventory-waiting inventory)))
             (other-p
              (reject-object object "which has been defined anew, or is no longer defined"
@@ -194,21 +194,21 @@ true in the latter case."
             (t (setf (gethash object (inventory-states inventory)) :numbered)
                (push (cons object name) (inventory-outer inventory)))))))
 
-(defun take-room (characters inventory)
+(defun reserve-room (characters inventory)
   "Note that CHARACTERS more will be written for the current object. True if there is room."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun survey-text (text inventory)
   (let ((short-p (and (<= (length text) +longest-text+) (simple-string-p text))))
-    (meet text (not (and (take-room (* 2 (length text)) inventory) short-p)) inventory)))
+    (mark-found text (not (and (reserve-room (* 2 (length text)) inventory) short-p)) inventory)))
 
 (defun survey-list (list depth inventory)
   "Survey the conses of LIST, which is nested DEPTH deep, and their contents."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
-        do (let ((far-p (or (not (take-room 2 inventory)) (= depth +deepest-text+))))
-             (when (meet tail (or far-p (= position +longest-row+)) inventory) (return))
+        do (let ((far-p (or (not (reserve-room 2 inventory)) (= depth +deepest-text+))))
+             (when (mark-found tail (or far-p (= position +longest-row+)) inventory) (return))
              ;; The rest gets its own line and is surveyed later.
              (when (or far-p (= position +longest-row+))
                (push tail (inventory-waiting inventory))
@@ -219,18 +219,18 @@ true in the latter case."
 (defun survey (value depth inventory)
   "Note VALUE, and its contents if it gets no number. Signals MISUSE."
   (typecase value
-    ((or null fixnum) (take-room 20 inventory))
+    ((or null fixnum) (reserve-room 20 inventory))
     (double-float (if (finite-p value)
-                      (take-room 25 inventory)
-                      (meet-object value inventory)))
-    (symbol (take-room (+ 10 (* 2 (length (symbol-name value)))) inventory)
+                      (reserve-room 25 inventory)
+                      (mark-numbered value inventory)))
+    (symbol (reserve-room (+ 10 (* 2 (length (symbol-name value)))) inventory)
      (when (unprintable-atom-p value)
        (reject-object value "whose package has :: in its name" inventory)))
-    (number (take-room 50 inventory)
+    (number (reserve-room 50 inventory)
      (when (unprintable-atom-p value) (reject-object value "which is too long" inventory)))
     (cons (survey-list value (1+ depth) inventory))
     (string (survey-text value inventory))
-    (t (meet-object value inventory))))
+    (t (mark-numbered value inventory))))
 
 ;;; Contents of objects.
 

@@ -107,7 +107,7 @@
   (handler-case (call-with-parameters settings (constantly nil))
     (ars-magna-error (trouble) (one-line-text trouble))))
 
-(defun twice-p (names)
+(defun duplicates-p (names)
   "True if the strings NAMES contain duplicates."
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
@@ -118,16 +118,17 @@
           ((wrong-p :map #'stringp) "it names no map")
           ((not (and (getf header :robots) (list-of-p 'string (getf header :robots))))
            "it names no robots")
-          ((twice-p (getf header :robots)) "it names a robot twice")
+          ((duplicates-p (getf header :robots)) "it names a robot twice")
           ((wrong-p :seed #'integerp) "its seed is no integer")
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
           ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
           ((wrong-p :remarks #'remarks-p) "its remarks make no sense")
-          ((undescribed header) (format nil "it does not say what ~A was" (undescribed header)))
+          ((name-without-definition header)
+           (format nil "it does not say what ~A was" (name-without-definition header)))
           ((settings-trouble (getf header :parameters))))))
 
-(defun undescribed (header)
+(defun name-without-definition (header)
   "Return the name of the map or a robot in HEADER that has no definition there, or NIL."
   (flet ((described-p (kind name)
            (find (list kind name) (getf header :definitions) :test #'same-definition-p)))
@@ -143,7 +144,7 @@
          (format nil "there is no operator called ~A"
                  (short-text (plain-name (second entry)))))))
 
-(defun entries-of (data)
+(defun checked-entries (data)
   "Return DATA, the entries of a journal, checked. Signals an error that names the entry."
   (loop with tick = 0
         for entry in data
@@ -173,7 +174,7 @@
   "Return the journal made of DATA, all those in its file. Signals an error if they make none."
   (check-head (first data))
   (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
-        (entries (entries-of (butlast (rest data))))
+        (entries (checked-entries (butlast (rest data))))
         (end (first (last (rest data)))))
     (check-end end entries)
     (setf (journal-newest-first journal) (reverse entries)

@@ -110,7 +110,7 @@ current tick, in the journal and the past of SIMULATION, if it keeps them."
   (loop for (name value) in settings
         collect (list (parameter-symbol (find-parameter name)) value)))
 
-(defun follow-settings (simulation)
+(defun record-settings (simulation)
   "Record in the journal of SIMULATION the parameters set since the last call, and what
 DIRTY-SIMULATION would restore now, if that has changed."
   (follow-parameters (simulation-known-parameters simulation)
@@ -197,7 +197,7 @@ if it keeps none."
                      (reject-use "This simulation keeps no journal. Ask for one: ~
                                   (with-simulation (ROBOT :journal t) ...), and do not say ~
                                   (simulator ROBOT :journal nil)."))))
-    (when (eq simulation *simulation*) (follow-settings simulation))
+    (when (eq simulation *simulation*) (record-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
     ;; Robots may have been added and definitions changed since it began.
     (let ((header (copy-list (journal-header journal))))

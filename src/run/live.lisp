@@ -20,7 +20,7 @@ were bound where it began: those of WITH-SIMULATION around SIMULATOR."
         (*standard-input* (input-of-programs *front-end* *standard-input*))
         (variables (set-difference (simulation-variables simulation)
                                    (cons *lisps-dice* *simulation-variables*))))
-    (progv variables (robots-meant variables)
+    (progv variables (robots-named variables)
       (call-with-parameters
        '() (lambda () (rolling ((seeded-lisps-dice (simulation-seed simulation)))
                         (funcall function)))))))
@@ -161,12 +161,12 @@ current one as MAKE-CURRENT does. Return the run."
                   &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
                     (thinking :real)
                   &allow-other-keys)
-  "Run the world of ROBOT live, in a thread of its own, at RATE ticks per second or :FREE, and make
+  "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make
 it the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A
 world that has run before starts anew, with SEED if that is given. It keeps a journal unless
 JOURNAL is NIL, as is advisable for busy programs at free rates. With KEEP it keeps forks, so that
 it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING:
-plans have a thread of their own unless it is :FREE or charged, when they react within the ticks.
+plans have a separate thread unless it is :FREE or charged, when they react within the ticks.
 Return the robot (manual A). STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
 MISUSE if the robot no longer fits into its map. See reading 238."
   (check-options-of-simulator options)

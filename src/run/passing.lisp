@@ -29,7 +29,7 @@ thread passes ticks of it."
   (answer-own-questions)
   (yield-thread))
 
-(defun pass-freely (count simulation)
+(defun pass-without-gate (count simulation)
   "Pass COUNT ticks of SIMULATION, which this thread owns. Stop early if the run ends or an error in
 users' code is to be signalled."
   (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
@@ -40,8 +40,8 @@ users' code is to be signalled."
              (when (custody-questions custody) (answer-questions custody)))))
 
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks as PASS-FREELY does, as many at a time as the gate, if any, allows. No other
-code, not even a continuation, can pass ticks of SIMULATION meanwhile."
+  "Pass COUNT ticks as PASS-WITHOUT-GATE does, as many at a time as the gate, if any, allows. No
+other code, not even a continuation, can pass ticks of SIMULATION meanwhile."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
@@ -50,7 +50,7 @@ code, not even a continuation, can pass ticks of SIMULATION meanwhile."
                       (message-queue-unsignalled (simulation-messages simulation)))
             ;; The gate may wait, or make a non-local exit.
             do (let ((now (if gate (min left (funcall gate simulation)) left)))
-                 (pass-freely now simulation)
+                 (pass-without-gate now simulation)
                  (decf left now)))
       (setf (timeline-passing-p timeline) nil))))
 
@@ -73,10 +73,10 @@ passes the other ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (let ((simulation (successor-of-fork simulation)))
     (warn-of-ticks-in-plan :run-ticks simulation)
-    (prog1 (pass-ticks-of simulation count)
-      (look-after-ticks simulation))))
+    (prog1 (check-and-pass-ticks simulation count)
+      (notify-participants simulation))))
 
-(defun look-after-ticks (simulation)
+(defun notify-participants (simulation)
   "Let the participants of SIMULATION act on the ticks that have passed."
   (dolist (participant (simulation-participants simulation))
     (participant-after-ticks participant simulation)))
@@ -85,7 +85,7 @@ passes the other ticks."
   "Return SIMULATION or, if it is a fork that was rewound, its successor."
   (if (fork-p simulation) (latest simulation) simulation))
 
-(defun pass-ticks-alone (simulation count)
+(defun pass-ticks-when-free (simulation count)
   "Pass COUNT ticks of SIMULATION as PASS-TICKS does, as soon as no other thread owns it."
   (flet ((pass () (pass-ticks count simulation)))
     (declare (dynamic-extent #'pass))
@@ -95,14 +95,14 @@ passes the other ticks."
       (loop with custody = (timeline-custody (simulation-timeline simulation))
             until (call-with-custody custody #'pass-inside #'wait)))))
 
-(defun pass-ticks-of (simulation count)
+(defun check-and-pass-ticks (simulation count)
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
   (check-passable simulation)
   (when *asked-with* (doubt-asked-with (simulation-world simulation)))
   (loop with last = (+ (simulation-tick simulation) count)
-        do (pass-ticks-alone simulation (- last (simulation-tick simulation)))
+        do (pass-ticks-when-free simulation (- last (simulation-tick simulation)))
         while (signal-trouble (simulation-messages simulation))
         until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
@@ -136,9 +136,9 @@ RUN-TICKS does."
     (let ((answer (loop for left downfrom limit
                         thereis (funcall predicate)
                         until (zerop left)
-                        do (pass-ticks-of (successor-of-fork simulation) 1))))
+                        do (check-and-pass-ticks (successor-of-fork simulation) 1))))
       (note-run-until-result answer limit-p limit (successor-of-fork simulation))
-      (look-after-ticks (successor-of-fork simulation))
+      (notify-participants (successor-of-fork simulation))
       (values answer (simulation-tick simulation)))))
 
 (addition step-ticks)

@@ -29,7 +29,8 @@ first tick at which an act could not be repeated as it was, or NIL."
         (perform-operator operator arguments simulation (or (act-asker act) "the past")))))
 
 (defun repeat-act (act redoing)
-  "Repeat ACT. If it signalled an error then, it does so again, and the error is ignored."
+  "Repeat ACT. An error of its function, which failed the first time, too, is ignored; one of an
+operator is noted as a divergence."
   (let* ((timeline (simulation-timeline (redoing-simulation redoing)))
          (before (timeline-inbox timeline)))
     (handler-case (perform-act act (redoing-simulation redoing))
@@ -128,5 +129,5 @@ the oldest first. Return the tick at which a plan diverged, or NIL."
     (advance-to goal redoing)
     (dolist (request (redoing-held redoing))
       (post-again request (simulation-timeline simulation)))
-    (follow-settings simulation)
+    (record-settings simulation)
     (redoing-diverged redoing)))

@@ -162,7 +162,7 @@ tick at which a plan diverged on the way, or NIL."
             (timeline-fork-p (simulation-timeline new)) nil))
     (hand-over-errors new old)))
 
-(defun take-the-place (new old then)
+(defun replace-owned-run (new old then)
   "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called, as
 it is over. Neither their non-local exits nor interrupts of this thread stop the replacement."
   (check-not-over old 'rewind)
@@ -176,7 +176,7 @@ it is over. Neither their non-local exits nor interrupts of this thread stop the
         (take-over-state new old from)
         (funcall then)))))
 
-(defun start-in-place (new old rate paused-p)
+(defun start-successor (new old rate paused-p)
   "Run NEW, which has replaced OLD, live at RATE, unless another thread has stopped OLD meanwhile."
   (when (claimed-p (simulation-timeline old))
     (start-clock new :rate rate :paused-p paused-p
@@ -192,11 +192,11 @@ over."
     (in-any-case
       (call-alone timeline
                   (lambda ()
-                    (take-the-place new old
-                                    (lambda ()
-                                      (setf done-p t)
-                                      (when live-p
-                                        (start-in-place new old rate paused-p))))))
+                    (replace-owned-run new old
+                                       (lambda ()
+                                         (setf done-p t)
+                                         (when live-p
+                                           (start-successor new old rate paused-p))))))
       (unless done-p (release-fork new)))
     new))
 

@@ -309,7 +309,7 @@ state.
 SIMULATION may be one of its robots. Signals WRONG-ARGUMENT."
   (let ((simulation (simulation-meant simulation 'state-digest)))
     (asking (simulation)
-      (when (eq simulation *simulation*) (follow-settings simulation))
+      (when (eq simulation *simulation*) (record-settings simulation))
       (let ((digest (make-digest)))
         (digest-state simulation digest)
         (when participants

@@ -32,7 +32,7 @@
 (setf (documentation 'unsavable-parts 'function)
       "Return the parts that an UNSAVABLE condition names, a list of strings.")
 
-(defun functional-p (request)
+(defun holds-function-p (request)
   "True if REQUEST contains a function of the user's."
   (typecase request
     (scheduled t)
@@ -50,10 +50,10 @@
   (append (loop for text in (unfinished-in-participants simulation)
                 collect (format nil "~A is under way" text))
           (loop for event in (events-waiting simulation)
-                when (functional-p event)
+                when (holds-function-p event)
                   collect (format nil "an event of SCHEDULE waits for tick ~D" (event-time event)))
           (loop for request in (requests-waiting simulation)
-                when (functional-p request)
+                when (holds-function-p request)
                   collect (if (typep request 'scheduled)
                               "an event of SCHEDULE was asked for"
                               "a command was withdrawn by a plan"))
@@ -65,8 +65,8 @@
   "Return a copy of SIMULATION without what cannot be saved."
   (let* ((copy (copy-without-participants simulation)) (timeline (simulation-timeline copy)))
     (dolist (event (events-waiting copy))
-      (when (functional-p event) (cancel-event (timeline-agenda timeline) event)))
-    (setf (timeline-inbox timeline) (remove-if #'functional-p (timeline-inbox timeline)))
+      (when (holds-function-p event) (cancel-event (timeline-agenda timeline) event)))
+    (setf (timeline-inbox timeline) (remove-if #'holds-function-p (timeline-inbox timeline)))
     copy))
 
 (defun call-with-savable (function simulation without-p)
@@ -156,7 +156,7 @@ saved. Return the truename of FILE."
   (when (simulation-ticking-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
-  (when (eq simulation *simulation*) (follow-settings simulation))
+  (when (eq simulation *simulation*) (record-settings simulation))
   (note-looked-after (simulation-world simulation))
   (let ((programs (programs-head simulation)))
     (call-with-savable

@@ -23,7 +23,7 @@ restored (reading 201)."
   "Return the name of what PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
-(defun own-slots (part)
+(defun slots-of-own-kind (part)
   "Return the slot descriptions of the kind of PART, without the slots that all parts have."
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
@@ -33,7 +33,7 @@ restored (reading 201)."
 
 (defmethod part-status ((part part))
   (list :name (princ-to-string part)
-        :slots (loop for slot in (reverse (own-slots part))
+        :slots (loop for slot in (reverse (slots-of-own-kind part))
                      when (member (kind-slot-role slot) '(:state :memory))
                        collect (list (kind-slot-name slot)
                                      (funcall (kind-slot-reader slot) part)))))

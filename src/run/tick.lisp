@@ -38,20 +38,20 @@ phases up to that. It is 0 before and after."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
             (noting-p simulation))
-    (follow-settings simulation)))
+    (record-settings simulation)))
 
 (defun set-parameter (name value)
   "Set the parameter NAME to VALUE, as the journal of the current run says, which is repeated, and
 record it in the same place of the new journal."
   (setf (parameter-value name) value)
-  (follow-settings *simulation*))
+  (record-settings *simulation*))
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 
 (defun set-cleaning (settings)
   "Make DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
   (setf *noise-before-cleaning* (settings-by-symbol settings))
-  (follow-settings *simulation*))
+  (record-settings *simulation*))
 
 (define-operator 'cleaning '(datum) #'set-cleaning)
 
@@ -80,8 +80,8 @@ record it in the same place of the new journal."
   (check-grips world)
   (setf (world-settled-p world) (every #'settled-robot-p (world-robots world))))
 
-(declaim (inline prolong-journal))
-(defun prolong-journal (simulation)
+(declaim (inline extend-journal))
+(defun extend-journal (simulation)
   "Extend the journal of SIMULATION to the current tick, if it keeps one that is not full."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
@@ -127,7 +127,7 @@ record it in the same place of the new journal."
              (:kickers (run-kickers world))
              (:settling (unless (world-settled-p world) (settle world)))
              (:continuations (end-changing timeline world)
-                             (prolong-journal simulation)
+                             (extend-journal simulation)
                              (deliver-notifications timeline))
              (:observers (when (simulation-observers simulation) (tell-observers simulation))
                          (when (simulation-past simulation) (remember-dice simulation)))

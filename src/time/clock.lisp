@@ -18,21 +18,21 @@
     (wait-on-semaphore (custody-wake-up custody) seconds))
   (setf (custody-asleep-p custody) nil))
 
-(defun held-p (pacing)
+(defun pause-in-effect-p (pacing)
   "True if PACING is paused and has no ticks left to pass by request."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
 (defun stands-still-p (simulation)
   "True if the live SIMULATION is paused and has no ticks left to pass by request."
-  (if-paced (pacing simulation) (held-p pacing)))
+  (if-paced (pacing simulation) (pause-in-effect-p pacing)))
 
-(defun clock-standing-still-p (pacing)
+(defun paused-or-stopped-p (pacing)
   "True if no tick may pass because PACING was paused or stopped."
-  (or (pacing-stopping-p pacing) (held-p pacing)))
+  (or (pacing-stopping-p pacing) (pause-in-effect-p pacing)))
 
 (defun nothing-to-do-p (pacing)
   (if (pacing-paused-p pacing)
-      (held-p pacing)
+      (pause-in-effect-p pacing)
       (funcall (pacing-idle-p pacing))))
 
 (defun keep-pace (custody pacing due)
@@ -42,7 +42,7 @@
         (seconds-now)
         (loop for left = (- due (seconds-now))
               while (and (plusp left)
-                         (not (clock-standing-still-p pacing))
+                         (not (paused-or-stopped-p pacing))
                          (eql rate (pacing-rate pacing)))
               do (sleep-until-woken custody left)
                  (answer-questions custody)
@@ -77,7 +77,7 @@
                   (setf due (seconds-now)))
                  (t (setf due (keep-pace custody pacing due))
                     ;; It may have been paused while it waited.
-                    (unless (clock-standing-still-p pacing)
+                    (unless (paused-or-stopped-p pacing)
                       (pass-tick pacing))))))
 
 (defun release-pacing (custody pacing)

@@ -15,9 +15,9 @@
 
 (addition *hog-seconds*)
 (defparameter *hog-seconds* 0.5
-  "For how many seconds a user's function, such as a continuation, may keep the simulator's thread
+  "How many seconds a user's function, such as a continuation, may run in the simulator's thread
 before a warning names it; also how long STOP-SIMULATOR waits before it interrupts one. At least
-0.05. Threads of the simulator read it, so set it with SETF: a LET does not reach them.")
+0.05. Threads of the simulator read it, so set it with SETF: a LET does not affect them.")
 
 (defun hog-seconds ()
   "Return *HOG-SECONDS*, within bounds."
@@ -71,7 +71,7 @@ needed. CALLS records which users' code the thread is in."
 
 (addition live-p)
 (defun live-p (&optional (simulation (current-simulation)))
-  "True if SIMULATION runs in a thread of its own."
+  "True if SIMULATION runs live, in a separate thread."
   (and (timeline-thread (timeline-of simulation)) t))
 
 (addition paused-p)
@@ -161,8 +161,7 @@ Signals MISUSE if that does not help."
           return t
         do (interrupt-hog pacing)
         finally (let ((origin (user-calls-origin (pacing-calls pacing))))
-                  (reject-use "The simulator of ~A does not stop~@[: ~A does not let itself be ~
-                               interrupted~]."
+                  (reject-use "The simulator of ~A does not stop~@[: ~A cannot be interrupted~]."
                               (timeline-name (pacing-timeline pacing))
                               (and origin (text-of-origin origin))))))
 

@@ -35,7 +35,7 @@
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
    (notifications '() list "the calls due at the end of the tick: lists (function argument...), the
 newest first")
-   (untold '() list "the calls that are being made at the end of the tick, the oldest first"))
+   (due-notifications '() list "those being called at the end of the tick, the oldest first"))
   (:link
    (phase 0 fixnum
           "how many phases of the current tick have begun; 0 between ticks" :export)
@@ -207,14 +207,14 @@ before the others."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
-  (or (pop (timeline-untold timeline))
-      (progn (setf (timeline-untold timeline)
+  (or (pop (timeline-due-notifications timeline))
+      (progn (setf (timeline-due-notifications timeline)
                    (reverse (shiftf (timeline-notifications timeline) '())))
-             (pop (timeline-untold timeline)))))
+             (pop (timeline-due-notifications timeline)))))
 
 (declaim (inline notifications-left-p deliver-notifications))
 (defun notifications-left-p (timeline)
-  (or (timeline-notifications timeline) (timeline-untold timeline)))
+  (or (timeline-notifications timeline) (timeline-due-notifications timeline)))
 
 ;; A notification may fork the run. The fork then gets the remaining ones.
 (defun deliver-all (timeline)
