@@ -133,7 +133,7 @@
                                                 (base:call-with-limit (lambda () (loop)) 1/100
                                                                       #'display::give-up-drawing)))
     (detail robot :hands)
-    (is (mentions-p (base:message-text (first (base:take-messages))) "not come to its end"))))
+    (is (mentions-p (base:message-text (first (base:take-messages))) "had not ended"))))
 
 (test draw-functions.stay-within-their-box
   (with-hand-that-holds (thing robot (lambda (window thing x y width height)

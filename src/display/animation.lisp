@@ -204,8 +204,7 @@ which FILES, the last first, have been written."
   (handler-case (funcall function)
     (misuse (trouble)
       (if files
-          (reject-use "~A. Of the series there ~:[is~;are~] so far ~A."
-                      (one-line-text trouble) (rest files) (files-text files))
+          (reject-use "~A. Written so far: ~A." (one-line-text trouble) (files-text files))
           (error trouble)))))
 
 (defun save-series (journal file &key every until display layers in-color scale title part)

@@ -15,7 +15,7 @@
 
 (defun check-drawing (operator canvas gcontext numbers)
   (when (and *calls-left* (minusp (decf *calls-left*)))
-    (reject-use "It has drawn too many things for one place. Mend what goes on without end."))
+    (reject-use "It has drawn too many things for one place. Correct the endless loop."))
   (unless (canvas-p canvas)
     (reject-argument operator "drawable" canvas "the window that the body was given"))
   (unless (gcontext-p gcontext)

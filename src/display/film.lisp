@@ -140,8 +140,8 @@ LEGEND is a text of list items. If SEVERAL-P, MOMENTS name their robots."
   (write-text title out)
   (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
   (write-text title out)
-  (format out "</h1>~%<noscript><p>To play this a browser needs scripts. Below is how it ~
-               began, and how it ended.</p></noscript>~%")
+  (format out "</h1>~%<noscript><p>To play this film, a browser needs scripts. Below are ~
+               its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
   (write-aside legend moments several-p out)
   (format out "</main>~%")

@@ -115,7 +115,7 @@ Signals WRONG-ARGUMENT."
       (reject-argument operator :moments moments
                        (format nil "a list of moments, or of lists of a tick, a string and perhaps ~
                                     a robot's name, with ~
-                                    whole ticks from 0 to ~D, where what is shown of the run ends"
+                                    whole ticks from 0 to ~D, the last one shown"
                                end)))
     own))
 

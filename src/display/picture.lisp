@@ -92,8 +92,7 @@ save a picture there; the message lists ENDINGS."
     (when (many-files-p file)
       (reject "the name of one file; write \\\\ before each * ? and [ in a string of Lisp"))
     (let ((missing (missing-directory file)))
-      (when missing (reject (format nil "a name in a directory that there is; make ~A first"
-                                    missing))))
+      (when missing (reject (format nil "a name in an existing directory; make ~A first" missing))))
     (or (find (pathname-type file) kinds :test #'string-equal)
         (reject (format nil "a name that ends in ~A" endings)))))
 
@@ -151,10 +150,8 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
        (every (lambda (point) (or (pt-p point) (number-pair-p point))) way)))
 
 (defun check-ways (ways)
-  (when (and (proper-list-p ways) (member nil ways))
-    (reject-argument 'save-way-picture 'ways ways
-                     (format nil "a list of ways. There is a NIL in it, which FIND-WAY returns ~
-                                  where there is no way: leave that out")))
+  (check-argument save-way-picture ways (not (and (proper-list-p ways) (member nil ways)))
+                  "a list of ways without NIL, which FIND-WAY returns if there is no way")
   (check-argument save-way-picture ways (and (proper-list-p ways) (every #'way-p ways))
                   "a list of ways, each a list of PTs or of lists (x y)"))
 

@@ -21,7 +21,7 @@
 (defun give-up-drawing ()
   "Signal MISUSE: users' code has drawn for too long. Do nothing if it waits in a debugger."
   (unless (user-calls-waiting-p *user-calls*)
-    (reject-use "It had not come to its end after ~D seconds. Mend what goes on without an end."
+    (reject-use "It had not ended after ~D seconds. Correct the endless loop."
                 +drawing-seconds+)))
 
 (defun draw-by-user (canvas function origin x y width height &rest arguments)

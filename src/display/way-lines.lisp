@@ -151,7 +151,7 @@ they would overlap.")
   "Draw a sample of the way at POSITION of several, in COLOR, along POINTS, x y ... in pixels."
   (draw-way-lines canvas (list (make-way-line position (list points) :color color :lane 0))))
 
-;;; Whether jumps are to be seen.
+;;; Visible jumps and ways.
 
 (defconstant +tile+ 4 "The side of the boxes that cover a line, in pixels.")
 

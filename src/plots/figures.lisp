@@ -10,7 +10,7 @@
 (defun as-rational (value)
   "Return VALUE, a finite number or NIL, as a rational or NIL; 0.1 as 1/10. Signals WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
-                  "a number that is not infinite, or NIL if there is none")
+                  "a finite number, or NIL if there is none")
   ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.
   (and value
        (if (and (floatp value) (< (float-precision value) (float-digits value)))

@@ -30,7 +30,7 @@ SIMULATION."
   (dolist (moment moments)
     (when (and (moment-robot moment) (not (robot-of moment simulation)))
       (reject-argument 'save-run-picture :moments (moment-robot moment)
-                       (format nil "a robot's name in each list, if any: ~{~(~A~)~^, ~}"
+                       (format nil "names of robots of the run, if any: ~{~(~A~)~^, ~}"
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun watch-run (journal until own)
@@ -185,7 +185,7 @@ others."
 (defun check-run-picture (journal moments until &key kinds limit title layers scale)
   "Return MOMENTS, an argument of SAVE-RUN-PICTURE, as moments. Signals WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
-                  "a whole number, how many lines there are below the map at most, or NIL for all")
+                  "a whole number, the most lines below the map, or NIL for all")
   (check-kinds 'save-run-picture kinds)
   (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
