@@ -240,7 +240,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
   (list-libraries))
 
 (defun load-strictly (system)
-  "Do as LOAD-PROJECT does; a warning in any file of the project is an error."
+  "Compile and load SYSTEM as LOAD-PROJECT does; a warning in any file of the project is an error."
   (when (and *cache* (probe-file (warned-file)))
     (forget (project-fasls)))
   (load-libraries (libraries system))
@@ -270,7 +270,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
                        (t "nothing"))))))
 
 (defun get-window-libraries ()
-  "Let Quicklisp fetch McCLIM, if need be, and load it. If that fails, say why and end this Lisp."
+  "Load McCLIM; Quicklisp fetches it if needed. If that fails, print why and end this Lisp."
   (handler-case (uiop:symbol-call :ars-magna.clx :get-by-quicklisp)
     (error (condition)
       (format t "~&*** ~A~%" (one-line condition))

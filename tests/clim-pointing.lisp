@@ -70,7 +70,7 @@
   "Unless the thing is picked, as by a click."
   (in-window (window robot)
     (let ((pane (robot-beneath window '(5.5 4.5))))
-      (flet ((taken () (display::subject-title (window::grip-at pane 44 36))))
+      (flet ((taken () (display::subject-title (window::draggable-at pane 44 36))))
         (is (mentions-p (window::hover-text pane 44 36) "PEN#"))
         (is (mentions-p (window::hover-text pane 44 36) "STUDIO-ROBOT"))
         (is (equal "STUDIO-ROBOT" (taken)))
@@ -97,7 +97,7 @@ leads to both."
            (is (not (same-place-p (first boxes) (second boxes))))
            (multiple-value-bind (x y) (window::robot-place pane)
              (is (eq (robot:robot-name shown)
-                     (display:robot-image-name (window::grip-at pane (round x) (round y)))))
+                     (display:robot-image-name (window::draggable-at pane (round x) (round y)))))
              (dolist (name '("MARVIN" "GOFER"))
                (is (mentions-p (window::hover-text pane (round x) (round y)) name))
                (is (mentions-p (format nil "~{~A~}" (offered pane (round x) (round y)))
@@ -218,7 +218,7 @@ leads to both."
       (window::publish (window::window-watcher window) (time:current-simulation))
       (is (not (eq before (window::window-robot window))))
       (is (member '("Stop" "stop") (window::offers before window) :test #'equal))
-      (is (equal "pos 3 4" (window::carrying-line before "3" "4" window))))))
+      (is (equal "pos 3 4" (window::moving-line before "3" "4" window))))))
 
 (test pointing.offers-what-can-be-done-with-a-designator
   "Track, and what is tracked, grasp."

@@ -42,7 +42,7 @@
       (unwind-protect
            (loop repeat 2
                  do (base:join-thread (bordeaux-threads:make-thread #'err :name "of a trial")))
-        (setf told (shiftf cli::*told-of-threads* '())
+        (setf told (shiftf cli::*reported-thread-errors* '())
               cli::*session* session cli::*own-process-p* own-p)))
     (is (equal (list (format nil "Error in a thread, of a trial, that a program has started: no, ~
                                   boo. That thread ends; everything else continues."))

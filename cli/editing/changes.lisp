@@ -73,7 +73,7 @@
   (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
 
 (defun killed (text start end)
-  "Do as DELETED does; return the deleted text as a third value."
+  "Return what DELETED returns, and the deleted text as a third value."
   (multiple-value-call #'values (deleted text start end) (subseq text start end)))
 
 (define-key *changes* (:rubout) (text point)

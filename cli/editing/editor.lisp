@@ -205,7 +205,7 @@ other values do not matter.")
   text)
 
 (defun do-key (stream key)
-  "Do what KEY does. Return a text, or :EOF, if the line has ended."
+  "Handle KEY. Return a text, or :EOF, if the line has ended."
   (cond ((stringp key) (insert-typed stream key) nil)
         ((consp key) (ecase (first key)
                        (:paste (insert-pasted stream (second key)) nil)
@@ -239,7 +239,7 @@ marking it is drawn once. Return a text, or :EOF, if the line has ended by that.
     (unless (eq next :none) (do-key stream next))))
 
 (defun do-keys (stream)
-  "Do what the keys that are pressed do, until the line has ended. Return what EDIT-LINE does."
+  "Handle keys until the line has ended. Return what EDIT-LINE does."
   (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
   (loop for key = (read-key (octet-reader stream))
         for end = (if (stringp key) (insert-typed-text stream key) (do-key stream key))

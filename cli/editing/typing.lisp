@@ -188,8 +188,8 @@ What is no whole line is being typed."
 
 ;;;; Windows
 
-;;; A window passes on keys, and shows the line on a console of its own. All else is as at a
-;;; terminal: keys, history, Tab. The terminal's state is not affected.
+;;; A window passes on keys, and shows the line on its console. All else is as at a terminal: keys,
+;;; history, Tab. The terminal's state is not affected.
 
 (defclass window-text (edited-text) ()
   (:default-initargs :by-hand-p t)

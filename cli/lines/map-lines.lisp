@@ -67,11 +67,11 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)
       (with-output-to-string (*standard-output*)
-        (still (write-string (apply #'text-map robot
-                                    :columns (max 20 (1- columns))
-                                    :rows (and lines (max 5 (- lines lines-below)))
-                                    :paint (and (console-colored-p console) #'paint)
-                                    options)))))))
+        (while-still (write-string (apply #'text-map robot
+                                          :columns (max 20 (1- columns))
+                                          :rows (and lines (max 5 (- lines lines-below)))
+                                          :paint (and (console-colored-p console) #'paint)
+                                          options)))))))
 
 (define-choices :map-words (mapcar #'string-downcase (words-of-map)))
 
@@ -95,7 +95,7 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
 ;;; another.
 
 (defconstant +frame-seconds+ 0.1d0 "How long a map is seen at least, in seconds.")
-(defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no pace of its own.")
+(defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no rate.")
 
 (defun time-passes-p (session simulation)
   (and (live-p simulation)
@@ -107,7 +107,7 @@ characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work
   (and (time-passes-p session simulation) (idle-p simulation)))
 
 (defun pass-tick (session simulation)
-  "Let a tick of SIMULATION pass, or wait until one has passed, or none will."
+  "Pass a tick of SIMULATION, or wait until one has passed, or none will."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
     (await (lambda ()

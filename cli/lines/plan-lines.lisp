@@ -176,7 +176,7 @@ Lisp (setf *trace-plans* t), before the plan starts."
   (if n
       (write-string (visible (task-why-text n)))
       (let ((robot (session-robot)))
-        (still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
+        (while-still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
 
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)

@@ -34,7 +34,7 @@
     (format t "~A~%" (time-text session simulation))))
 
 (defun resume-here (session)
-  "Let time pass again in the run of SESSION, even if its clock was stopped."
+  "Resume the run of SESSION, even if its clock was stopped."
   (check-run)
   (let ((simulation (current-simulation)))
     (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
@@ -50,7 +50,7 @@ end."
       (resume-here session)))
 
 (defun step-here (session count)
-  "Let COUNT ticks pass; report that, and whether the clock had been stopped."
+  "Pass COUNT ticks; report that, and whether the clock had been stopped."
   (check-run)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))

@@ -7,7 +7,7 @@
 (defun write-parts (heading writer reader)
   "Write HEADING, and by WRITER each part of the robot that READER returns."
   (let ((robot (session-robot)))
-    (still
+    (while-still
       (format t "~A~%-----~%" heading)
       (map nil writer (funcall reader robot)))))
 
@@ -126,9 +126,9 @@ turning speed, what its cameras see now, the last place sensed, its designators,
 progress and who issued them, the last interruption, and the cost of thinking if that was changed.
 It tells if no ticks pass. In Lisp: (status)."
   (let ((robot (session-robot)))
-    (still (or (report-status session robot)
-               (progn (write-status (status robot))
-                      (write-standstill session (current-simulation)))))))
+    (while-still (or (report-status session robot)
+                     (progn (write-status (status robot))
+                            (write-standstill session (current-simulation)))))))
 
 (defun where-text (thing)
   (let ((location (thing-location thing)))
@@ -141,7 +141,7 @@ It tells if no ticks pass. In Lisp: (status)."
     (:seeing)
     "List all things in the world with their locations and attributes."
   (let ((world (robot-world (session-robot))))
-    (still
+    (while-still
       (do-things (thing world)
         (put-line "~A ~A" thing (where-text thing))
         (write-descriptor (thing-attributes thing) #'amount-text)))))

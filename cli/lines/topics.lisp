@@ -99,7 +99,7 @@
 (defun restart-words (name)
   (format nil "~A In Lisp: (invoke-restart '~(~A~))." (restart-documentation name) name))
 
-;;; Names in a system of their own.
+;;; Names in a separate system.
 
 (defun names-elsewhere ()
   "Return the names that the system ars-magna/fiveam defines, or NIL if it is loaded."

@@ -59,8 +59,8 @@
             (whereabouts session break-request))))
 
 (defun awaited-answers (session)
-  "Return in words, as a list, the breaks that wait for the user of SESSION, the one that is asked
-about first. Any thread may ask."
+  "Return a list of texts on the breaks that wait for SESSION's user; the first is asked about now.
+Any thread may ask."
   (mapcar (lambda (break-request) (break-line session break-request)) (breaks-awaiting session)))
 
 (defun ways-awaited (session)
@@ -78,15 +78,15 @@ about first. Any thread may ask."
         (breaks-awaiting session)))
 
 (defun asker-of-break (simulation)
-  "Return in words, to follow others, that another debugger than the prompts' asks about a break in
-the thread of SIMULATION; or NIL."
+  "Return a text, to follow others, if another debugger than the prompts' asks about a break in the
+thread of SIMULATION; or NIL."
   (let ((debugger (debugger-asking (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-showing simulation))
          (format nil "and ~A waits for the answer" debugger))))
 
 (defun answers-break-p (text)
-  "True if TEXT, a line, can be typed where a break is answered, whatever has broken."
+  "True if TEXT, a line, is valid while any break is answered."
   (or (comment-p text) (lisp-p text)))
 
 ;;;; Who is asked
@@ -95,7 +95,7 @@ the thread of SIMULATION; or NIL."
 ;;; on the running prompts, however they start and end: the debugger's if one of them can ask its
 ;;; user; else the one that reports that no user can answer; without prompts, the original hook.
 
-(defvar *hooks-at-work* '() "The hooks of the prompts that are at work, the newest first.")
+(defvar *hooks-at-work* '() "The hooks of the running prompts, the newest first.")
 (defvar *hook-before* nil "The hook that all threads shared before the first prompt.")
 
 (defun hook-to-share ()

@@ -12,8 +12,8 @@
 newest first. NEW-P is true if the name had no value then.")
 
 (defun handle-warning (condition)
-  "Hide the compiler's long report of what users are about to be told. Warnings about definitions
-are messages like others."
+  "Muffle the compiler's report on CONDITION if users get a message on it. Warnings about
+definitions become messages."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
@@ -29,8 +29,8 @@ are messages like others."
     (funcall function)))
 
 (defun call-telling-undefined (function &optional file)
-  "Call FUNCTION and return its values. Names that its forms, of FILE or typed, use and that are
-still undefined at the end are reported as messages."
+  "Call FUNCTION and return its values. Report names that its forms, of FILE or typed, use and that
+are still undefined at the end."
   (let ((*undefined* '()))
     (multiple-value-prog1 (funcall function)
       (loop for (name kind new-p) in (reverse *undefined*)
@@ -68,7 +68,7 @@ WARNING-SET. Do nothing elsewhere."
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
 (defun tell-of-compiling (condition)
-  "Tell what CONDITION says if it is that COMPILE-FILE cannot compile a form, or warns of one."
+  "Report CONDITION if it is an error or warning of COMPILE-FILE about a form."
   (cond ((null *compile-file-truename*))
         ((compiler-error-p condition)
          (tell-with-place #'error-set (encapsulated-condition condition)))
@@ -256,8 +256,8 @@ that could not be read."
     (invoke-debugger condition)))
 
 (defun complain-of-printing (session trouble)
-  "Say in SESSION that the error cannot be printed, because of TROUBLE. At a terminal no line could
-be typed either: so signal that."
+  "Report in SESSION that the error cannot be printed, because of TROUBLE. At a terminal no line
+could be typed either: so signal that."
   (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
@@ -319,8 +319,8 @@ neither, or if that is not recorded."
           count))
 
 (defun interrupted (session whose)
-  "Tell the user of SESSION that an interrupt has ended the line, in code of WHOSE, a text or NIL.
-Users' code that keeps the simulator waiting is aborted, too."
+  "Report in SESSION that an interrupt has ended the line, in code of WHOSE, a text or NIL. Users'
+code that keeps the simulator waiting is aborted, too."
   (when (session-batch-p session)
     (say-where session (format nil "stopped~@[ in ~A~]." whose))
     (throw 'leave 130))
@@ -330,7 +330,7 @@ Users' code that keeps the simulator waiting is aborted, too."
     (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped) (what-goes-on session))))
 
 (defun call-guarded (session function)
-  "Call FUNCTION, which may be interrupted; complain of what goes wrong in it."
+  "Call FUNCTION, which may be interrupted; report its errors."
   (let ((whose nil))
     (flet ((look-into (condition) (debug-if-wanted session condition))
            (look-whose (condition)

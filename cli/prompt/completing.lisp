@@ -79,7 +79,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
 
 ;;;; What there is
 
-;;; The first word is the name of a command; each other has the type of the command's argument;
+;;; The first word is the name of a command; each other word has the type of its argument;
 ;;; inside parentheses are symbols, in quotes file names. Parts that make no sense are not
 ;;; completed.
 
@@ -91,7 +91,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
     (t (princ-to-string choice))))
 
 (defun matching (typed choices)
-  "Return those of CHOICES that begin with TYPED, in whatever case, as they are typed, in order."
+  "Return the texts of those CHOICES that begin with TYPED, ignoring case, sorted."
   (flet ((begins-p (text) (starts-with-subseq typed text :test #'char-equal)))
     (remove-duplicates (stable-sort (remove-if-not #'begins-p (mapcar #'text-of-choice choices))
                                     #'string<)
@@ -115,7 +115,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
         finally (return start)))
 
 (defun operator-at (text point)
-  "Return the symbol that the innermost form begins with that POINT is in, or NIL."
+  "Return the operator, a symbol, of the innermost form around POINT, or NIL."
   (loop with depth = 0
         for position from (1- point) downto 0
         do (case (char text position)
@@ -154,7 +154,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun symbols-here ()
-  "Return the symbols of this package, but for those that have no meaning and were only typed."
+  "Return the symbols of this package, except those that have no meaning and were only typed."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
       (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))

@@ -27,7 +27,7 @@
 
 (defun call-in-broken-thread (session break-request function)
   "Make the thread of BREAK-REQUEST call FUNCTION, and wait until it has done so or continues."
-  (cond ((here-p break-request) (funcall function))
+  (cond ((broken-here-p break-request) (funcall function))
         (t (post-call session break-request function)
            (wait-on-semaphore (break-request-done break-request)))))
 
@@ -66,15 +66,16 @@
            (call-in-broken-thread session break-request
                                   (lambda () (print-plans *standard-output* t))))
           (t (multiple-value-bind (word rest) (split-line text)
-               (choose session break-request (restart-called word break-request) rest))))))
+               (continue-by-restart session break-request (restart-called word break-request)
+                                    rest))))))
 
-(defun choose (session break-request restart rest)
+(defun continue-by-restart (session break-request restart rest)
   "Continue BREAK-REQUEST by RESTART. If it needs a value, that is REST, or else the next line."
-  (let* ((asks-p (and (asks-p restart) (not (here-p break-request))))
-         (answer (cond ((not asks-p) nil)
+  (let* ((needs-value-p (and (restart-asks-p restart) (not (broken-here-p break-request))))
+         (answer (cond ((not needs-value-p) nil)
                        ((every #'blank-p rest) (read-input session "Value> "))
                        (t rest))))
-    (unless (and asks-p (null answer))
+    (unless (and needs-value-p (null answer))
       (flet ((continue-with-answer ()
                (let ((*query-io* (if answer
                                      (make-two-way-stream (make-string-input-stream answer)
@@ -165,7 +166,7 @@ run, or else all; NIL if its user has left it."
              (remove-if-not #'can-answer-p (sessions-at-work))))))
 
 (defun broken-here (condition sessions)
-  "Return what CONDITION has broken in this thread, for the users of SESSIONS."
+  "Return a break request for CONDITION in this thread, for the users of SESSIONS."
   (make-break-request condition (restarts-to-offer condition) (current-thread) sessions))
 
 (defun debug-here (session break-request)
@@ -187,8 +188,8 @@ run, or else all; NIL if its user has left it."
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defmethod serve-while-waiting ((prompts prompts))
-  "If this thread has the prompt, and carries out a line, read lines for breaks in other threads,
-until those continue."
+  "If this thread has a prompt that runs a line, read lines for breaks in other threads, until
+those continue."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
       (loop for break-request = (first (session-breaks session))
@@ -197,15 +198,15 @@ until those continue."
                (call-complaining session (lambda () (read-debug-line session break-request)))))))
 
 (defun give-up (condition)
-  "Leave what CONDITION has come up in, by the innermost restart that does."
+  "Abort what has signalled CONDITION, by the innermost restart for that."
   (invoke-restart (or (find-if (lambda (restart)
                                  (member (restart-name restart) '(abort end-line)))
                                (restarts-within condition))
                       'abort)))
 
 (define-event *break-hooks*
-  "Functions of no arguments, or their names, that are called in a thread that has broken before it
-asks how to continue: to show the state in which it stands still.")
+  "Functions of no arguments, or their names. A thread that breaks calls them before it asks how to
+continue, to show its state.")
 
 (defun outside-prompts-p ()
   "True if prompts ignore breaks of this thread: it is a user's own, without a prompt, in a Lisp
@@ -235,33 +236,34 @@ that does other things too."
         (debugger-hook) 'debugger-disabled-hook))
 
 (defun end-for-unhandled (condition)
-  "End this process, which is starting or ending, as nothing handles CONDITION."
+  "End this process, which is starting or ending, because nothing handles CONDITION."
   (when (typep condition 'user-interrupt) (end-interrupted))
   (say-on-error-output (condition-text condition))
   (end-process 1))
 
 (defun users-thread-text (condition)
-  "Return the message on CONDITION, which nothing handles in this thread of a program's."
+  "Return the message on CONDITION, which nothing handles in this thread of a user's program."
   (let ((serious-p (typep condition 'serious-condition)))
     (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
                  ~:[It continues~;That thread ends; everything else continues~]."
             serious-p (thread-name (current-thread))
             (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
 
-(defconstant +most-told+ 100 "How many different errors in threads of programs are reported.")
+(defconstant +most-reported+ 100 "How many different errors in threads of programs are reported.")
 
-(defvar *told-of-threads* '() "What was reported of threads of programs; each is reported once.")
-(defvar *told-lock* (make-lock "told of threads"))
+(defvar *reported-thread-errors* '()
+  "What was reported of threads of programs; each is reported once.")
+(defvar *reported-lock* (make-lock "reported thread errors"))
 
-(defun tell-of-users-thread (condition)
+(defun report-users-thread (condition)
   "Write a message on CONDITION to the error output, once, and not after very many others."
   (let* ((text (users-thread-text condition))
-         (count (with-lock (*told-lock*)
-                  (unless (or (member text *told-of-threads* :test #'string=)
-                              (< +most-told+ (length *told-of-threads*)))
-                    (length (push text *told-of-threads*))))))
+         (count (with-lock (*reported-lock*)
+                  (unless (or (member text *reported-thread-errors* :test #'string=)
+                              (< +most-reported+ (length *reported-thread-errors*)))
+                    (length (push text *reported-thread-errors*))))))
     (when count
-      (say-on-error-output (if (<= count +most-told+)
+      (say-on-error-output (if (<= count +most-reported+)
                                text
                                "There are more errors in threads; they are no longer reported.")))))
 
@@ -271,7 +273,7 @@ that does other things too."
 Lisp's debugger without a terminal or window, or while a break is being answered."
   (declare (ignore hook))
   (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
-        ((and *own-process-p* (users-thread-p)) (tell-of-users-thread condition))
+        ((and *own-process-p* (users-thread-p)) (report-users-thread condition))
         (*own-process-p* (end-for-unhandled condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (give-up condition))
@@ -282,7 +284,7 @@ Lisp's debugger without a terminal or window, or while a break is being answered
   (when (sessions-to-ask) (enter-debugger condition nil)))
 
 (defun tell-of-inquiry (condition asker)
-  "Tell the prompts in the simulation that ASKER asks how to continue after CONDITION."
+  "Report in the prompts of the simulation that ASKER asks how to continue after CONDITION."
   (unless (eq 'enter-debugger (common-debugger-hook))
     (dolist (session (remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
       (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
@@ -295,7 +297,8 @@ Lisp's debugger without a terminal or window, or while a break is being answered
 ;;; From when to when.
 
 (defun release (session break-request)
-  "Continue BREAK-REQUEST, which only SESSION could answer, by the likeliest restart; report that."
+  "Continue BREAK-REQUEST, which only SESSION could answer, by the most likely restart; report
+that."
   (let ((restart (first (break-request-restarts break-request))))
     (post-call session break-request
                (lambda ()

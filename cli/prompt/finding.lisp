@@ -74,7 +74,7 @@
 (defun hint-for (name)
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
 
-;;; Advice on how to type what is no line.
+;;; Advice for words that are not lines.
 
 (defun plan-advice (name)
   (let ((plan (find-procedure name nil)))
@@ -95,7 +95,7 @@
                  (parameter-name parameter)))))
 
 (defun call-advice (name)
-  "Return in a sentence how the line is typed that NAME, such as TURN(90), begins with; else NIL."
+  "Return a sentence on how to type the line that NAME, such as TURN(90), begins with; else NIL."
   (let ((place (position #\( name)))
     (and place (plusp place) (line-advice (subseq name 0 place)))))
 
@@ -186,8 +186,8 @@ name, or the same."
 ;;; A second command in a line.
 
 (defun command-in-comment (text)
-  "Return the comment in TEXT, a line of no Lisp, that begins right behind a word, as in
-turn 1; go 3, with the name of a line command; or NIL."
+  "Return the comment in TEXT, a line that is not Lisp, if it follows a word without a blank and
+begins with the name of a line, as in turn 1; go 3. Otherwise return NIL."
   (let ((start (position #\; text)))
     (when (and start
                (plusp start)

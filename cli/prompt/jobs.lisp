@@ -74,14 +74,14 @@ if it does not in time, when only this waiting lets ticks pass."
         (t (run-until test :limit *patience* :simulation *simulation*))))
 
 (defgeneric await-job (job)
-  (:documentation "Wait until JOB is done; signal BAD-LINE if it is not in good time.")
+  (:documentation "Wait until JOB is done; signal BAD-LINE if that takes too many ticks.")
   (:method (job)
     (unless (or (await (lambda () (job-over-p job)))
                 (held-up-p *simulation*))
       (reject-line "The command has not completed within ~D ticks; it continues." *patience*))))
 
 (defun send (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, an job of SESSION that is done when it completes."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, a job of SESSION that is done when it completes."
   (let ((job (make-job :resource resource)) (*ticks-follow-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
@@ -124,8 +124,8 @@ if it does not in time, when only this waiting lets ticks pass."
   (not (some-request-p #'awaited-p)))
 
 (defun await-requests (&optional (test #'awaited-p))
-  "Let time pass until no request for which TEST is true waits or is in progress, within the limit
-of patience. True if there is none."
+  "Let time pass until no request for which TEST is true waits or is in progress, for *PATIENCE*
+ticks at most. True if there is none."
   (let ((simulation *simulation*))
     (await (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
 
@@ -141,7 +141,7 @@ of patience. True if there is none."
            (or (session-patient-p session) (headless-p *simulation*)))))
 
 (defun catch-up (session)
-  "Wait for what SESSION has issued, itself or by Lisp, if it is one that waits."
+  "Wait for what SESSION has issued, itself or by Lisp, if SESSION waits for that."
   (let ((after-rewind (shiftf (session-after-rewind session) nil)))
     (when after-rewind (funcall after-rewind session)))
   (if (waits-p session)
@@ -175,8 +175,8 @@ of patience. True if there is none."
          (some-request-p (lambda (request) (of-lisp-in-line-p (request-asker request) account))))))
 
 (defun end-of-jobs (session)
-  "Return NIL if what SESSION has issued last has ended, or what CATCH-UP has not waited for: a
-function that returns what HOW-ENDED does."
+  "Return NIL if what SESSION has issued last has ended, or if CATCH-UP has not waited for it. Else
+return a function that returns what HOW-ENDED does."
   (let ((jobs (remove-if #'job-apart-p (jobs-under-way session)))
         (lisp-p (lisp-goes-on-p session)))
     (unless (how-ended jobs lisp-p)

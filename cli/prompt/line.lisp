@@ -143,7 +143,7 @@ DETAILS, strings, are paragraphs below the parameters."
                         (command-name command) (command-section command)))))
 
 (defun line-name-of (command)
-  "Return what the line command for COMMAND is called: manual E says -DESIG for designators."
+  "Return the name of the line command for COMMAND: manual E writes -DESIG for designators."
   (let* ((name (string-upcase (command-prompt-name command)))
          (start (search "-DESIG" name :from-end t)))
     (if start (subseq name 0 (+ start 6)) name)))
@@ -163,7 +163,7 @@ DETAILS, strings, are paragraphs below the parameters."
                            (send session command (first arguments) (rest arguments))))))
 
 (defvar *robot-lines* '(() . ())
-  "The robot's commands and the line commands that they make, as when that was looked up last.")
+  "The robot's commands and the line commands that they make, as last looked up.")
 
 (defun robot-lines ()
   (let ((commands (all-commands)))

@@ -35,13 +35,13 @@
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
 (defun repeated-often-p (message counts)
-  "Count MESSAGE in COUNTS. True if it is one of many alike and is to be hidden."
+  "Count MESSAGE in COUNTS. True if it repeats so often that it is hidden."
   (let* ((tally (tally-for message counts)) (count (incf (tally-count tally))))
     (setf (tally-tick tally) (tick-of message))
     (and (< 3 count) (not (power-of-ten-p count)))))
 
 (defun repetition-text (message counts)
-  "Return a note on how often MESSAGE, which is shown, was reported by COUNTS, or NIL."
+  "Return a note on how often MESSAGE, which is shown, was reported, by COUNTS; or NIL."
   (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
@@ -53,11 +53,11 @@
               (and item (recurring-remedy item))))))
 
 (defun reset-line-error-counts (counts)
-  "Forget the counts in COUNTS of errors of lines."
+  "Remove the errors of lines from COUNTS."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
 (defun merge-counts (counts others)
-  "Continue the counts of COUNTS from those of the table OTHERS."
+  "Add to COUNTS the higher counts of the table OTHERS."
   (maphash (lambda (text tally)
              (let ((own (gethash text counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
@@ -141,7 +141,7 @@ message says how to hide them.")
        (not (line-asker-p (message-asker message)))))
 
 (defun others-p (message)
-  "True if MESSAGE reports the end of a command that a plan or program has issued."
+  "True if MESSAGE ends a command that a plan or program has issued."
   (let ((asker (message-asker message)))
     (not (or (null asker) (equal asker +asker+)))))
 

@@ -5,8 +5,8 @@
 (export '(*whereabouts-hooks* tell-first-messages go-to-run run-after tell-of-run run-of-robot
           words-for-run in-trial-or-fork-p trial-or-fork-text pace-of))
 
-;;; Each session has a thread, a robot and a current simulation of its own. Messages of a simulation
-;;; are shown by all sessions in it, and each of them can answer a break in its thread.
+;;; Each session has its thread, robot and current simulation. Messages of a simulation are shown by
+;;; all sessions in it, and each of them can answer a break in its thread.
 
 (defvar *sessions* '() "The running sessions, the newest first.")
 (defvar *sessions-lock* (make-lock "sessions"))
@@ -36,8 +36,8 @@
            (with-lock (*sessions-lock*) *sessions*)))
 
 (defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
-  "How what SESSION, if that is known, has started comes to its end, such as a plan, as an item of a
-message. Prints as TEXT. SESSION shows the message, whatever run it is in."
+  "An item of a message: how something that SESSION, or NIL, has started ended, such as a plan.
+Prints as TEXT. SESSION shows the message, whatever run it is in."
   (text "" :type string :read-only t)
   (session nil :type (or null session) :read-only t))
 
@@ -211,8 +211,8 @@ while a headless run stands still.")
 ;;; a line say so at once, and show messages from there; each switches before it runs the next line.
 
 (defvar *replacements* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each run that WORLD has led out of, the one that it has led to and the name of the robot
-there, in a list.")
+  "For each run that WORLD has replaced, a list of the run that replaced it and the robot's name
+there.")
 
 (defun run-of-robot (name)
   "Return the live run that the robot called NAME is in now, or NIL."
@@ -245,8 +245,8 @@ and the name of the robot that it commands there; NIL if there is none."
     (say-in other text)))
 
 (defun tell-of-run (session simulation robot-name)
-  "Make SESSION, which another session leads to the robot ROBOT-NAME of SIMULATION, report that and
-show messages from there. Do nothing if it does so already. Any thread may ask."
+  "Move SESSION to the robot ROBOT-NAME of SIMULATION, as another session does so: report that, and
+show messages from there. Do nothing if it is there. Any thread may ask."
   (unless (eq simulation (session-simulation session))
     (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
                             (words-for-run simulation)))

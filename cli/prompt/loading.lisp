@@ -64,7 +64,7 @@
 ;;;; Loading
 
 (defun call-watched-at (place function)
-  "Call FUNCTION, while PLACE, a function, returns the place in the file that is being loaded."
+  "Call FUNCTION while PLACE, a function, returns the place in the file being loaded."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))
@@ -76,8 +76,8 @@
   (1+ (count #\Newline text :end position)))
 
 (defun call-on-line (function file line)
-  "Call FUNCTION, which deals with what FILE has on the line that the function LINE returns of a
-condition, or of NIL."
+  "Call FUNCTION. Its errors name FILE and the line that LINE, a function, returns for the
+condition, or for NIL."
   (handler-bind ((error (lambda (condition)
                           (unless (placed-p condition)
                             (error 'file-trouble :file file :cause condition
@@ -99,7 +99,7 @@ the form begins, if the form does not end."
                   (lambda (condition) (line-of-stumble condition stream start)))))
 
 (defun load-forms (path)
-  "Do as LOAD does with the Lisp file at PATH. Signals FILE-TROUBLE."
+  "Load the Lisp file at PATH as LOAD does. Signals FILE-TROUBLE."
   ;; The message says why a file has been left; the compiler's own is not needed.
   (let ((*error-output* (make-broadcast-stream)))
     (call-telling-undefined (lambda ()

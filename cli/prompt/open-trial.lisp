@@ -91,11 +91,11 @@
 ;;; Has a line changed the run? Then it is no longer the experiment's.
 
 (defun trial-state ()
-  "Return what determines the course of the current simulation: a digest, and the pending requests."
+  "Return what determines the current simulation's course: a digest and the pending requests."
   (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
 
 (defun note-if-changed (session trial before)
-  "Say so if the run in TRIAL is no longer in the state BEFORE."
+  "Report it if the run in TRIAL is no longer in the state BEFORE."
   (unless (or (open-trial-changed trial) (every #'eql before (trial-state)))
     (setf (open-trial-changed trial) (simulation-tick *simulation*))
     (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
@@ -121,7 +121,7 @@
         while (plusp left)))
 
 (defun begin-trial (session trial)
-  "Let users call robots by their names, and see them if there can be a window."
+  "Make the robots' names known to Lisp, and open a window if there can be one."
   (unless (shiftf (open-trial-begun-p trial) t)
     (call-by-name (robots-here))
     (when (display-wanted-p session)
@@ -145,7 +145,7 @@
 ;;; Between ticks.
 
 (defun tell-stop (session trial)
-  "Say that the ticks which were to pass in TRIAL have passed, or were stopped."
+  "Report that the ticks which were to pass in TRIAL have passed, or were stopped."
   (when (shiftf (open-trial-interrupted-p trial) nil)
     (answered (session-console session))
     (setf (open-trial-stepped-p trial) t))

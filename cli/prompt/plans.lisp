@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; A plan is an job like a command to the robot. Live, a thread watches each plan and reports
+;;; A plan is a job, like a command to the robot. Live, a thread watches each plan and reports
 ;;; its end. Now and then, between two reactions of the plans, it checks whether they can still
 ;;; continue; a plan that cannot is ended if the session waits for it. Headless, the prompt checks
 ;;; after each tick.

@@ -6,8 +6,8 @@
           at-work-on abandon-session asked-of-others-p))
 
 (defun waits-for-time-p (session jobs inbox)
-  "True if something was requested that waits for time to pass, while time stands still, since
-SESSION had JOBS, and the simulation INBOX."
+  "True if time stands still, and something was requested since SESSION had JOBS and the simulation
+INBOX."
   (and *simulation*
        (if (live-p *simulation*) (paused-p *simulation*) (not (headless-p *simulation*)))
        (null (session-trial session))
@@ -16,8 +16,8 @@ SESSION had JOBS, and the simulation INBOX."
        t))
 
 (defun do-telling-of-time (session text)
-  "Run TEXT, a line of SESSION. If it requests something that cannot begin, since time stands still,
-say so to a user at a terminal or window."
+  "Run TEXT, a line of SESSION. If what it requests waits because time stands still, say so to a
+user at a terminal or window."
   (let ((jobs (session-jobs session)) (inbox (requests-waiting))
         (break-request (first (session-breaks session))))
     (if break-request
@@ -32,8 +32,8 @@ say so to a user at a terminal or window."
                    (lines-typed (session-input session)) (session-errors session)))
 
 (defun begin-next (session text trouble)
-  "Begin the line of SESSION that is TEXT; or of which TEXT is an outline, if the condition TROUBLE
-says that it is too long. Return it without comments between #| and |#, of any length."
+  "Begin the line TEXT of SESSION; TEXT is an outline if TROUBLE, a condition, says that the line
+is too long. Return it without comments between #| and |#, of any length."
   (begin-line-of session (if trouble (line-beginning trouble) text))
   (multiple-value-bind (rest trouble) (without-blocks session text trouble)
     (check-outline session rest trouble)
@@ -69,11 +69,11 @@ outline, and the condition that says so."
                    (not (session-terminal-p session)))))))
 
 (defun next-line-inside (session)
-  "Do as NEXT-LINE does, while another line still runs, which this does not affect."
+  "Call NEXT-LINE while another line still runs, which this does not affect."
   (let ((*asker* nil) (*told-of* nil)) (next-line session)))
 
 (defun stopped-p (session)
-  "True if SESSION stops at an error, and there was one when all was done that it has asked for."
+  "True if SESSION stops at an error, and there was one when all its requests had ended."
   (when (reader-stop-p (session-reader session))
     (catch-up session)
     (show-messages session)
@@ -153,7 +153,7 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
 
 ;;;; Several prompts at once
 
-;;; Each has a thread, a robot and a current simulation of its own.
+;;; Each has its own thread, robot and current simulation.
 
 (defun run-session-apart (session simulation robot-name)
   "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, until
@@ -186,7 +186,7 @@ is lost is not ended: others are asked, as soon as the session is over."
 
 (defun abandon-session (session)
   "Note that SESSION ends because its user is lost, as when a window is lost, and not by QUIT:
-others get its questions and its run's messages. Return nothing."
+other sessions get its questions and its run's messages. Return nothing."
   (setf (session-abandoned-p session) t)
   (stop-listening session)
   (values))

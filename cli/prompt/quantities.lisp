@@ -53,13 +53,14 @@
 ;;; A unit joined to the number is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
 
 (defun plain-number-in (text)
-  "Return the number that TEXT, of digits, signs, points and slashes, is; NIL if it is none."
+  "Return the number that TEXT, of digits, signs, points and slashes, stands for, or NIL."
   (let ((*read-eval* nil))
     (let ((value (ignore-errors (read-from-string text))))
       (and (realp value) value))))
 
 (defun leading-number (text)
-  "Return the number that TEXT begins with, 1 with no more than a sign, and where it ends."
+  "Return the number that TEXT begins with, 1 or -1 if it has only a sign or none, and where it
+ends."
   (let ((end (or (position-if-not (lambda (char) (find char "0123456789.+-/")) text)
                  (length text))))
     (values (cond ((zerop end) 1)
@@ -80,7 +81,7 @@
       (values 1 text)))
 
 (defun joined-quantity (name)
-  "Return the number and the unit, a list or NIL, that NAME, a symbol's, says; or NIL."
+  "Return the number and the unit, a list or NIL, in NAME, a symbol's; or NIL."
   (multiple-value-bind (number end) (leading-number name)
     (when (and number (< end (length name)))
       (multiple-value-bind (factor rest)

@@ -24,12 +24,12 @@
 ;;;; Lines and forms
 
 (defun answer-p (session line)
-  "True if LINE, of SESSION, answers a program that has broken: it makes no sense later."
+  "True if LINE, of SESSION, answers a break: it makes no sense later."
   (and (breaks-awaiting session) (not (answers-break-p line))))
 
 (defun read-typed (session before)
-  "Return the next line that is typed in SESSION, or NIL at the end. An editor completes it and puts
-it into the history, joined to BEFORE, if that is a text that it continues."
+  "Return the next line typed in SESSION, or NIL at the end. The editor completes it and puts it
+into the history, joined to BEFORE, a text that it continues, or NIL."
   (let* ((line (progn
                  ;; Forms that span lines are kept whole.
                  (unless before (keep-lines (session-input session)))
@@ -72,7 +72,7 @@ those."
 ;;; parentheses, quotes and comments show how far it extends.
 
 (defun skip-to (char stream)
-  "Read STREAM up to and with the next CHAR that no backslash is before."
+  "Read STREAM up to and with the next CHAR that does not follow a backslash."
   (loop for next = (read-char stream)
         until (char= char next)
         do (when (char= #\\ next) (read-char stream))))
@@ -87,7 +87,7 @@ those."
         until (zerop depth)))
 
 (defun skip-item (stream)
-  "Read STREAM past a character, or all that is quoted or a comment there. Return the character."
+  "Read STREAM past a character, a quoted text or a comment. Return its first character."
   (let ((char (read-char stream)))
     (case char
       (#\\ (read-char stream))
@@ -113,7 +113,7 @@ the condition that says so; NIL at the end."
              (#\) (setf depth (max 0 (1- depth)))))))
 
 (defun skip-rest (session text start)
-  "Read on in SESSION, of which TEXT has been read, with forms from START on, until these end."
+  "Read on in SESSION until the forms end that begin in TEXT, read so far, at START."
   (flet ((next-outline (text)
            (or (values (read-outline session text))
                (error 'end-of-file :stream (session-input session)))))
@@ -121,7 +121,7 @@ the condition that says so; NIL at the end."
       (end-of-file ()))))
 
 (defun skip-after (condition session text start)
-  "Do as SKIP-REST does if CONDITION says that what begins in TEXT at START cannot be read."
+  "Call SKIP-REST if CONDITION says that what begins in TEXT at START cannot be read."
   (typecase condition
     (line-too-long
      (skip-rest session (format nil "~A~%~A" text (line-outline condition)) start))
@@ -130,7 +130,7 @@ the condition that says so; NIL at the end."
            (skip-rest session text start))))
 
 (defmacro skipping-rest ((session text start) &body body)
-  "Run BODY, which reads what begins in TEXT at START. If it cannot, its rest is passed over."
+  "Run BODY, which reads what begins in TEXT at START. If it cannot, skip the rest."
   `(handler-bind ((error (lambda (condition) (skip-after condition ,session ,text ,start))))
      ,@body))
 
@@ -152,7 +152,7 @@ the condition that says so; NIL at the end."
               (grown-text stream)))))
 
 (defun left-out-p (text start)
-  "True if TEXT has from START on no form but one that Lisp leaves out, as after #-sbcl."
+  "True if from START on TEXT has only a form that Lisp skips, as after #-sbcl."
   (let ((start (position-if-not #'blank-p text :start start)))
     (and start
          (< (1+ start) (length text))
@@ -175,7 +175,7 @@ unreadable form is skipped to its end."
 
 ;;;; Comments between #| and |#
 
-;;; Comments in a form are read by Lisp. Around forms, and before, in and behind other lines, they
+;;; Comments in a form are read by Lisp. Around forms, and before, in and after other lines, they
 ;;; are removed here, and lines are read until they end.
 
 (defun block-at-p (text position)
@@ -185,8 +185,8 @@ unreadable form is skipped to its end."
          (string= "#|" text :start2 position :end2 end))))
 
 (defun block-end (text start depth)
-  "Return where the comments end in which TEXT is at START, DEPTH nested ones; if they continue, NIL
-and their depth at its end."
+  "Return where the DEPTH nested comments end in which TEXT is at START; if they continue, NIL and
+their depth at the end of TEXT."
   (loop with i = start
         for end = (+ 2 i)
         while (<= end (length text))
@@ -211,8 +211,8 @@ line that is too long. Signals BAD-LINE if the comment does not end."
           (reject-line "The comment that begins with #| does not end; close it with |#."))))))
 
 (defun block-start (text)
-  "Return where the first such comment begins in TEXT, of no form, outside of quotes and of other
-comments; NIL if there is none."
+  "Return where the first such comment begins in TEXT, which is not Lisp, outside of quotes and
+other comments; NIL if there is none."
   (loop with quoted = nil
         for char across text
         for i from 0
@@ -234,8 +234,8 @@ what TROUBLE is for TEXT, as in REST-AFTER-BLOCK. What is in comments may be too
         (values text trouble))))
 
 (defun check-outline (session text trouble)
-  "Signal TROUBLE, unless it is NIL or TEXT, an outline of a line of SESSION, is a comment. A form
-that begins there is passed over."
+  "Signal TROUBLE, unless it is NIL, or TEXT, an outline of a line of SESSION, is a comment. Skip a
+form that begins there."
   (when (and trouble (not (comment-p text)))
     (when (lisp-p text) (skip-rest session text 0))
     (error trouble)))

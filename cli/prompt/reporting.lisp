@@ -24,7 +24,7 @@ of the faulty line in a running form, or NIL if that is not known."
 (defun reports-p (account)
   (and account (account-console account) t))
 
-(defun now ()
+(defun current-tick ()
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
@@ -40,14 +40,14 @@ of the faulty line in a running form, or NIL if that is not known."
 
 (defun report-message (account kind text &optional (line (line-under-way account)))
   "Report a message of KIND with TEXT, caused by LINE."
-  (report-object account "message" :kind kind :text text :tick (now) :line line))
+  (report-object account "message" :kind kind :text text :tick (current-tick) :line line))
 
 (defun report-values (account texts)
   (when (reports-p account)
     (dolist (text texts t) (report-object account "value" :text text))))
 
 (defun line-done-now (account)
-  "Return the number of the line that is being done, or NIL: ACCOUNT may be NIL, or between lines."
+  "Return the number of the running line, or NIL: ACCOUNT may be NIL, or between lines."
   (and account (account-text account) (line-under-way account)))
 
 (defun line-of-trouble (account)
@@ -60,7 +60,7 @@ be NIL, or between lines."
   (when account (setf (account-trouble-line account) line)))
 
 (defun placed-text (account text &optional (line (line-done-now account)))
-  "Return TEXT, of what goes wrong in LINE, after the place of that line if it is of a script."
+  "Return TEXT, on an error in LINE, after the place of that line if it is of a script."
   (if (and account (account-file account) line)
       (format nil "~A, line ~D: ~A" (account-file account) line text)
       text))
@@ -77,8 +77,9 @@ NIL if it does nothing."
           (account-errors account) errors)))
 
 (defun report-line (account type line text &rest properties)
-  "Report, as an object of TYPE, of the line with the number LINE, or NIL, that says TEXT."
-  (apply #'report-object account type :line line :text text (append properties (list :tick (now)))))
+  "Report, as an object of TYPE, on the line TEXT with the number LINE, or NIL."
+  (apply #'report-object account type :line line :text text
+         (append properties (list :tick (current-tick)))))
 
 (defun report-waiting-lines (account)
   "Report the ends of lines that had to wait for time to pass, the oldest first."
@@ -91,14 +92,14 @@ NIL if it does nothing."
                        :ok (if (and good-p (eq :ok how)) t :false)))))))
 
 (defun give-up-waiting-lines (account)
-  "Report that lines that wait for time to pass have not ended, and never will."
+  "Report that lines which wait for time to pass have not ended, and never will."
   (dolist (waiting (reverse (shiftf (account-waiting account) '())))
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
 (defun note-line-ended (account errors end)
-  "Note, and report, that everything requested by the running line is done, and that there were
-ERRORS so far. If END is not NIL, this waits for time to pass: END returns NIL until it is done, and
-then :OK or :FAILED."
+  "Note, and report, that all requests of the running line are done, after ERRORS errors so far. If
+END is not NIL, they wait for time to pass: END returns NIL until they are done, and then :OK or
+:FAILED."
   (when account (report-waiting-lines account))
   (when (and account (account-text account))
     (let ((text (string-trim " " (shiftf (account-text account) nil)))
@@ -130,11 +131,11 @@ then :OK or :FAILED."
   "The asker of lines that are not Lisp, if lines are not counted.")
 
 (defvar *askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each text that asks for a line: its account, its number, and true if it is no Lisp, a list.")
+  "For each asker of a counted line: a list of its account, its number, and true if not Lisp.")
 
 (defun asker-for (account &key typed-p (text +asker+))
-  "Return the asker for the running line of ACCOUNT, or NIL: a text that says TEXT. TYPED-P is true
-of a line that is not Lisp."
+  "Return the asker for the running line of ACCOUNT, or NIL: a text equal to TEXT. TYPED-P is true
+for a line that is not Lisp."
   (cond ((and account (line-under-way account))
          (let ((asker (copy-seq text)))
            (setf (gethash asker *askers*) (list account (account-line account) typed-p))
@@ -143,7 +144,7 @@ of a line that is not Lisp."
         (t text)))
 
 (defun line-asker-p (asker)
-  "True if ASKER, of a message, asks for what lines that are no Lisp ask for."
+  "True if ASKER, of a message, belongs to lines that are not Lisp."
   (or (eq *line-asker* asker) (third (gethash asker *askers*))))
 
 (defun of-line-p (message)
@@ -152,11 +153,11 @@ of a line that is not Lisp."
     (and (equal asker +asker+) (gethash asker *askers*) t)))
 
 (defun lisp-asker-p (asker)
-  "True if ASKER, of a request, asks for what Lisp in lines asks for."
+  "True if ASKER, of a request, belongs to Lisp in lines."
   (and (equal asker +asker+) (not (line-asker-p asker))))
 
 (defun of-lisp-in-line-p (asker account)
-  "True if ASKER, of a request, is for Lisp in the running line of ACCOUNT."
+  "True if ASKER, of a request, belongs to Lisp in the running line of ACCOUNT."
   (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
     (and (eq whose account) (eql line (account-line account)) (not typed-p))))
 

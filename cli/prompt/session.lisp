@@ -20,14 +20,14 @@ continue. CALL is the function that it is to call next."
   (done (make-semaphore "call done") :read-only t))
 
 (defun restarts-within (condition)
-  "Return the restarts for CONDITION up to the one that ends the line, of each name the innermost."
+  "Return the restarts for CONDITION up to the one that ends the line: of each name the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
          (last (position 'end-line all :key #'restart-name)))
     (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
                        :key #'restart-name :from-end t)))
 
 (defun rank (restart condition)
-  "Return a number for RESTART, a lower one the more likely it is what the user wants."
+  "Return a number for RESTART: the lower, the more likely it is what the user wants."
   (let ((first-names (if (typep condition 'serious-condition)
                          '("ABORT" "RETRY" "STOP-SIMULATOR")
                          '("ANSWER" "CONTINUE"))))
@@ -38,19 +38,19 @@ continue. CALL is the function that it is to call next."
     "USE-PACKAGE" "RENAME" "ANSWER")
   "The names of restarts that ask for their values.")
 
-(defun asks-p (restart)
+(defun restart-asks-p (restart)
   (member (restart-name restart) *asking-restarts* :test #'string=))
 
 (defun restarts-to-offer (condition)
-  "Return the restarts for CONDITION that a user can choose, the likeliest first."
+  "Return the restarts for CONDITION that a user can choose, the most likely first."
   (stable-sort (restarts-within condition)
                #'< :key (lambda (restart) (rank restart condition))))
 
-(defun here-p (break-request)
+(defun broken-here-p (break-request)
   (eq (break-request-thread break-request) (current-thread)))
 
 (defun break-words (condition)
-  "Return the text of CONDITION: on a line, unless a plan has stopped, with its stack."
+  "Return the text of CONDITION: on one line, except the stack of a plan that has stopped."
   (if (plan-break-p condition)
       (visible (condition-text condition))
       (complaint-text (condition-text condition))))
@@ -65,7 +65,7 @@ it, or is NIL; OTHERS in other threads, the oldest first."
 ;;;; Sessions
 
 (defstruct (reader (:copier nil))
-  "What lines come from."
+  "Where a session's lines come from."
   (input *standard-input* :type stream :read-only t)
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
@@ -176,8 +176,8 @@ a terminal, unless the environment has NO_COLOR."
                    (and (find-map name nil) name)))))
 
 (defun robot-commanded ()
-  "Return the robot of the current simulation that has the name of the one that the prompt commands,
-or NIL. Where Lisp at the prompt runs a simulation of its own, that has perhaps none."
+  "Return the robot of the current simulation that has the name of the one that the prompt
+commands, or NIL. A simulation that Lisp at the prompt runs itself may have none."
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
 
 (defun session-robot ()

@@ -109,8 +109,8 @@ BAD-LINE if there are none."
   (remove-if-not #'robots-of (all-maps)))
 
 (defun world-robots-called (name)
-  "Return the names of the robots in the world NAME: a map's name, or else a Lisp file that defines
-a world. Signals BAD-LINE."
+  "Return the names of the robots in the world NAME: a map, or else a Lisp file that defines a
+world. Signals BAD-LINE."
   (let ((map (find name (all-worlds) :key #'map-name :test #'same-name-p))
         (file (existing-file name)))
     (cond (map (robots-of map))

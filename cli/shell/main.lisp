@@ -125,7 +125,7 @@ E. A batch with plans to run does not wait for lines."
                   :color (option-value :color options :auto))))
 
 (defun run-in-world (session robot-name options)
-  ;; Messages about the world's definitions; a headless run has messages of its own.
+  ;; Messages about the world's definitions; a headless run has a separate queue of messages.
   (tell-messages session (setf *first-messages* (take-all-messages)))
   (let ((*forks-to-keep* t))
     (if (and (session-batch-p session) (null (option-value :rate options)))
@@ -179,7 +179,7 @@ E. A batch with plans to run does not wait for lines."
         (t (run-prompt options))))
 
 (defun script-p (argument)
-  "True if ARGUMENT, the first of this process, or NIL, is a script: a file, and no command."
+  "True if ARGUMENT, the first of this process, or NIL, is a script: a file, but no command."
   (and argument
        (not (find argument *shell-commands* :key #'first :test #'string=))
        (or (string= argument "-")
@@ -205,7 +205,7 @@ E. A batch with plans to run does not wait for lines."
                       it: ars-magna --world ~:*~A." script))))))
 
 (defun run-arguments (arguments)
-  "Do what ARGUMENTS, a list of strings, say. Return the status to exit with."
+  "Run this program with ARGUMENTS, a list of strings. Return the status to exit with."
   (cond ((intersection arguments '("--help" "-h") :test #'string=)
          (write-string (usage-of-command (first arguments)))
          0)
@@ -227,7 +227,7 @@ E. A batch with plans to run does not wait for lines."
     (complaint-text (ending-text condition))))
 
 (defun give-reason (condition status)
-  "Say on the error output what CONDITION says; return STATUS."
+  "Write CONDITION to the error output; return STATUS."
   (ignore-errors (say-on-error-output (ending-reason condition)))
   status)
 
@@ -246,7 +246,7 @@ E. A batch with plans to run does not wait for lines."
         (give-reason condition 1)))))
 
 (defun deliver (console status)
-  "Write what CONSOLE still has. Return STATUS, or another if it could not be written."
+  "Write the pending output of CONSOLE. Return STATUS, or another if it could not be written."
   (finish-output console)
   (let ((trouble (console-trouble console)))
     (cond ((null trouble) status)

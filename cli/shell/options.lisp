@@ -50,7 +50,7 @@ value that is empty counts as none.")
   (starts-with-subseq "--" argument))
 
 (defun split-option (argument)
-  "Return the name of the option in ARGUMENT, and its value if that follows a =."
+  "Return the name of the option in ARGUMENT, and its value if one follows after =."
   (let ((equals (position #\= argument)))
     (if (and equals (option-p argument))
         (values (subseq argument 0 equals) (subseq argument (1+ equals)))

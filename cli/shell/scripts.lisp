@@ -35,12 +35,12 @@
 ;;; (src/time/pacing.lisp).
 
 (defparameter *hog-patience* 3
-  "How many seconds a batch may be in one call of users' code before that is named.")
+  "After how many seconds in one call of users' code a batch reports that call.")
 
 (defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
 
 (defparameter *grace* 3
-  "How many seconds the program has to end in order after a time limit.")
+  "How many seconds the program has to end normally after a time limit.")
 
 (defun call-under-way (session calls)
   "Return in words whose code runs in SESSION, by CALLS, or in its live run; and how many calls were

@@ -87,7 +87,7 @@ the name of one. Signals BAD-LINE."
             ("options" ,(option-value :slurm options) "for sbatch: --partition=long ..."))))
 
 (defun write-script (name text directory)
-  "Write TEXT as the script NAME in DIRECTORY. Another one that is there is kept, as NAME~."
+  "Write TEXT as the script NAME in DIRECTORY. A different one there is kept, as NAME~."
   (let* ((path (merge-pathnames (native-path name) directory))
          (there (and (existing-path path) (file-text path))))
     (unless (equal there text)

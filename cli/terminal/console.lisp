@@ -51,7 +51,7 @@ HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest firs
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-without-output-p* nil
-  "True in the thread that ends this process, when no output is needed any more.")
+  "True in the thread that leaves this process when output cannot be written.")
 
 (defun try-to-write (function console)
   "Call FUNCTION with the stream below CONSOLE unless that has failed before. True if it fails now."
@@ -182,7 +182,7 @@ shown.")
       (change-line console (constantly nil)))))
 
 (defun hide-line (console)
-  "Take the line that is being typed off the screen, until something is shown."
+  "Erase the line being typed, until something is shown."
   (with-console (stream console)
     (wipe console stream)
     (finish-output stream)))
@@ -230,7 +230,7 @@ shown.")
            (put-now string console stream start end))))
 
 (defun put-fresh (text console stream)
-  "Do as PUT-STRING does with TEXT, from the beginning of a line on."
+  "Write TEXT as PUT-STRING does, from the beginning of a line on."
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 

@@ -57,7 +57,7 @@ not on the screen" :writable :export)
     (values (nreverse rows) place-row place-column)))
 
 (defun window-on (rows place-row height)
-  "Return those of ROWS around PLACE-ROW that HEIGHT has room for, and how many come before them."
+  "Return those of ROWS around PLACE-ROW that fit into HEIGHT, and how many come before them."
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
@@ -88,7 +88,7 @@ not on the screen" :writable :export)
     (setf (drawn-line-shown line) (list label text point))))
 
 (defun wipe-line (line stream columns height)
-  "Take LINE off the screen; the cursor is then where it began."
+  "Erase LINE; the cursor is then where it began."
   (destructuring-bind (label text point) (shiftf (drawn-line-shown line) '())
     (format stream "~A~C~A" (cursor-up (nth-value 1 (rows-to-show label text point columns height)))
             #\Return (cleared-below))))

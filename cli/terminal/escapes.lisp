@@ -114,7 +114,7 @@ a terminal unless the environment has NO_COLOR."
   (format nil "~A~A" (escape "?25h") (escape "?1049l")))
 
 (defun over-screen (text)
-  "Return TEXT, lines, as it is written over all that a screen shows."
+  "Return TEXT, lines, as the code that writes it over the whole screen."
   (with-output-to-string (out)
     (write-string (escape "H") out)
     (loop for start = 0 then (1+ end)
@@ -150,8 +150,8 @@ a terminal unless the environment has NO_COLOR."
 ;;; Long lines are broken between words.
 
 (defun breaking-point (line columns)
-  "Return where to break LINE so that its first part has at most COLUMNS: at the last blank in time,
-or else the first; NIL if it need not be broken or has no blank."
+  "Return where to break LINE so that its first part has at most COLUMNS: at the last blank before
+that, or else the first; NIL if it need not be broken or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line

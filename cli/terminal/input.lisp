@@ -149,7 +149,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
 ;;; Only streams of this process can be checked, without waiting, for typed input.
 
 (defun source-of (stream)
-  "Return the stream that what STREAM reads comes from."
+  "Return the stream from which STREAM gets its input."
   (typecase stream
     (typed-text (typed-octets stream))
     (synonym-stream (source-of (symbol-value (synonym-stream-symbol stream))))
@@ -183,7 +183,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (subseq (queued-string stream) (queued-start stream)))
 
 (defun leave-octets (stream octets)
-  "Make OCTETS, a string, all that is left to be read of STREAM, whose lock is held."
+  "Replace the unread octets of STREAM, whose lock is held, by OCTETS, a string."
   (setf (queued-string stream) octets
         (queued-start stream) 0))
 

@@ -39,10 +39,10 @@
 
 ;;; Lines.
 
-(defparameter *longest-complaint* 1000 "How many characters are shown of what goes wrong, at most.")
+(defparameter *longest-complaint* 1000 "How many characters of an error message are shown at most.")
 
 (defun complaint-text (text)
-  "Return TEXT, of what goes wrong, on one line that is not too long."
+  "Return TEXT, of an error, on one line that is not too long."
   (visible (cut (one-line (cut text (* 3 *longest-complaint*))) *longest-complaint*)))
 
 ;;;; Values
@@ -123,7 +123,7 @@
 
 (defun write-filled (text indent &optional (head ""))
   "Write TEXT in lines of at most *TEXT-WIDTH* characters from column INDENT on, after HEAD, which
-has a line of its own if it is too long."
+gets a separate line if it is too long."
   (when (and (plusp indent) (>= (length head) indent))
     (format t "~A~%" (shiftf head "")))
   (loop for line in (filled-lines text (- *text-width* indent))
@@ -146,12 +146,12 @@ has a line of its own if it is too long."
 
 ;;; A live world is read between two ticks.
 
-(defun call-still (function)
+(defun call-while-still (function)
   "Call FUNCTION, which writes to the standard output, while the world stands still."
   (let ((simulation (current-simulation)))
     (write-string (asking (simulation)
                     (with-output-to-string (*standard-output*) (funcall function))))))
 
-(defmacro still (&body body)
+(defmacro while-still (&body body)
   "Run BODY, which writes to standard output, while the world stands still."
-  `(call-still (lambda () ,@body)))
+  `(call-while-still (lambda () ,@body)))

@@ -54,7 +54,7 @@ in."
         ((< (incf *interrupts-while-ending*) +patience-of-users+))
         (t (end-interrupted))))
 
-(defvar *diagnostics* nil "The stream that has this thread's error output until it begins to end.")
+(defvar *diagnostics* nil "The stream for this thread's error output, until it begins to end.")
 
 (defun begin-to-end (condition)
   "Suppress other output between CONDITION, an interrupt, and its message: the compiler would
@@ -102,7 +102,7 @@ or the second if the first had no effect, unless both come from one press."
       (end-process 130))))
 
 (defun accept-interrupts ()
-  "Let Control-C interrupt this thread, the process's first."
+  "Make Control-C interrupt this thread, the process's first."
   (let ((thread (current-thread)))
     (call-on-interrupt (lambda ()
                          (note-interrupt)
@@ -117,8 +117,8 @@ or the second if the first had no effect, unless both come from one press."
 
 (defvar *original-mode* nil "The mode of the terminal before the prompt changed it, or NIL.")
 (defvar *keys-interrupt-p* nil "True if Control-C and the like are signals, as last set.")
-(defvar *continued-p* nil "True if this process was stopped and continues, and this has not been
-noticed yet.")
+(defvar *continued-p* nil "True if this process was suspended and continues, and this has not been
+handled yet.")
 
 (defun terminal-mode ()
   "Return the mode of the terminal, as the system keeps it, or NIL if there is no terminal."

@@ -52,7 +52,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "Show CONTROL formatted with ARGUMENTS in the line of PROGRESS, unless NIL, if it is time to."
+  "Show CONTROL formatted with ARGUMENTS in the line of PROGRESS, unless NIL, if an update is due."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (write-over progress (apply #'format nil control arguments))))
@@ -63,7 +63,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
 ;;; Beside it.
 
 (defun say (control &rest arguments)
-  "Give the user a message beside the requested output."
+  "Write a message to the error output, besides the requested output."
   ;; A line that shows progress may be there.
   (when (interactive-stream-p *error-output*)
     (format *error-output* "~C~A" #\Return (row-cleared)))

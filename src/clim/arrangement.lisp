@@ -17,7 +17,7 @@
 (defconstant +prompt-height+ 36 "Height of the place to type in with these rows, in pixels.")
 (defconstant +splitter+ 6 "How thick splitters are, in pixels.")
 (defconstant +wide+ 1500
-  "Least width of a window in which plans have a column of their own, in pixels.")
+  "Least width of a window in which plans have a separate column, in pixels.")
 
 (defconstant +low+ 700
   "In windows lower than this, in pixels, sections continue beside the transcript.")
@@ -50,7 +50,7 @@ screen."
   (intern (format nil "~A-TITLE" (symbol-name section)) :ars-magna.clim))
 
 (defun plan-column-p (preferences width)
-  "True if plans have a column of their own in a window WIDTH pixels wide."
+  "True if plans have a separate column in a window WIDTH pixels wide."
   (and (>= width +wide+) (not (member 'plan (preferences-folded preferences)))))
 
 (defun column-sections (preferences width)
@@ -189,8 +189,8 @@ column of sections, DOWN pixels."
           (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun prompt-height (rows transcript)
-  "Return how high the place to type in is for ROWS, if with the transcript, TRANSCRIPT pixels high,
-it has so much room: a little of that stays."
+  "Return the height of the place to type in for ROWS. It takes what it needs beyond the usual from
+the transcript, TRANSCRIPT pixels high, of which a little stays."
   (clamp (+ +prompt-height+ (* +line-height+ (- rows +prompt-rows+)))
          +prompt-height+
          (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))

@@ -72,7 +72,7 @@
                            :line-dashes (dashes canvas gcontext))))
 
 (defun arc-points (x y width height start extent)
-  "Return points along the arc, near enough for their lines to look round."
+  "Return points along the arc, close enough for it to look round."
   (let* ((across (/ width 2)) (down (/ height 2))
          (count (max 4 (ceiling (* (abs extent) (sqrt (max 1 across down)))))))
     (loop for index from 0 to count

@@ -60,7 +60,7 @@ if it has; :NONE if it cannot; NIL if it says nothing."
     (:property-notify (state) (eq state :new-value))))
 
 (defun fetch-pieces (display mailbox)
-  "Return all that comes in pieces on DISPLAY, up to an empty one."
+  "Return the whole text that comes in pieces on DISPLAY, up to an empty one."
   (with-output-to-string (out)
     (loop with count = 0
           do (unless (await-piece display)
@@ -99,8 +99,8 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 ;;; Holding.
 
 (defstruct (shared (:constructor make-shared (octets)) (:copier nil))
-  "A text that is offered to others, as a string of OCTETS. TRANSFERS are lists (window property
-start) of texts that go in pieces: START is where the next piece begins."
+  "A text that is offered to other programs, as a string of OCTETS. TRANSFERS are lists (window
+property start) of texts that go in pieces: START is where the next piece begins."
   (octets "" :type string :read-only t)
   (selections '() :type list)
   (transfers '() :type list))

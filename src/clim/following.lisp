@@ -16,8 +16,8 @@
         (eq old (watcher-simulation (window-watcher window))))))
 
 (defun robot-after-switch (window new)
-  "Return the name of the robot of NEW that WINDOW is to show after following: the one that its
-prompt commands, or that it shows, or else another. NIL if other windows show all of them."
+  "Return the name of the robot of NEW that WINDOW will show: the one that its prompt commands, or
+that it shows, or else another. NIL if other windows show all of them."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
         (own-p (eq window (own-window))))
     (find-if (lambda (name)
@@ -50,7 +50,7 @@ prompt commands, or that it shows, or else another. NIL if other windows show al
 
 ;;; A program that has broken asks how to continue: the window shows the state in which it broke.
 
-;;; A plan of a live run breaks in a thread of its own, while ticks pass.
+;;; A plan of a live run breaks in a separate thread, while ticks pass.
 
 (defun show-as-it-stands ()
   "Make the windows on the run whose plans or ticks this thread runs show the present state."

@@ -163,7 +163,7 @@
       (give-key (window-conversation window) key)))
 
 (defun do-key-in-window (window event)
-  "Do what the key of EVENT does in the line being typed. True if it does anything."
+  "Handle the key of EVENT in the line being typed. True if it does anything."
   (let ((action (own-action event)) (key (key-of event)))
     (cond ((do-key-in-popup window (clim:keyboard-event-key-name event)) t)
           (action (funcall action window) t)
@@ -184,7 +184,7 @@
     (and sheet (robot-window-of sheet))))
 
 (defun give-keys-by (port event)
-  "Send keys of PORT to the window of EVENT, if it is one."
+  "Make the window of EVENT, if it is one of ours, get the keys of PORT."
   (let ((window (robot-window-of (clim:event-sheet event))) (before (window-with-keys port)))
     (unless (member window (list before nil))
       (setf (clim:port-keyboard-input-focus port)

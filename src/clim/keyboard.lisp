@@ -10,7 +10,7 @@
   (type-into (pane-named window 'interactor)))
 
 (defun take-keys (pane)
-  "PANE was clicked: send what is typed to the right place from now on."
+  "Make the keyboard type at the prompt or in PANE from now on, as PANE was clicked."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -35,7 +35,7 @@
     (:down (values 0 +arrow-step+))))
 
 (defun do-key (window key-name character)
-  "Do in WINDOW what the key KEY-NAME, which types CHARACTER or NIL, does. True if anything."
+  "Handle the key KEY-NAME, which types CHARACTER or NIL, in WINDOW. True if it does anything."
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (line-shown (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow key-name)
@@ -139,7 +139,7 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
 pairs of a letter and what the key makes of it.")
 
 (defun composed (dead character)
-  "Return, as a string, what CHARACTER, typed after the dead key of the list DEAD, gives."
+  "Return, as a string, what CHARACTER gives after the dead key of the list DEAD."
   (destructuring-bind (own pairs) (rest dead)
     (let ((letter (loop for index from 0 below (length pairs) by 2
                         when (char= character (char pairs index))
@@ -149,7 +149,7 @@ pairs of a letter and what the key makes of it.")
             (t (format nil "~C~C" own character))))))
 
 (defvar *dead-key* nil
-  "What *DEAD-KEYS* says of the dead key that waits for a character, or NIL. There is but one
+  "The element of *DEAD-KEYS* of the dead key that waits for a character, or NIL. There is only one
 keyboard.")
 
 (defun key-press (character event)
@@ -169,7 +169,7 @@ one that has waited before, and the one that NAME is; of either NIL, if there is
     (values before now)))
 
 (defun after-dead-key (event)
-  "Return the events that EVENT, of a key that was pressed, counts as, since a dead key may wait."
+  "Return the events that EVENT, a key press, counts as, since a dead key may wait."
   (let ((character (clim:keyboard-event-character event)))
     (multiple-value-bind (before now)
         (wait-after (clim:keyboard-event-key-name event) character)

@@ -101,7 +101,7 @@ if only that leaves enough for all, what they need now."
 
 (defun put-parts (layout places)
   (let ((window (clim:pane-frame layout)))
-    (point-nowhere window)
+    (clear-pointing window)
     (setf (pane-places layout) places)
     (loop for (name . place) in places
           for pane = (child-with layout (pane-named window name))

@@ -178,7 +178,7 @@ and NIL for a gap."
       t)))
 
 (defun do-key-in-popup (window name)
-  "Do what the key called NAME does in the menu or list on top of WINDOW. True if anything."
+  "Handle the key called NAME in the menu or list on top of WINDOW. True if it does anything."
   (let ((popup (window-popup window)))
     (when (popup-open-p window)
       (case name

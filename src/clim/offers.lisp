@@ -44,7 +44,7 @@ LINE for that and ARGUMENTS."
         when (equal (subject-key image) (subject-key (designator-image-denotation designator)))
           collect (designator-image-number designator)))
 
-(defun looks-of (image)
+(defun appearance-text (image)
   "Return a specification, as text, of what the thing of IMAGE looks like."
   (let ((color (assoc :color (thing-image-attributes image))))
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
@@ -58,12 +58,13 @@ LINE for that and ARGUMENTS."
          (within-reach-p robot (thing-image-x image) (thing-image-y image)))))
 
 (defun search-offers (image window)
-  "Return the offers to look for what looks as the thing of IMAGE does, from afar or next to it."
+  "Return the offers to look for things that look like that of IMAGE, far away or next to the
+robot."
   (if (next-to-robot-p image window)
       (camera-offers window "Look next to the robot for such a thing with camera ~D"
-                     "obj-desig ~D local ~A" (looks-of image))
+                     "obj-desig ~D local ~A" (appearance-text image))
       (camera-offers window "Look for such a thing with camera ~D"
-                     "obj-desig ~D non-local ~A" (looks-of image))))
+                     "obj-desig ~D non-local ~A" (appearance-text image))))
 
 (defun cameras-tracking (numbers window)
   "Return the indices of the cameras that track one of the designators with NUMBERS."
@@ -226,7 +227,7 @@ if the robot itself holds it (HELD-P)."
                 collect (apply #'offer-row window offer))))
 
 (defun also-rows (window subjects x y)
-  "Return rows that lead to the menus, at X, Y of WINDOW, of SUBJECTS but for the first."
+  "Return rows that open the menus, at X, Y of WINDOW, of SUBJECTS except the first."
   (loop for rest on (rest subjects)
         collect (let ((turned (append rest (ldiff subjects rest))))
                   (make-row (format nil "Also here: ~A" (subject-heading (first turned)))

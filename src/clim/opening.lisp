@@ -19,7 +19,7 @@ messages from commands of plans."
   (quiet-p nil :read-only t))
 
 (defvar *legacies* '()
-  "An alist from the names of robots to what their last windows have left.")
+  "An alist from robots' names to what their last windows have left.")
 
 (defun take-legacy (window legacy)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
@@ -59,8 +59,8 @@ messages from commands of plans."
 
 ;;;; Coming and going
 
-;;; Each window has a thread of its own. Any error in it, such as the loss of the X server, closes
-;;; only this window, with a warning.
+;;; Each window has a thread. Any error in it, such as the loss of the X server, closes only this
+;;; window, with a warning.
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))
@@ -74,7 +74,7 @@ messages from commands of plans."
   (call-in-window #'clim:frame-exit window))
 
 (defun show-in-front (window)
-  "Show WINDOW above others, and not as an icon."
+  "Show WINDOW in front of others, and not as an icon."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (climb:port-enable-sheet (clim:port sheet) sheet)
     (clim:raise-sheet sheet)))
@@ -170,7 +170,7 @@ prompt in that case, or another of the same run if another window shows that one
                 simulation)))))
 
 (defun stay-when-over (window reason)
-  "Say in WINDOW, once, that the run that it still shows is over for REASON."
+  "Report in WINDOW, once, that the run that it still shows is over for REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
       (say-in-window window "The run of ~A is over: ~A. This window shows how it ended, until ~
@@ -220,7 +220,7 @@ has chosen another one of the same run, show that one."
     (close-window window)))
 
 (defun run-window (window)
-  "Show WINDOW until it is closed, or something goes wrong."
+  "Show WINDOW until it is closed, or an error ends it."
   (let* ((simulation (window-simulation window))
          (*message-queue* (simulation-messages simulation)))
     (start-conversation (window-conversation window) simulation

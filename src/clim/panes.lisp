@@ -123,7 +123,7 @@ cut; record what was painted where."
                      (paint-scroll-bar pane))
                    pane)
     (paint-popup-over pane)
-    (point-again pane)))
+    (update-pointing pane)))
 
 (defun repaint-if-changed (pane)
   (when (and (shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
@@ -134,25 +134,27 @@ cut; record what was painted where."
 (defconstant +scroll-step+ (* 3 +line-height+) "How far a turn of the wheel scrolls, in pixels.")
 
 (defgeneric handle-press (pane button x y)
-  (:documentation "The mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of PANE.")
+  (:documentation "Handle that the mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of
+PANE.")
   (:method (pane button x y) (handle-click pane button x y)))
 
 (defgeneric handle-click (pane button x y)
-  (:documentation "The mouse was clicked with BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE."))
+  (:documentation "Handle a click with BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE."))
 
 (defgeneric handle-drag (pane x y)
-  (:documentation "The mouse moved to X, Y of PANE while what (PANE-DRAG PANE) says is dragged.")
+  (:documentation "Handle that the mouse moved to X, Y of PANE while (PANE-DRAG PANE) is dragged.")
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric handle-drop (pane x y)
-  (:documentation "The mouse's button, which dragged something, was released at X, Y of PANE.")
+  (:documentation "Handle that the mouse's button, which dragged something, was released at X, Y of
+PANE.")
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric handle-hover (pane x y)
-  (:documentation "The mouse moved to X, Y of PANE with no button pressed."))
+  (:documentation "Handle that the mouse moved to X, Y of PANE with no button pressed."))
 
 (defgeneric handle-wheel (pane steps x y)
-  (:documentation "The mouse's wheel was turned by STEPS, down if positive, at X, Y of PANE.")
+  (:documentation "Handle a turn of the mouse's wheel by STEPS, down if positive, at X, Y of PANE.")
   (:method (pane steps x y)
     (declare (ignore x y))
     (scroll pane (* steps +scroll-step+))))
@@ -168,7 +170,7 @@ cut; record what was painted where."
    (measured :initform '(nil 0) :accessor pane-measured)))
 
 (defun measure-detail (pane width)
-  "Return how many pixels high a drawing is of all that PANE shows, WIDTH pixels wide."
+  "Return the height in pixels of a drawing of PANE's whole contents, WIDTH pixels wide."
   (let ((canvas (make-instance 'svg-canvas :stream (make-broadcast-stream)))
         (window (window-of pane)))
     (with-canvas (canvas)
@@ -176,7 +178,7 @@ cut; record what was painted where."
                                  (window-robot window) :width width)))))
 
 (defun detail-height (pane width)
-  "Return what MEASURE-DETAIL does, without drawing again what looks as before."
+  "Return what MEASURE-DETAIL does, without drawing again if nothing has changed."
   (let ((key (list width (display-content (pane-display pane)
                                           (window-robot (window-of pane))))))
     (unless (equal key (first (pane-measured pane)))
@@ -222,7 +224,7 @@ there is, all in the same unit.")
     (> total page)))
 
 (defun content-width (pane)
-  "Return how many pixels of the width of PANE are not the scroll bar's."
+  "Return the width of PANE in pixels, without the scroll bar."
   (max 1 (- (pane-size pane) +scroll-bar+)))
 
 (defgeneric limit-offset (pane)
@@ -260,7 +262,7 @@ there is, all in the same unit.")
   (and (scrollable-p pane) (>= x (content-width pane))))
 
 (defun drag-scroll-bar (pane y)
-  "Scroll PANE so that the middle of the bar's movable part is at Y, as far as that goes."
+  "Scroll PANE so that the middle of the bar's movable part is at Y, as far as possible."
   (multiple-value-bind (position page total) (scroll-state pane)
     (declare (ignore position))
     (multiple-value-bind (top bottom) (thumb pane)
@@ -285,13 +287,13 @@ of what cannot be picked.")
       (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
 
 (defgeneric subjects-under (pane x y)
-  (:documentation "Return the subjects at X, Y of PANE, the likeliest first.")
+  (:documentation "Return the subjects at X, Y of PANE, the most likely first.")
   (:method (pane x y)
     (remove-duplicates (subjects-at (pane-subjects pane) x y)
                        :test #'same-subject-p :from-end t)))
 
 (defun picked-first (window subjects)
-  "Return SUBJECTS in turn from the one on that is picked in WINDOW, if one of them is."
+  "Return SUBJECTS, rotated so that the one picked in WINDOW, if any, is first."
   (let* ((key (window-selection window))
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))
     (append picked (ldiff subjects picked))))

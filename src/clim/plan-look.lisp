@@ -32,7 +32,7 @@ in words how the last plan ended."
   (ended nil :type (or null string)))
 
 (defun interface-of (simulation)
-  "Return what runs the plans of SIMULATION, or NIL."
+  "Return the interface that runs the plans of SIMULATION, or NIL."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
 (defun traced-p (interface)
@@ -150,7 +150,7 @@ reactions. Return its value, or :BUSY."
                (cut (one-line (failure-text (task-result task))) 300))))
 
 (defun note-ending (task)
-  "Tell the windows that show TASK how it ended. Return NIL: its failure is reported elsewhere."
+  "Show in the windows with TASK how it ended. Return NIL: its failure is reported elsewhere."
   (let ((interface (runner-client (task-runner task))))
     (when (and *plan-looks* (interface-p interface))
       (dolist (look (with-lock (*plan-looks-lock*) (copy-list *plan-looks*)))

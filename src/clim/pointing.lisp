@@ -17,15 +17,15 @@
 (defmethod handle-hover ((pane display-pane) x y) (point-at-place pane x y))
 
 ;; If the strip shows something else meanwhile, that stays until the mouse moves.
-(defun point-again (pane)
-  "PANE was painted: if the strip describes what is under the mouse there, update it."
+(defun update-pointing (pane)
+  "Update the strip, as PANE was painted, if it describes what is under the mouse there."
   (let ((window (window-of pane)))
     (destructuring-bind (&optional pointed x y text) (window-pointed window)
       (when (and (eq pane pointed) (eq text (window-hint window)))
         (point-at-place pane x y)))))
 
-(defun point-nowhere (window)
-  "Clear the strip of WINDOW, as the mouse has left or what was there has moved."
+(defun clear-pointing (window)
+  "Clear the strip of WINDOW: the mouse has left, or what was there has moved."
   (setf (window-pointed window) nil
         (window-hint window) ""))
 
@@ -117,15 +117,15 @@
           (t :middle))))
 
 (defun route-press (pane button x y)
-  "The mouse's BUTTON was pressed at X, Y of PANE: on its scroll bar, or on what it shows."
+  "Handle a press of BUTTON at X, Y of PANE: on its scroll bar, or on what it shows."
   (cond ((on-scroll-bar-p pane x)
          (setf (pane-drag pane) :scroll-bar)
          (drag-scroll-bar pane y))
         (t (handle-press pane button x y))))
 
 (defgeneric handle-press-past-popup (pane button x y opener)
-  (:documentation "The mouse's BUTTON was pressed at X, Y of PANE, which has closed the popup that
-OPENER had opened.")
+  (:documentation "Handle a press of BUTTON at X, Y of PANE that has closed the popup which OPENER
+had opened.")
   (:method (pane button x y opener)
     (declare (ignore opener))
     (unless (eq button :left) (route-press pane button x y)))
@@ -136,7 +136,7 @@ OPENER had opened.")
         (route-press pane button x y)))))
 
 (defun take-press (pane button x y)
-  "The mouse's BUTTON was pressed at X, Y of PANE, which may not be the popup that is open."
+  "Handle a press of BUTTON at X, Y of PANE; close an open popup unless PANE is that."
   (take-keys pane)
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
     (if opener
@@ -181,7 +181,7 @@ OPENER had opened.")
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
   (unless (dragging-pane (window-of pane))
-    (point-nowhere (window-of pane))
+    (clear-pointing (window-of pane))
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 ;;; A turn of the wheel is a button event, too, but not a press.
@@ -196,7 +196,7 @@ OPENER had opened.")
 ;;; What is drawn there is not where it lies, so it cannot be dragged. If you try, the strip says
 ;;; what to do instead. (PANE-DRAG PANE) is (thing from-x from-y moved-p).
 
-(defun instead-of-dragging (image window)
+(defun no-dragging-text (image window)
   "Return in words why the thing of IMAGE cannot be dragged out of a display of WINDOW."
   (let ((hand (hand-with image window)) (name (subject-title image)))
     (cond (hand (format nil "Only lines let go of ~A, such as hand-ungrasp ~D: the right button ~
@@ -217,7 +217,7 @@ OPENER had opened.")
   (destructuring-bind (thing from-x from-y moved-p) (pane-drag pane)
     (when (and (not moved-p) (moved-far-p x y from-x from-y))
       (setf (pane-drag pane) (list thing from-x from-y t))
-      (hint (window-of pane) (instead-of-dragging thing (window-of pane))))))
+      (hint (window-of pane) (no-dragging-text thing (window-of pane))))))
 
 (defmethod handle-drop ((pane detail-pane) x y)
   (unless (fourth (pane-drag pane)) (handle-click pane :left x y)))

@@ -103,7 +103,7 @@ so, a symbol, or the menu, or T."
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
-  "Close the popup of WINDOW. Return what has opened it, or NIL if there was none."
+  "Close the popup of WINDOW. Return what had opened it, or NIL if there was none."
   (let ((opener (open-opener window)))
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
@@ -135,7 +135,7 @@ so, a symbol, or the menu, or T."
 ;;; A click on a row may replace the rows. The second click of a double click is not meant for
 ;;; these.
 
-(defconstant +double-click+ 500 "Within how many milliseconds two clicks are one deed.")
+(defconstant +double-click+ 500 "Two clicks within so many milliseconds are a double click.")
 
 (defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
   (let ((rows (pane-rows pane)) (turned (pane-turned pane)) (time (clim:event-timestamp event)))

@@ -82,7 +82,7 @@ this thread."
                        console over)))
 
 (defun converse (conversation simulation robot-name)
-  "Let the prompt read lines until its user leaves it. Note if something else ends its thread."
+  "Read and run lines until the prompt's user leaves it. Note if something else ends its thread."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
@@ -100,7 +100,7 @@ this thread."
 
 ;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
 (defun restart-if-lost (conversation simulation robot-name)
-  "If the thread of the prompt was ended, as a line or a program may do to any, start it again."
+  "Start the thread of the prompt again if a line or program has ended it."
   (when (conversation-lost-p conversation)
     (say-in conversation "The thread of this prompt was ended, and with it the running line. ~
                           A new thread starts.~%")

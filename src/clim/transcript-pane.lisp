@@ -26,15 +26,14 @@
 ;;; Rows.
 
 (defstruct (text-row (:constructor make-text-row (number start stop spans)) (:copier nil))
-  "What is in view of the line NUMBER in one row: from the column START to STOP. SPANS are those of
-the line."
+  "One row of the line NUMBER in view: from the column START to STOP. SPANS are those of the line."
   (number 0 :type fixnum :read-only t)
   (start 0 :type fixnum :read-only t)
   (stop 0 :type fixnum :read-only t)
   (spans '() :type list :read-only t))
 
 (defun row-end (text start columns)
-  "Return where a row of COLUMNS ends that begins in TEXT at START: after a blank, if there is one."
+  "Return where a row of COLUMNS that begins in TEXT at START ends: after a blank, if possible."
   (let ((end (+ start columns)))
     (if (<= (length text) end)
         (length text)
@@ -64,8 +63,8 @@ the line."
             when (<= rows above) return number))))
 
 (defun kept-in-view (pane last)
-  "Return the number of the last line that PANE shows if LAST is wanted there, or NIL for the
-newest: no line that is no longer kept, and a whole page of them."
+  "Return the last line that PANE shows, by number, if LAST is wanted there; NIL for the newest.
+The page must be whole, and its lines still kept."
   (let ((oldest (last-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))
@@ -97,7 +96,7 @@ newest: no line that is no longer kept, and a whole page of them."
     (:grey #x606060))
   "In which colours the transcript shows the inks of a terminal: dark ones, as it is white.")
 
-(defconstant +selection-color+ #xB4D5FE "What is behind selected text.")
+(defconstant +selection-color+ #xB4D5FE "The background of selected text.")
 
 (defun column-x (column) (+ 4 (* column +character-width+)))
 
@@ -127,7 +126,8 @@ newest: no line that is no longer kept, and a whole page of them."
           (t (values point mark)))))
 
 (defun selected-columns (row from to)
-  "Return from where to where ROW is selected, if the text between the places FROM and TO is."
+  "Return where the selection in ROW begins and ends, for a selection between the places FROM and
+TO."
   (let ((number (text-row-number row)) (start (text-row-start row)) (stop (text-row-stop row)))
     (values (cond ((< number (first from)) stop)
                   ((= number (first from)) (max start (second from)))
@@ -137,7 +137,7 @@ newest: no line that is no longer kept, and a whole page of them."
                   (t stop)))))
 
 (defun paint-selected (canvas row y from to)
-  "Paint what is behind the part of ROW that is selected, between the places FROM and TO."
+  "Paint the background of the selection in ROW, for a selection between the places FROM and TO."
   (multiple-value-bind (start stop) (selected-columns row from to)
     (when (< start stop)
       (with-gcontext (draw-gcontext* :foreground +selection-color+)

@@ -68,7 +68,8 @@
            (when more (begin-line-of transcript))))
 
 (defun forget-lines (transcript)
-  "Keep the newest lines of TRANSCRIPT, if there are many, and say in their first that others went."
+  "Keep only the newest lines of TRANSCRIPT, if there are many; the first says that others are
+gone."
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
     (setf (transcript-lines transcript)
           (append (subseq (transcript-lines transcript) 0 (1- +transcript-length+))
@@ -96,7 +97,7 @@
                                          (add-text transcript text))))
 
 (defun unsay (transcript text)
-  "Take TEXT back, if it is all there is of the last line of TRANSCRIPT."
+  "Remove TEXT if it is the whole last line of TRANSCRIPT."
   (call-changing-transcript
    transcript
    (lambda ()

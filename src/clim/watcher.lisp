@@ -47,7 +47,7 @@ at which measuring the rate began, and that rate."
 ;;; Looking.
 
 (defun busy-p (simulation sample)
-  "Return in words which code of users has kept SIMULATION waiting since the last look, or NIL."
+  "Return in words which users' code has blocked SIMULATION since the last look, or NIL."
   (multiple-value-bind (text calls) (users-code-under-way simulation)
     (and (eql calls (shiftf (sample-calls sample) calls))
          (= (simulation-tick simulation) (sample-last-tick sample))
@@ -82,14 +82,14 @@ at which measuring the rate began, and that rate."
           ((let ((*simulation* simulation)) (plans)) :waiting)
           (t :idle))))
 
-(defconstant +measure+ 10 "From how many ticks on a rate is measured.")
+(defconstant +measure+ 10 "From how many ticks on the rate is measured.")
 
 (defun begin-measuring (sample tick seconds)
   (setf (sample-tick sample) tick
         (sample-seconds sample) seconds))
 
 (defun measure (sample tick seconds)
-  "Return how many ticks a second have passed of late; it is TICK at SECONDS."
+  "Return how many ticks a second have passed recently; it is TICK at SECONDS."
   (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
     (when (or (minusp ticks) (and (> elapsed 0.9) (or (>= ticks +measure+) (> elapsed 5))))
       ;; Rounded to useful digits.
@@ -176,7 +176,7 @@ is watched has been over for a while."
   (funcall (watcher-news watcher)))
 
 (defun painted (watcher)
-  "Note that the last snapshot of WATCHER was painted, so that the next may come."
+  "Note that the last snapshot of WATCHER was painted; the next may come."
   (signal-semaphore (watcher-painted watcher)))
 
 (defun fetch (watcher)
@@ -224,7 +224,7 @@ itself: it will come with the next tick."
     (funcall (watcher-news watcher))))
 
 (defun look-for-changes (watcher)
-  "Look for what no observer tells of."
+  "Look for changes that no observer reports."
   (look-for-plans watcher)
   (look-at-progress watcher)
   (look-at-scale watcher)
@@ -247,7 +247,7 @@ itself: it will come with the next tick."
 ;;; Beginning and ending.
 
 (defun leave-simulation (simulation observer)
-  "Have SIMULATION, if there is one, call OBSERVER no longer."
+  "Remove OBSERVER from SIMULATION, if there is one."
   (when simulation
     (asking (simulation) (remove-observer observer simulation))))
 
@@ -286,7 +286,7 @@ itself: it will come with the next tick."
 
 ;; As for the thread of a prompt, it is not the one that ends which starts another.
 (defun restart-pacer-if-lost (watcher)
-  "If the pacer of WATCHER was ended, as the user may do to any thread, start another."
+  "Start another pacer for WATCHER if its own was ended, as the user may do to any thread."
   (when (shiftf (watcher-unpaced-p watcher) nil) (start-pacer watcher)))
 
 (defun start-watching (watcher simulation)

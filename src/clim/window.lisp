@@ -26,7 +26,7 @@
    ;; The layers of its display of the world.
    (layers :initarg :layers :initform *picture-layers* :accessor window-layers)
    (color-p :initarg :color-p :initform t :accessor window-color-p)
-   ;; How many screen pixels wide one of its own is, unless its user chooses.
+   ;; How many screen pixels wide one of its pixels is, unless its user chooses.
    (usual-magnification :initarg :usual-magnification :initform 1
                         :reader window-usual-magnification)
    ;; The user's preferences for the arrangement.
@@ -55,7 +55,7 @@
    ;; Its car is true while an event is queued.
    (queued :initform (list nil) :reader window-queued)
    ;; True if the screen may have been erased: everything must be painted, changed or not.
-   (torn-p :initform nil :accessor window-torn-p)
+   (erased-p :initform nil :accessor window-erased-p)
    (painted :initform nil :accessor window-painted)
    (thread :initform nil :accessor window-thread))
   (:menu-bar nil)
@@ -151,7 +151,7 @@
     (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
     (restart-pacer-if-lost (window-watcher window))
     (read-events-again (clim:port window))
-    (if (shiftf (window-torn-p window) nil)
+    (if (shiftf (window-erased-p window) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))
     (settle window)
@@ -163,7 +163,7 @@
 
 (defun request-repaint (window)
   "Request painting all of WINDOW soon. Any thread may ask."
-  (setf (window-torn-p window) t)
+  (setf (window-erased-p window) t)
   (request-refresh window))
 
 ;;; CLIM's loop reads commands, but there are none: everything is an event.

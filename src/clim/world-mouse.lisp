@@ -32,7 +32,7 @@
 
 (defmethod handle-press ((pane world-pane) button x y)
   (if (eq button :left)
-      (setf (pane-drag pane) (list (grip-at pane x y) x y nil))
+      (setf (pane-drag pane) (list (draggable-at pane x y) x y nil))
       (handle-click pane button x y)))
 
 ;;; Dragging.
@@ -54,7 +54,7 @@
     (stable-sort robots (lambda (one other) (and one (not other)))
                  :key (lambda (image) (shown-robot-p (window-of pane) image)))))
 
-(defun grip-at (pane x y)
+(defun draggable-at (pane x y)
   "Return the thing or robot that a drag from X, Y of PANE moves, or NIL: the selection, or a robot
 at its middle, whatever it stands on, or the smallest subject there."
   (let ((subjects (remove-if-not (lambda (subject) (typep subject '(or thing-image robot-image)))
@@ -97,7 +97,7 @@ at its middle, whatever it stands on, or the smallest subject there."
         (clim:draw-circle* pane x y radius :filled nil :ink clim:+dark-orange+
                                            :line-thickness 2)))))
 
-(defgeneric carrying-line (subject x y window)
+(defgeneric moving-line (subject x y window)
   (:documentation "Return the line that puts SUBJECT at X, Y, two texts, for the prompt of WINDOW.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
@@ -114,7 +114,7 @@ at its middle, whatever it stands on, or the smallest subject there."
     (if (cell-at pane x y)
         (multiple-value-bind (x y) (point-at pane x y)
           (give-line (window-conversation window)
-                     (carrying-line subject (coordinate-text x) (coordinate-text y) window))
+                     (moving-line subject (coordinate-text x) (coordinate-text y) window))
           (hint window ""))
         (hint window "That is not on the map."))
     (repaint-if-changed pane)))

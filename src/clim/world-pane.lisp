@@ -18,7 +18,7 @@
    (following-p :initform nil :accessor pane-following-p))
   (:documentation "A part of the world."))
 
-(defconstant +least-scale+ 1/16 "How many pixels a cell has at least in a window.")
+(defconstant +least-scale+ 1/16 "The least number of pixels of a cell in a window.")
 (defconstant +in-view+ 40 "How many pixels of the map stay in view, however it is moved.")
 
 (defun window-map (window)
@@ -220,7 +220,7 @@
     (pane-terrain pane)))
 
 (defun show-terrain (pane pixmap)
-  "Cover PANE with PIXMAP, which is as large."
+  "Cover PANE with PIXMAP, which has the same size."
   (clim:with-identity-transformation (pane)
     (multiple-value-bind (width height) (size-on-screen pane)
       (clim:copy-from-pixmap pixmap 0 0 width height pane 0 0))))

@@ -64,7 +64,7 @@ for, or NIL.")
 
 ;; CLX keeps an event that led to an error, and would process it again.
 (defgeneric drop-event (port)
-  (:documentation "Forget the event that PORT is reading.")
+  (:documentation "Discard the event that PORT is reading.")
   (:method ((port clim:basic-port)))
   (:method ((port clim-clx:clx-port))
     (xlib:discard-current-event (clim-clx:clx-port-display port))))
@@ -168,14 +168,14 @@ bytes, and CLX reads 32 of them first."
   "A function that says whether what the X server is read for, in this thread, has come.")
 
 (defun read-for (read display timeout force-output-p come-p &rest arguments)
-  "Do what READ, CLX's function, does with DISPLAY and the other arguments. What it reads for has
-come when COME-P is true of ARGUMENTS."
+  "Call READ, CLX's function, with DISPLAY and the other arguments. What it reads for has come when
+COME-P is true of ARGUMENTS."
   (let* ((*come-p* (lambda () (apply come-p arguments)))
          (end (apply read display timeout force-output-p come-p arguments)))
     (if (eq end :come) nil end)))
 
 (defun wait-unless-come (wait display timeout)
-  "Do what WAIT, CLX's function, does; but return :COME if what is read for has come."
+  "Call WAIT, CLX's function; but return :COME if what is read for has come."
   (if (funcall *come-p*) :come (funcall wait display timeout)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-for)
