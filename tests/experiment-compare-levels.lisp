@@ -64,7 +64,7 @@
            (verdicts (experiment:comparison-verdicts comparison)))
       (is (= 7 (length verdicts)))
       (loop for verdict in (rest verdicts)
-            do (is (mentions-p verdict "No difference in success between new and old can be")))
+            do (is (mentions-p verdict "No significant difference in success between new and old")))
       (is (equal '("new" "old" 30) (list (experiment:contrast-first overall)
                                          (experiment:contrast-second overall)
                                          (experiment:contrast-trials overall))))

@@ -116,7 +116,7 @@
       (is (mentions-p ticks (format nil "patrol takes fewer ticks than spiral: p < .001 as one of ~
                                          4 tests, 82.50 against 85.50 on average where both ~
                                          succeed, 150 common seeds, difference -3")))
-      (is (mentions-p way (format nil "No difference in way between patrol and spiral can be told: ~
+      (is (mentions-p way (format nil "No significant difference in way between patrol and spiral: ~
                                        p = 1 as one of 4 tests, 4.00 against")))
       (is (mentions-p way "; if there is one, it is at most 0.14."))
       (is (mentions-p found "found is true more often with patrol than with spiral")))))
@@ -225,8 +225,8 @@
                      (apply #'experiment:compare-conditions results 'a
                             (append arguments '(:measure success :stream nil)))))))
       (is (mentions-p (first-verdict 'b) "a succeeds more often than b"))
-      (is (mentions-p (first-verdict :all) "No difference in success between a and b can be told"))
-      (is (mentions-p (first-verdict :all) "told: p = .062 as one of 2 tests (.031 alone), 100 %"))
+      (is (mentions-p (first-verdict :all) "No significant difference in success between a and b"))
+      (is (mentions-p (first-verdict :all) "b: p = .062 as one of 2 tests (.031 alone), 100 %"))
       (is (mentions-p (first-verdict :all) "where 2 are tested, one that leaves out 0 is no proof"))
       (is (mentions-p (first-verdict 'b) "than b: p = .031, 100 % against")))))
 
@@ -284,7 +284,8 @@
                                 (1.000000000002d0 1.000000000001d0) (2d-300 1d-300)
                                 (100000000000000000002 100000000000000000001))
         do (is (mentions-p (verdict-on-all first second) "x is more with a than with b: p < .001")))
-  (is (mentions-p (verdict-on '(1d9 2d9) '(1000000000.5d0 2000000000.25d0)) "No difference in x"))
+  (is (mentions-p (verdict-on '(1d9 2d9) '(1000000000.5d0 2000000000.25d0))
+                  "No significant difference in x"))
   (is (mentions-p (verdict-on '(1 0.1d0) '(1.0d0 0.1d0)) "x of a and b are equal, seed by seed")))
 
 (test compare.tells-rounding-as-what-it-is
@@ -295,7 +296,7 @@
   (is-false (experiment::tested-p (experiment::mean-difference "x" '(.1d0 .3d0)
                                                                (list .1d0 (+ .1d0 .2d0)))))
   (is (mentions-p (verdict-on '(.1d0 .3d0 2d0) (list .1d0 (+ .1d0 .2d0) 3d0))
-                  "No difference in x")))
+                  "No significant difference in x")))
 
 (test compare.writes-digits-that-tell-numbers-apart
   (loop for (first second . texts)

@@ -40,8 +40,8 @@
 (defun meaning-text (check)
   (if (= 1 (check-at-least check))
       "All should."
-      (format nil "If ~A or more succeeded in the long run, this would be said with a probability ~
-                   of at most ~A."
+      (format nil "If ~A or more succeeded in the long run, this check would fail with a ~
+                   probability of at most ~A."
               (per-cent (check-at-least check)) (per-cent (check-level check)))))
 
 (defun failure-text (check)

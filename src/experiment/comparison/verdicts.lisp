@@ -171,7 +171,7 @@
                   ((significant-p difference)
                    (format nil "~A: ~A" (direction-words difference first second)
                            (figures-words difference)))
-                  (t (format nil "No difference in ~A between ~A and ~A can be told: ~A; ~A"
+                  (t (format nil "No significant difference in ~A between ~A and ~A: ~A; ~A"
                              (paired-measure difference) first second
                              (figures-words difference) (no-difference-words difference)))))))
 
@@ -201,7 +201,7 @@
         (format nil "All ~D trials that both have are the same to the last bit." trials)
         (format nil "Of ~D condition~:P ~[none succeeds~;1 succeeds~:;~:*~D succeed~] more often ~
                      than before, ~[none~:;~:*~D~] less often~[~:;, ~:*~D ~:*~[~;is~:;are~] the ~
-                     same~]~[~:;, and of ~:*~D no difference can be told~]. Of ~D trials that ~
+                     same~]~[~:;, and ~:*~D not significantly different~]. Of ~D trials that ~
                      both have, ~D are the same to the last bit."
                 (length found) (count :better found) (count :worse found)
                 (count :same found) (count nil found) trials same))))

@@ -198,7 +198,8 @@ first of VALUES, those of :run: a failure is true, and may have been taken for a
                  experiment result))
 
 (defun run-trial (experiment condition trial &key gate)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT; return its result. CALL-IN-TRIAL tells of GATE."
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT, with GATE as for CALL-IN-TRIAL. Return its
+result."
   (let ((result (make-result condition trial (trial-seed experiment trial))))
     (call-noting-errors
      (lambda ()
