@@ -51,8 +51,8 @@ believed in, which does not know it."
   (let ((interface (runner-client (task-runner task))))
     (if (interface-p interface)
         interface
-        (reject-use "There is no run to be projected: plans are projected by those that run on a ~
-                     robot, see RUN-PLAN."))))
+        (reject-use "There is no run to project: PROJECT works in plans that run on a robot, see ~
+                     RUN-PLAN."))))
 
 (defun pose-question (question task)
   "Let TASK wait for the answer to QUESTION. Return what a step returns."

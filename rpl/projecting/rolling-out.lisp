@@ -124,7 +124,7 @@ those that FUNCTION makes cannot be changed, and fluents of outside are as in a 
 
 (defun run-in-belief (scene trial seed)
   (unless *simulation*
-    (reject-use "project: the function :world is to call what it is given inside of ~
+    (reject-use "project: the function :world must call the function that it is given inside of ~
                  (with-simulation ...)."))
   (let ((question (scene-question scene)) (interface (ensure-interface)))
     (run-rollout scene trial seed question interface
@@ -148,7 +148,7 @@ SCENE, where that has ended in the world that the question believes in."
             (call-without-run (lambda ()
                                 (funcall (option (scene-question scene) :world) #'run seed)))
             (unless called-p
-              (reject-use "project: the function :world has not called what it was given.")))
+              (reject-use "project: the function :world has not called the function given to it.")))
         (error (condition)
           (setf values (list (funcall then (no-rollout scene trial seed condition))))))
       (values-list values))))

@@ -187,8 +187,8 @@ for, or what lets them call it; or NIL."
            (format nil "plans call it ~(~A~)." own))
           ((and same-p (not (has-plan-function-p (command-name command))))
            (let ((*print-case* :downcase))
-             (format nil "plans do not know yet what tells them of the end of the command ~A. Say ~
-                          so once: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
+             (format nil "no fluent tells plans of the end of the command ~A yet. Define ~
+                          one: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
                           (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the ~
                           package ars-magna.rpl-robot, with a name of yours for my-fluent*."
                      (string-downcase (command-name command))

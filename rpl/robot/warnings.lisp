@@ -132,7 +132,7 @@ end of the same command."
 (defun unawaited-advice (action)
   "Return in a sentence what to do if ACTION is to end with its plan; or NIL."
   (if (eq :evaporated (task-state (action-task action)))
-      (format nil "What gave it was ended before, as by a deadline. ~
+      (format nil "The task that issued it was ended before, as by a deadline. ~
                    If the command is to end as well, stop it: (rpl-robot-stop).")
       (let ((wait (end-wait-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
