@@ -1,4 +1,4 @@
-// film.js -- plays a run: FILM has its frames, what moves in each of them, and its moments.
+// film.js -- plays a run: FILM has its frames and its moments.
 
 (function () {
   "use strict";
@@ -31,7 +31,7 @@
     Array.prototype.forEach.call(list.children, function (item, index) {
       item.className = index === passed ? "now" : "";
     });
-    // The list alone is scrolled, not the page.
+    // Scroll only the list, not the page.
     if (passed >= 0)
       list.scrollTop = list.children[passed].offsetTop - list.offsetTop - list.clientHeight / 2;
   }
@@ -65,7 +65,7 @@
     return function () { goTo(moment.frame); };
   }
 
-  // Moments so near to each other that their marks would overlap share one, with their number.
+  // Moments whose marks would overlap share one mark, with their number.
   var groups = [], apart = 2, told = 12;
   FILM.moments.forEach(function (moment, index) {
     var place = frames.length > 1 ? 100 * moment.frame / (frames.length - 1) : 0,
@@ -83,7 +83,7 @@
     return lines.join("\n");
   }
 
-  // A click goes to the first of a group; further clicks, to the next frame in which one is.
+  // A click goes to the first moment of a group, further clicks to the frame of the next one.
   function nextOf(moments) {
     return function () {
       var later = moments.filter(function (moment) { return moment.frame > now; }),

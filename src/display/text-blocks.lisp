@@ -5,7 +5,7 @@
 ;;; Each character stands for a block of cells. Characters are about twice as high as wide. So if a
 ;;; map is scaled down to a number of lines, blocks may be twice as high, too.
 
-(defstruct (view (:copier nil))
+(defstruct (text-view (:conc-name view-) (:copier nil))
   "The cells of SNAPSHOT that a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT
 and TOP."
   (snapshot nil :type snapshot :read-only t)
@@ -49,7 +49,7 @@ at most COLUMNS characters of a line and ROWS lines, NIL for any number."
         (multiple-value-bind (top bottom) (clip-range 0 y1 y2 (map-height map))
           (multiple-value-bind (wide high)
               (least-block (- right left) (- bottom top) columns rows)
-            (make-view :snapshot snapshot :left left :top top :wide wide :high high
+            (make-text-view :snapshot snapshot :left left :top top :wide wide :high high
                        :columns (ceiling (- right left) wide)
                        :rows (ceiling (- bottom top) high))))))))
 

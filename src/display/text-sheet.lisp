@@ -97,7 +97,7 @@
 (defstruct (sheet (:copier nil))
   "A VIEW with GLYPHS, the visible glyph of each block, row by row, or NIL; and LEGEND, a list of
 all glyphs used."
-  (view nil :type view :read-only t)
+  (view nil :type text-view :read-only t)
   (letters nil :type hash-table :read-only t)
   ;; True if walls are told apart by colour.
   (colored-p nil :read-only t)

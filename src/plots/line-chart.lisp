@@ -4,7 +4,8 @@
 
 (export '(line-chart))
 
-(defstruct (spot (:constructor make-spot (x y low high)) (:copier nil))
+(defstruct (data-point (:conc-name point-) (:constructor make-data-point (x y low high))
+                       (:copier nil))
   "A point of a series: Y at X, with the interval LOW to HIGH. X is a number or a text; all others
 may be NIL."
   (x nil :read-only t)
@@ -12,19 +13,19 @@ may be NIL."
   (low nil :read-only t)
   (high nil :read-only t))
 
-(defstruct (series (:constructor make-series (name index spots)) (:copier nil))
+(defstruct (series (:constructor make-series (name index points)) (:copier nil))
   "Points in the given order. INDEX determines the look."
   (name nil :read-only t)
   (index 0 :read-only t)
-  (spots '() :type list :read-only t))
+  (points '() :type list :read-only t))
 
-(defun make-checked-spot (point words-p)
+(defun checked-point (point words-p)
   (check-argument chart point (and (consp point) (ignore-errors (<= 2 (length point) 4)))
                   "a list (x y) or (x y low high)")
   (destructuring-bind (x y &optional low high) point
     (check-argument chart x (not (null x)) "a number, or a word such as the name of a condition")
-    (make-spot (if words-p (name-text x) (as-rational x))
-               (as-rational y) (as-rational low) (as-rational high))))
+    (make-data-point (if words-p (name-text x) (as-rational x))
+                     (as-rational y) (as-rational low) (as-rational high))))
 
 (defun words-p (all)
   "True if the X of a point in ALL, lists (name point...), is not a number."
@@ -40,19 +41,19 @@ may be NIL."
     (values (loop for (name . points) in all
                   for index from 0
                   collect (make-series (name-text name) index
-                                       (mapcar (lambda (point) (make-checked-spot point words-p))
+                                       (mapcar (lambda (point) (checked-point point words-p))
                                                points)))
             words-p)))
 
-(defun all-spots (series) (mapcan (lambda (one) (copy-list (series-spots one))) series))
+(defun all-points (series) (mapcan (lambda (one) (copy-list (series-points one))) series))
 
 (defun all-x (series)
   "Return the X of SERIES, each once, in order of appearance."
-  (remove-duplicates (mapcar #'spot-x (all-spots series)) :test #'equal :from-end t))
+  (remove-duplicates (mapcar #'point-x (all-points series)) :test #'equal :from-end t))
 
 (defun all-y (series)
-  (loop for spot in (all-spots series)
-        append (remove nil (list (spot-y spot) (spot-low spot) (spot-high spot)))))
+  (loop for point in (all-points series)
+        append (remove nil (list (point-y point) (point-low point) (point-high point)))))
 
 ;;; Series are drawn side by side, so that their intervals do not hide each other.
 
@@ -73,9 +74,9 @@ may be NIL."
 (defun inset-for-series (series values from to log-p)
   "Return how far VALUES must be from the ends of an axis between the pixels FROM and TO for all
 SERIES to have room beside them."
-  (let* ((spots (mapcar (lambda (value) (scaled-value value log-p)) values))
-         (span (if spots (- (reduce #'max spots) (reduce #'min spots)) 0))
-         (gap (if (zerop span) 60 (* (- to from) (/ (least-gap spots) span)))))
+  (let* ((places (mapcar (lambda (value) (scaled-value value log-p)) values))
+         (span (if places (- (reduce #'max places) (reduce #'min places)) 0))
+         (gap (if (zerop span) 60 (* (- to from) (/ (least-gap places) span)))))
     (+ 14 (* 1/2 (length series) (shift-step (length series) gap)))))
 
 (defun series-shifts (series places from)
@@ -100,21 +101,21 @@ axis that begins at FROM."
 (defun number-words (series words)
   "Return SERIES with the position in WORDS of each X, in its place."
   (loop for one in series
-        collect (make-series (series-name one) (series-index one)
-                             (loop for spot in (series-spots one)
-                                   collect (make-spot (position (spot-x spot) words :test #'equal)
-                                                      (spot-y spot) (spot-low spot)
-                                                      (spot-high spot))))))
+        for points = (loop for point in (series-points one)
+                           for place = (position (point-x point) words :test #'equal)
+                           collect (make-data-point place (point-y point) (point-low point)
+                                                    (point-high point)))
+        collect (make-series (series-name one) (series-index one) points)))
 
-(defun spot-title (series spot words percent)
-  "Return the tooltip of SPOT: its series, X, Y and interval."
+(defun point-title (series point words percent)
+  "Return the tooltip of POINT: its series, X, Y and interval."
   (flet ((text (value) (figure-text value :percent percent)))
     (format nil "~@[~A, ~]~A: ~A~:[~;~:* (~A to ~A)~]"
             (and (string/= "" (series-name series)) (series-name series))
-            (if words (elt words (spot-x spot)) (figure-text (spot-x spot)))
-            (text (spot-y spot))
-            (and (spot-low spot) (spot-high spot) (text (spot-low spot)))
-            (and (spot-high spot) (text (spot-high spot))))))
+            (if words (elt words (point-x point)) (figure-text (point-x point)))
+            (text (point-y point))
+            (and (point-low point) (point-high point) (text (point-low point)))
+            (and (point-high point) (text (point-high point))))))
 
 (defun runs (items test)
   "Return lists of consecutive ITEMS for which TEST is true."
@@ -125,29 +126,29 @@ axis that begins at FROM."
                  (setf run '()))))))
 
 (defun draw-connections (canvas series plane shift)
-  (dolist (run (runs (series-spots series) #'spot-y))
+  (dolist (run (runs (series-points series) #'point-y))
     (when (rest run)
       (with-look ((series-index series) 1.8)
         (draw-lines canvas draw-gcontext*
-                    (loop for spot in run
-                          collect (+ shift (axis-place (spot-x spot) (plane-across plane)))
-                          collect (axis-place (spot-y spot) (plane-upward plane))))))))
+                    (loop for point in run
+                          collect (+ shift (axis-place (point-x point) (plane-across plane)))
+                          collect (axis-place (point-y point) (plane-upward plane))))))))
 
 (defun draw-intervals (canvas series plane shift)
   (with-ink ((look-color (series-index series)) 1.2)
-    (dolist (spot (series-spots series))
-      (when (and (spot-low spot) (spot-high spot))
-        (draw-interval canvas (+ shift (axis-place (spot-x spot) (plane-across plane)))
-                       (axis-place (spot-low spot) (plane-upward plane))
-                       (axis-place (spot-high spot) (plane-upward plane)))))))
+    (dolist (point (series-points series))
+      (when (and (point-low point) (point-high point))
+        (draw-interval canvas (+ shift (axis-place (point-x point) (plane-across plane)))
+                       (axis-place (point-low point) (plane-upward plane))
+                       (axis-place (point-high point) (plane-upward plane)))))))
 
-(defun draw-spots (canvas series plane shift words percent)
-  (dolist (spot (series-spots series))
-    (when (spot-y spot)
-      (with-subject (canvas (spot-title series spot words percent))
+(defun draw-markers (canvas series plane shift words percent)
+  (dolist (point (series-points series))
+    (when (point-y point)
+      (with-subject (canvas (point-title series point words percent))
         (draw-marker canvas (series-index series)
-                     (+ shift (axis-place (spot-x spot) (plane-across plane)))
-                     (axis-place (spot-y spot) (plane-upward plane)))))))
+                     (+ shift (axis-place (point-x point) (plane-across plane)))
+                     (axis-place (point-y point) (plane-upward plane)))))))
 
 (defun draw-series (canvas all plane words percent)
   "Draw ALL series: lines, then intervals, then markers."
@@ -160,7 +161,7 @@ axis that begins at FROM."
       (unless words
         (each (lambda (series shift) (draw-connections canvas series plane shift))))
       (each (lambda (series shift) (draw-intervals canvas series plane shift)))
-      (each (lambda (series shift) (draw-spots canvas series plane shift words percent))))))
+      (each (lambda (series shift) (draw-markers canvas series plane shift words percent))))))
 
 (defun plan-line-chart (all words values log-x upward options)
   "Return the plane for ALL series, whose X are VALUES: numbers of WORDS if there are any."
@@ -172,7 +173,7 @@ axis that begins at FROM."
                             :inset (inset-for-series all values from to log-x))))
          upward
          (loop for series in all
-               collect (legend-name (series-name series) (some #'spot-y (series-spots series))))
+               collect (legend-name (series-name series) (some #'point-y (series-points series))))
          :connect (null words) options))
 
 (defun line-chart (series &rest options
@@ -188,10 +189,10 @@ there is no legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")
-  (multiple-value-bind (given words-p) (checked-series series)
-    (let* ((values (all-x given))
+  (multiple-value-bind (checked words-p) (checked-series series)
+    (let* ((values (all-x checked))
            (words (and words-p values))
-           (all (if words-p (number-words given words) given))
+           (all (if words-p (number-words checked words) checked))
            (upward (axis-upward (all-y all) percent
                                 (mapcar #'as-rational (or range (and percent '(0 1))))))
            (plane (plan-line-chart all words values log-x upward options)))
