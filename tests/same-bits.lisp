@@ -7,16 +7,10 @@
 ;;; tests/same-bits has the records of one machine: the digests of 40 set-ups, the journal of one of
 ;;; them, and a saved run. All machines must produce the same. After a change in behaviour, record
 ;;; again with (record-same-bits), and give the reason in the commit. A new command is no reason:
-;;; random rides draw from the commands that were recorded with them.
+;;; random rides draw from the commands in commands.txt, in this order, and nothing writes that file.
 
 (defun same-bits-file (name)
   (project-file (format nil "tests/same-bits/~A" name)))
-
-;; The order counts: rides draw from this list.
-(defun record-commands ()
-  (write-lines (mapcar (lambda (command) (string-downcase (command:command-name command)))
-                       (own-commands))
-               (same-bits-file "commands.txt")))
 
 (defun recorded-commands ()
   (loop for name in (file-lines (same-bits-file "commands.txt"))
@@ -77,13 +71,14 @@
                        (file-lines (same-bits-file "digests.txt")))))
     (parse-integer line :start (+ 2 (position #\: line :from-end t)) :radix 16)))
 
+;; Anyway: the file of the rides' kickers may have been edited since.
 (test same-bits.a-journal-of-another-machine-replays
   (is (= (recorded-digest "ride 7")
-         (nth-value 1 (run:replay (same-bits-file "ride.journal"))))))
+         (nth-value 1 (run:replay (same-bits-file "ride.journal") :anyway t)))))
 
 (defun after-saved ()
   "Return the digest of the recorded run, 100 ticks after it was saved."
-  (let ((simulation (run:load-simulation (same-bits-file "ride.run"))))
+  (let ((simulation (run:load-simulation (same-bits-file "ride.run") :anyway t)))
     (run:run-ticks 100 simulation)
     (format nil "~16,'0X" (run:state-digest simulation))))
 
@@ -98,7 +93,6 @@
 
 (defun record-same-bits ()
   "Write what the tests of this suite compare with."
-  (record-commands)
   (write-lines (set-up-lines) (same-bits-file "digests.txt"))
   (run:write-journal (nth-value 1 (ride-as-recorded 7 :journal t))
                      (same-bits-file "ride.journal"))

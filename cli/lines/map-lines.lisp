@@ -83,9 +83,7 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
              (loop for name in (text-layers)
                    collect (list name (layer-title (layer-named name))))))
     "Show the world as characters: all of it, a radius around the robot, or a region.
-CONES adds what the cameras have in view; WAY, where the robot went; PLAN, its planned way; BELIEF,
-its estimated position and those of what its designators denote. LEGEND shows only what the
-characters mean. PICTURE's names WEDGES, TRAIL, PLANNED-WAY and DESIGNATORS work here, too."
+LEGEND shows only what the characters mean. PICTURE's names of layers work here, too."
   (write-string (map-text session (map-options what))))
 
 ;;; WATCH.

@@ -13,11 +13,12 @@
   (type nil symbol "the name of the argument's type" :addition)
   (text "" string "what the argument or result is, a sentence" :addition))
 
-(define-record (error-code (:constructor make-error-code (keyword text)))
+(define-record (error-code (:constructor make-error-code (keyword text &rest explanation)))
   "One way in which a command fails."
   (keyword nil keyword "the keyword that the continuation gets" :addition)
   (text "" (or string function)
-        "the text of the message, a string or a function of the operation" :addition))
+        "the text of the message, a string or a function of the operation" :addition)
+  (explanation '() list "strings: what the code means, and what to try; () if elsewhere"))
 
 (addition command-p)
 (define-record command

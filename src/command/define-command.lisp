@@ -142,8 +142,9 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:family keyword) (:section string)  where it belongs; the section is the manual's, if any
   (:delay form)                        ticks until BODY runs, evaluated when the command begins;
                                        without it the command is done in the next tick
-  (:errors (keyword text)...)          its error codes; TEXT, a form, gives a string or a
-                                       function of the operation, for the error message
+  (:errors (keyword text [meaning remedy])...)  its error codes; TEXT, a form, gives a string or a
+                                       function of the operation, for the error message; strings
+                                       say what a new code means and what to try
   (:expected keyword...)               those of its error codes that are no failure: plans need not
                                        check them
   (:report lambda-list form)           the message of success, from the results; the resource is
@@ -183,8 +184,7 @@ BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later 
          :parameters (list ,@(mapcar #'spec-form parameters))
          :results (list ,@(loop for (result text) in results
                                 collect (spec-form (list result t text))))
-         :errors (list ,@(loop for (keyword text) in errors
-                               collect `(make-error-code ,keyword ,text)))
+         :errors (list ,@(loop for error in errors collect `(make-error-code ,@error)))
          :expected ',(option :expected options)
          :traits ',(option :traits options)
          :echo ',(option :echo options)

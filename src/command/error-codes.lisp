@@ -4,8 +4,9 @@
 
 (export '(trouble-p))
 
-;;; An error code is only a word. This file has a sentence and a remedy for each, for all commands.
-;;; Commands that end with the same code also have their own messages (see DEFINE-COMMAND).
+;;; An error code is only a word. This file has a sentence and a remedy for each that several
+;;; commands share. Commands have their own messages, too, and explain their own codes (see
+;;; DEFINE-COMMAND).
 
 (defparameter *meanings*
   '((:interrupt
@@ -121,17 +122,24 @@ sentence or an empty string.")
 
 (mapc #'note-error-code (mapcar #'first *meanings*))
 
+(defun explanation-of-code (code)
+  "Return a list (meaning remedy) of strings for CODE, or NIL."
+  (or (rest (assoc code *meanings*))
+      (loop for command in (all-commands)
+            for own = (find code (command-errors command) :key #'error-code-keyword)
+            thereis (and own (error-code-explanation own)))))
+
 (addition error-code-meaning error-code-remedy)
 (defun error-code-meaning (code)
-  "Return the meaning of CODE, an error code such as :ROBOT-BLOCKED, a sentence; NIL if it is not
-one of the simulator's own."
-  (let ((meaning (assoc code *meanings*)))
-    (and meaning (one-line (second meaning)))))
+  "Return the meaning of CODE, an error code such as :ROBOT-BLOCKED, a sentence; NIL if neither the
+simulator nor a command explains it."
+  (let ((meaning (first (explanation-of-code code))))
+    (and meaning (one-line meaning))))
 
 (defun error-code-remedy (code)
   "Return what to try after a command has ended with CODE, an error code such as :ROBOT-BLOCKED, in
-a sentence; NIL if it is not one of the simulator's own."
-  (let ((remedy (third (assoc code *meanings*))))
+a sentence; NIL if neither the simulator nor a command says."
+  (let ((remedy (second (explanation-of-code code))))
     (and remedy (string/= "" remedy) (one-line remedy))))
 
 (defun trouble-p (code)

@@ -178,9 +178,10 @@ the same program issues again while it is in progress without a continuation."
              (angle (doubt-angle (command-name command) world argument))
              (ticks (when (minusp argument)
                       (warn-once (list :ticks (command-name command)) world
-                                 (format nil "~(~A~): ~A ticks do nothing. To ~
-                                              drive back, turn by pi first."
-                                         (command-name command) argument)))))))
+                                 (format nil "~(~A~): ~A ticks do nothing.~@[ To drive back, turn ~
+                                              by pi first.~]"
+                                         (command-name command) argument
+                                         (trait-p :drives command))))))))
 
 (defvar *asked-with* '()
   "Lists (command world (parameter . value)...): the commands that programs have issued in headless

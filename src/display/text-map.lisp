@@ -205,11 +205,10 @@ floor."
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
 places, things as letters, robots as arrows, and a legend. With ROWS, it fits into that many lines
 if possible. REGION, a list (left top right bottom) in metres, limits it to that region; RADIUS, a
-number of cells, to the surroundings of ROBOT. LAYERS are some of :CONES (what its cameras have in
-view), :WAY (where it went since KEEP-HISTORY), :PLAN (the way it is about to go, see PUBLISH-WAY)
-and :BELIEF (where it believes itself and its designated objects to be). PAINT is a function of a
-string and of the name of a colour, or NIL; it returns the string in that colour. ONLY-LEGEND leaves
-out the map. Call this between ticks. Signals WRONG-ARGUMENT."
+number of cells, to the surroundings of ROBOT. LAYERS is a list of names such as :WAY and :BELIEF,
+which *PICTURE-LAYERS* documents. PAINT is a function of a string and of the name of a colour, or
+NIL; it returns the string in that colour. ONLY-LEGEND leaves out the map. Call this between ticks.
+Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
   (check-argument text-map rows (or (null rows) (whole-p rows 5 100000))

@@ -163,9 +163,12 @@ theirs."
 (defun call-with-limit (function seconds give-up)
   "Call FUNCTION. Each time SECONDS have passed without its return, call GIVE-UP in this thread,
 which may exit from it."
-  (let ((timer (sb-ext:make-timer give-up)))
+  ;; The timer may have interrupted this thread already when the call ends.
+  (let* ((over nil)
+         (timer (sb-ext:make-timer (lambda () (unless over (funcall give-up))))))
     (sb-ext:schedule-timer timer seconds :repeat-interval seconds)
     (unwind-protect (funcall function)
+      (setf over t)
       (sb-ext:unschedule-timer timer))))
 
 ;;;; Signals from the system
