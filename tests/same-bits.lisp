@@ -7,7 +7,7 @@
 ;;; tests/same-bits has the records of one machine: the digests of 40 set-ups, the journal of one of
 ;;; them, and a saved run. All machines must produce the same. After a change in behaviour, record
 ;;; again with (record-same-bits), and give the reason in the commit. A new command is no reason:
-;;; random rides draw from the commands in commands.txt, in this order, and nothing writes that file.
+;;; random rides draw from the commands in commands.txt, in this order; nothing writes that file.
 
 (defun same-bits-file (name)
   (project-file (format nil "tests/same-bits/~A" name)))

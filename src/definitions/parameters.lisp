@@ -62,8 +62,8 @@
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
   "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a noiseless
-world, for parameters of kind :noise, and EQL to DEFAULT if it is equal. ADDITION is true if the manual does not have it. :DIGESTED is
-true if digests include it even with its default value."
+world, for parameters of kind :noise; write it like DEFAULT if they are equal. ADDITION is true if
+the manual does not have it, :DIGESTED if digests include it even with its default value."
   ;; Or a run would have another digest after CLEAN-SIMULATION.
   (assert (or (eql default clean) (not (equalp default clean))) ()
           "The default of ~(~A~), ~S, equals its clean value: write ~S." symbol default clean)

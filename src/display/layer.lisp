@@ -44,7 +44,8 @@
                      only after KEEP-HISTORY."
                 (loop for layer in *layers*
                       collect (list (%layer-name layer) (%layer-default-p layer)
-                                    (%layer-text-name layer) (%layer-title layer) (%layer-sentence layer))))))
+                                    (%layer-text-name layer) (%layer-title layer)
+                                    (%layer-sentence layer))))))
 
 (defun add-layer (layer)
   "Add LAYER, in the place of one of the same name, or after all others. Return its name."

@@ -82,10 +82,10 @@ that it asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
   (:robots name...)          the robots in the world of each trial, all of one map
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
-                             parameter, :ROBOTS (values are names or lists of names, quoted), :THINKING
-                             (values are thinking modes), or a variable of the other forms; a
-                             special variable is bound. (what :in form) takes the values from a
-                             list. Values are numbers, symbols, strings, or lists of these.
+                             parameter, :ROBOTS (values are names or lists of names, quoted),
+                             :THINKING (values are thinking modes), or a variable of the other
+                             forms; a special variable is bound. (what :in form) takes the values
+                             from a list. Values are numbers, symbols, strings, or lists of these.
                              (:sobol n (what low high)...) samples N points from ranges instead of
                              all combinations; so do :latin-hypercube and :random. N may be followed
                              by :seed and an integer, a range by :integer or :log
