@@ -62,8 +62,10 @@
       (is (near-p 3 (robot:robot-angle rover))))))
 
 (test rewind.knows-robots-and-what-is-shared-in-arguments
+  "Where the run is redone from its beginning: a kept fork shares what only a program refers to."
   (with-rover (:seed 1 :keep t)
-    (let* ((chore (make-chore :robot rover)) (given (vector chore (list chore)))
+    (let* ((run::*keeping-share* 1/1000000)
+           (chore (make-chore :robot rover)) (given (vector chore (list chore)))
            (seen (rpl:create-fluent 'seen)))
       (rpl:set-value seen given)
       (run:run-ticks 3)
