@@ -27,6 +27,12 @@
 
 ;;; Plans.
 
+(test calls.of-fluents-are-not-calls
+  (handler-case (ars-magna.rpl.language::reject-call 'driver:robot-stopped*)
+    (base:misuse (condition)
+      (is-true (has-words-p (princ-to-string condition) "robot-stopped*" "It is a fluent")))
+    (:no-error (&rest values) (fail "~S" values))))
+
 (test wait-until.warns-of-numbers
   (is-true (has-words-p (warnings-of-procedure 'robot '(rpl:wait-until 5)) "(wait-time 5)")))
 

@@ -267,8 +267,10 @@ could be typed either: so signal that."
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
-      (handler-case (complain session (format nil "~A~@[ ~A~]" (condition-text condition)
-                                              (advice-on-function condition)))
+      (handler-case (let* ((advice (advice-on-function condition))
+                           (*report-addition* (if advice (constantly nil) *report-addition*)))
+                      (complain session
+                                (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
         (error (trouble) (complain-of-printing session trouble))))))
 
 (defun command-carried-out (robot)

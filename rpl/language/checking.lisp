@@ -80,6 +80,8 @@ function, and what to write; or NIL. Layers that know more names have methods.")
            (format nil "~(~S~). If the plan of another package is meant, write ~(~S~)."
                    name (procedure-name namesake)))
           (advice (format nil "~(~A~): ~A" name advice))
+          ((known-fluent-variable-p name)
+           (format nil "~(~A~). It is a fluent: leave out the parentheses." name))
           ((nisp-namesake name)
            (format nil "~(~S~); NISP has one. Write (in-package :ars-user), or use the package ~
                         NISP in yours." name)))))

@@ -253,7 +253,8 @@ continue."
     (cond ((or (null *world*)
                (eq *world* world)
                (not (eq (world-map world) (world-map *world*))))
-           (format nil "(simulator '~(~A~)) begins one, and does then what was asked before." name))
+           (format nil "(simulator '~(~A~)) begins one and carries it out; (run-ticks N) does so ~
+                         without." name))
           ((find name (world-robots *world*) :key #'robot-name)
            (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~
                         ~(~A~) of its own. Inside write ~(~A~)."

@@ -28,9 +28,13 @@ the form for the option"))
 (defun kind-of-clause (map clause)
   (let ((kind (and (typep clause '(cons symbol)) (find-clause-kind (first clause) nil))))
     (cond ((null kind)
-           (reject-clause (map-title map) clause
-                          (format nil "a clause: ~{~(~A~)~#[~; or ~:;, ~]~}"
-                                  (defined-names *map-clauses*))))
+           (let ((names (defined-names *map-clauses*)))
+             (reject-clause (map-title map) clause
+                            (format nil "a clause: ~{~(~A~)~#[~; or ~:;, ~]~}~@[; did you mean ~
+                                         ~(~A~)?~]"
+                                    names
+                                    (and (typep clause '(cons symbol))
+                                         (nearest-name (first clause) names))))))
           ((proper-list-p clause) kind)
           (t (reject-clause (map-title map) clause
                             "a clause without a dot before its last element")))))

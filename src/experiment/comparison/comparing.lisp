@@ -119,7 +119,8 @@ factor. :ALL as SECOND compares FIRST with each other condition. If FIRST and SE
 one factor that several conditions have, each of these is compared with the one that is otherwise
 equal, and all together, as by COMPARE-LEVELS. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a
 word is ambiguous or nothing can be compared."
-  (check-argument compare-conditions results (results-p results) "results")
+  (check-argument compare-conditions results (results-p results)
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-stream 'compare-conditions stream)
   (let ((names (compared-names 'compare-conditions (list results) measure)))
     (multiple-value-bind (pairs place) (designated-pairs results first second)
@@ -132,7 +133,8 @@ varies in RESULTS, or CASE for named conditions; AGAINST is the first in the tab
 that makes several comparisons of the same two values, compare these over all, too: each seed counts
 once, by its mean over the conditions. MEASURE, STREAM, the value and the errors are those of
 COMPARE-CONDITIONS. p is corrected for all tests together, separately for those over all."
-  (check-argument compare-levels results (results-p results) "results")
+  (check-argument compare-levels results (results-p results)
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-stream 'compare-levels stream)
   (let* ((names (compared-names 'compare-levels (list results) measure))
          (place (factor-place results factor))

@@ -50,7 +50,8 @@ The first factor whose values are numbers is the x axis. The others make series,
 more than six, several pictures. What has no data is left out. The title is what the experiment
 asks, if it is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing or the
 directory cannot be made."
-  (check-argument save-result-pictures results (results-p results) "results")
+  (check-argument save-result-pictures results (results-p results)
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-argument save-result-pictures directory (typep directory '(or string pathname))
                   "the name of a directory")
   (check-argument save-result-pictures kind (member kind '(:svg :png)) ":svg or :png")

@@ -225,7 +225,8 @@ Intervals have a confidence of 95 %. If trials were added until they were narrow
 look at which the condition stopped: then the intervals of a condition at all its looks together are
 wrong in at most 5 of 100 runs. That holds for each condition by itself, not for all intervals of a
 table together."
-  (check-argument summarize-results results (results-p results) "results")
+  (check-argument summarize-results results (results-p results)
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (let* ((samples (results-samples results))
          (names (results-measures results))
          (kinds (loop for place from 0 below (length names)

@@ -289,7 +289,8 @@ how often it succeeded, how often it reached the limit of ticks or had an error 
 ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below: why trials failed and which
 errors there were, with an example of each, and which intervals these are. Conditions that the
 experiment no longer has, if known, are in a separate table."
-  (check-argument print-results results (results-p results) "results")
+  (check-argument print-results results (results-p results)
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
                   "an output stream")
   (let ((summaries (summarize-results results)))
