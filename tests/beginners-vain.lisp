@@ -189,7 +189,7 @@
   (let ((text (rover-writes ()
                 (dotimes (i 4) (command:robot-turn rover 1 nil) (run:run-ticks 3)))))
     (is (= 1 (length (lines-of text))) "~A" text)
-    (is-true (has-words-p text "robot-turn was asked for again after 3 ticks"
+    (is-true (has-words-p text "robot-turn was issued again after 3 ticks"
                           "(run-ticks N)" "(continuation (err robot angle) ...)")))
   (is (string= "" (rover-writes ()
                     (dotimes (i 4) (command:robot-turn rover (/ i 2) nil) (run:run-ticks 3))

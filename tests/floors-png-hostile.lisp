@@ -5,7 +5,7 @@
 (in-suite floors)
 
 (defun png-of-chunks (&rest chunks)
-  "Return the PNG file that CHUNKS make, with IEND behind them."
+  "Return the PNG file that CHUNKS make, with IEND after them."
   (format nil "~A~{~A~}~A" (png-signature) chunks (png-chunk "IEND" "")))
 
 (defun png-of-data (text)
@@ -83,7 +83,7 @@
     (loop for (words image)
             in `(("its pixels end before the last row"
                   ,(png-of-data (stored-by-zlib (octets-as-string '(0 0 205)))))
-                 ("its pixels go on behind the last row"
+                 ("its pixels go on after the last row"
                   ,(png-of-data (stored-by-zlib (octets-as-string '(0 0 205 254 1)))))
                  ("the check sum of its pixels is missing or wrong"
                   ,(png-of-data (subseq data 0 (- (length data) 4))))

@@ -28,7 +28,7 @@
                   "characters or more")
                  ("(1 grab \"\\D800000;\")" "backslash") ("(1 grab \"" "cut short")
                  ("(1 grab \"\\\")" "backslash")
-                 ("(1 grab |x|)" "without its package") ("(1 grab) (2 grab)" "behind it")
+                 ("(1 grab |x|)" "without its package") ("(1 grab) (2 grab)" "after it")
                  ("(1 set-seed)" "entry 1, set-seed at tick 1: ")
                  ("(1 set-seed 1 2)" "argument list") ("(1 set-seed \"1\")" "a whole number")
                  ("(1 robot-turn (the robot \"NOBODY\") 1)" "no robot in this simulation")

@@ -42,7 +42,7 @@
 ;;; Lambda lists.
 
 (defparameter *no-lambda-lists*
-  '(((a . b) "no list that ends") ((a a) "a is there twice") ((nil) "nil is a constant")
+  '(((a . b) "not a proper list") ((a a) "a is there twice") ((nil) "nil is a constant")
     ((&rest) "after &rest") (((a b)) "lambda list") ((:a) ":a is a constant")
     ((t) "t is a constant") ((pi) "pi is a constant") ((a &optional (a 1)) "a is there twice")
     ((&key &optional a) "lambda list") ((5) "5 is no symbol"))

@@ -171,7 +171,7 @@ have been."
       (write-saved-texts (butlast texts) file)
       (is-true (says-p "end is missing" (loading-outcome file)))
       (write-saved-texts (append texts '("(end 9)")) file)
-      (is-true (says-p "behind its end" (loading-outcome file))))))
+      (is-true (says-p "after its end" (loading-outcome file))))))
 
 (defun all-steps ()
   "Return the names of all steps of our commands, in the order of the alphabet."

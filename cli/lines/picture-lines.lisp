@@ -163,8 +163,8 @@ the window at any time. It closes by itself when the run is over."
 (defun tell-imported (map report)
   "Describe MAP by REPORT, the report of IMPORT-MAP, and say how to use it."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
-    (format t "~(~A~): ~D by ~D cells of ~A m~:[~;, each a metre here~], ~D free, ~D occupied, ~
-               ~D unknown, in ~D walls.~%"
+    (format t "~(~A~): ~D by ~D cells of ~A m~:[~; (a cell is 1 m for the robot)~], ~D free, ~
+               ~D occupied, ~D unknown; ~D walls.~%"
             (map-name map) width height (amount-text cell) (/= 1 cell) free occupied unknown walls)
     (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
                WORLD ~2:*~(~A~).~%"

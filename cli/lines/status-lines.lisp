@@ -75,7 +75,7 @@
         (put-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun entry-text (entry control)
-  "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, behind its part."
+  "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, after its part."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; An angle, length, speed or time may be typed with a unit, joined to the number or as the next
+;;; An angle, length, speed or time may be typed with a unit, without a space or as the next
 ;;; word, and with pi in it. A number alone is in the simulator's own units: radians, metres (a cell
 ;;; is one wide), ticks.
 

@@ -158,7 +158,7 @@ the condition that says so; NIL at the end."
          (< (1+ start) (length text))
          (char= #\# (char text start))
          (find (char text (1+ start)) "+-")
-         ;; Then what is put behind it is what is read.
+         ;; Then the reader returns what is appended to it.
          (eql 0 (ignore-errors (read-from-string (format nil "~A~%0" text) t nil :start start))))))
 
 (defun read-form (session text &optional (start 0))

@@ -165,7 +165,7 @@ that, or else the first; NIL if it need not be broken or has no blank."
 
 (defun table-line-p (line indent)
   "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a
-map has, but for one behind a label, such as STATUS has: \"Time:    Tick 0\"."
+map has, but for one after a label, such as STATUS has: \"Time:    Tick 0\"."
   (let ((colon (position #\: line :start indent)))
     (search "  " line :start2 (or (and colon
                                        (null (search "  " line :start2 indent :end2 colon))

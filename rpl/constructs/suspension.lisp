@@ -15,7 +15,7 @@
 (define-construct with-task-blocked (task &body body)
   "Run BODY in a plan while TASK and its parts are stopped. Fluents that TASK waits for still count
 for it. TASK goes on when BODY has ended in any way. An evaporating task is not stopped. The status
-of TASK is :blocked meanwhile (CRAM's, of 2009)."
+of TASK is :BLOCKED meanwhile. From CRAM (2009)."
   (:parts (target function (value-lambda task scope))
           (status keyword :blocked)
           (body node (body-code body scope)))
@@ -34,7 +34,7 @@ of TASK is :blocked meanwhile (CRAM's, of 2009)."
    nil))
 
 (define-construct with-task-suspended (task &body body)
-  "Do as WITH-TASK-BLOCKED; the status of TASK is :suspended meanwhile (CRAM's, of 2020)."
+  "Like WITH-TASK-BLOCKED, but the status of TASK is :SUSPENDED meanwhile. From CRAM (2020)."
   (:like with-task-blocked)
   (:parts (target function (value-lambda task scope))
           (status keyword :suspended)

@@ -253,7 +253,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
     (unblock-task (claim-task claim) t)
     (unless (claim-lost claim) (admit-parts (claim-task claim)))))
 
-;; The new owner has no parts yet, and at least the priority of those behind: no other can have it.
+;; The new owner has no parts yet, and at least the priority of those in line: no other can have it.
 (defun grant-waiting (valve)
   "Grant the first claim that waits for VALVE and can be granted, or give VALVE back to its losers."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))

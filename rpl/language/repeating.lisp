@@ -163,15 +163,15 @@ a test made before each turn. COUNT is a number up to 1e15. Return NIL."
 
 (defun item-list (operator sequence)
   "Return the elements of SEQUENCE, which OPERATOR goes through, in a list. Signals WRONG-ARGUMENT
-unless it is a vector or a list that ends."
+unless it is a vector or a proper list."
   (unless (typep sequence '(and sequence (or (not list) (satisfies proper-list-p))))
-    (reject-argument operator 'sequence sequence "a vector, or a list that ends"))
+    (reject-argument operator 'sequence sequence "a vector, or a proper list"))
   (coerce sequence 'list))
 
 (defun whole-list (operator list)
-  "Return LIST, which OPERATOR goes through. Signals WRONG-ARGUMENT unless it is a list that ends."
+  "Return LIST, which OPERATOR goes through. Signals WRONG-ARGUMENT unless it is a proper list."
   (unless (proper-list-p list)
-    (reject-argument operator 'list list "a list that ends"))
+    (reject-argument operator 'list list "a proper list"))
   list)
 
 (define-expression each

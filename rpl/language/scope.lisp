@@ -71,7 +71,7 @@ MALFORMED-DEFINITION."
                           (format nil "an ordinary lambda list, such as (a &optional b &key c); ~
                                        ~A~@[. ~A~]"
                                   trouble (forgotten-parameters-text parameters environment)))))
-    (unless (proper-list-p parameters) (reject "this is no list that ends"))
+    (unless (proper-list-p parameters) (reject "this is not a proper list"))
     (let* ((plain (untyped-lambda-list parameters definition))
            (trouble (parameters-trouble plain environment)))
       (when trouble (reject trouble))
@@ -83,7 +83,7 @@ MALFORMED-DEFINITION."
 (defun check-bindings (form environment)
   (let ((bindings (second form)))
     (unless (proper-list-p bindings)
-      (reject-clause (text-title) form "(variable value) for each variable, in a list that ends"))
+      (reject-clause (text-title) form "(variable value) for each variable, in a proper list"))
     (dolist (entry (untyped-bindings bindings (text-title)))
       (unless (typep entry '(or symbol (cons t (or null (cons t null)))))
         (reject-clause (text-title) (if (consp entry) entry form)
@@ -92,7 +92,7 @@ MALFORMED-DEFINITION."
 
 (defun check-local-functions (form environment)
   (unless (proper-list-p (second form))
-    (reject-clause (text-title) form "(name parameters form...) for each, in a list that ends"))
+    (reject-clause (text-title) form "(name parameters form...) for each, in a proper list"))
   (dolist (definition (second form))
     (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
       (reject-clause (text-title) (if (consp definition) definition form)

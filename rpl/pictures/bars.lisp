@@ -170,7 +170,7 @@ cut to two decimals; of a long one its beginning."
 
 (defun place-for-name (length x width from to)
   "Return where to write the name, LENGTH pixels wide, of a command with a box WIDTH wide from X on:
-on it, behind it or before it, between FROM and TO; and whether on it. NIL if there is no room."
+on it, after it or before it, between FROM and TO; and whether on it. NIL if there is no room."
   (cond ((<= (+ 4 length) width) (values (+ x 2) t))
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))

@@ -24,7 +24,7 @@ part is a symbol, NIL for the robot itself.")
 
 (defmacro define-fluents (kind &body definitions)
   "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation),
-with :ADDITION behind it if the manual does not have the name. The documentation of those that are
+followed by :ADDITION if the manual does not have the name. The documentation of those that are
 pulsed, and never set, begins so. Return their names."
   `(progn
      (fluent-kind ',kind)

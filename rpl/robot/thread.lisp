@@ -101,7 +101,7 @@ it has ended: warn of plans that keep it, and end them if they are to end."
                :over)))))
 
 (defun call-for-ticks (interface)
-  "Have the live simulation, if it rests for want of events, go on while a plan waits for time."
+  "If a plan waits for a tick and the live simulation is idle because no event is pending, wake it."
   (let ((simulation (interface-simulation interface)))
     (when (and (or (interface-tick-wanted-p interface)
                    (wake-tick interface))

@@ -151,8 +151,8 @@ CLIENT; or, if FAILURE is NIL, that TASK, a part of a plan, was just ended.")
   (+ (runner-steps runner) (runner-uncovered runner)))
 
 (defun count-slow-step (steps runner &optional task)
-  "Let one step of RUNNER, perhaps of TASK, take as much of a reaction as STEPS, since it takes so
-long. Where steps are counted it is one."
+  "Count one slow step of RUNNER, perhaps of TASK, as STEPS steps of a reaction. In COUNTED-STEPS,
+and with a budget, it counts as one, unless TASK is exempt."
   (cond ((and task (task-uncounted-p task)) (incf (runner-steps runner) steps))
         ((runner-budget runner) (incf (runner-steps runner)))
         (t (incf (runner-steps runner) steps)

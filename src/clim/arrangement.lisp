@@ -159,7 +159,7 @@ lines that are left, the last the pixels."
 ;;; The whole.
 
 (defun place-plan-column (preferences width left top height down)
-  "Return the places of the column of plans, which begins at LEFT, and of the splitter behind it,
+  "Return the places of the column of plans, which begins at LEFT, and of the splitter after it,
 which is DOWN pixels high."
   (let ((plan (plan-width preferences width)))
     (if (plusp plan)

@@ -156,9 +156,9 @@ the same program issues again while it is in progress without a continuation."
   (let ((*print-pretty* nil))
     (warn-once (list :again (command-name command))
                (robot-world (resource-robot resource))
-               (format nil "~(~A~) was asked for again after ~D tick~:P, when it had not ended: it ~
+               (format nil "~(~A~) was issued again after ~D tick~:P, when it had not ended: it ~
                             was interrupted, and began anew. Let it end by (run-ticks N) with more ~
-                            ticks, or ask again in its (continuation ~(~A~) ...)."
+                            ticks, or issue it again in its (continuation ~(~A~) ...)."
                        (command-name command) ticks (continuation-arguments command)))))
 
 ;; Manipulations, and commands that users define, may be for two robots.

@@ -264,7 +264,7 @@ too long or too deep."
   (multiple-value-bind (copy endless-p) (copy-lists datum)
     (when endless-p
       (reject-argument operator name "what was given"
-                       (format nil "lists that end, with at most ~D elements in all, and at most ~
-                                    ~D in one another"
+                       (format nil "proper lists, with at most ~D elements in all, nested at most ~
+                                    ~D deep"
                                +longest-argument+ +deepest-argument+)))
     copy))

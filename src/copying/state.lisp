@@ -104,8 +104,7 @@ DIGEST. A kind may add an :AFTER method.")
                        work (append (contents-of each) work)))))))
 
 (defun closed-over (function)
-  "Return a list of what FUNCTION closes over, with variables as their values; NIL if it is no
-closure."
+  "Return a list of the values that FUNCTION closes over; NIL if it is not a closure."
   (when (closure-p function)
     (loop for value in (closure-values function)
           collect (if (and (value-cell-p value) (not (exit-cell-p value)))

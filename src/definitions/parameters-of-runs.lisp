@@ -50,8 +50,8 @@ their final values in it. Return the values of FUNCTION."
        (registry-objects *parameters*)))
 
 (defun digest-parameters (known digest)
-  "Add KNOWN, a vector of PARAMETER-VALUES, to DIGEST. Parameters added later count only if they do
-not have their default, and by name, so that older digests stay valid."
+  "Add KNOWN, a vector of PARAMETER-VALUES, to DIGEST. Parameters that are not marked as digested
+are added by name, and only if they differ from their default, so that older digests stay valid."
   (loop for parameter in (registry-objects *parameters*)
         for value across known
         if (parameter-digested-p parameter)

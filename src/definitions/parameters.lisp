@@ -222,7 +222,7 @@ as an even number of rays has none in the middle.")
       "The chance that a search for things finds one that is not there. The manual has false
 designators of things, but no parameter for them." :addition :digested)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0 #.+largest+)
-      "The normal error of a pixel, uniform to either side.")
+      "The largest usual error of a pixel; errors are uniform from minus this to plus this.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a pixel is any value of the map's range.")
      (no-sensor-error* nil "" :noise boolean

@@ -78,7 +78,7 @@ PARAMETERS; or NIL."
   "Call the function that PARSE returns for FORM. Signals MALFORMED-DEFINITION with USAGE if it does
 not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
-    (reject-use-of form "a form that ends, in a parenthesis"))
+    (reject-use-of form "a form that is a proper list"))
   (doubt-readtable form)
   (call-blaming-form
    (handler-case (funcall parse)

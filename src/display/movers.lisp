@@ -219,7 +219,8 @@ ring of RADIUS."
 ;;; Rays, coloured by their readings.
 
 (defun reading-color-index (map reading)
-  "Return the number of the colour of READING, by its place between the parameters of the walls."
+  "Return the index of the colour for READING, scaled between the least and the greatest substance
+parameter of MAP."
   (let* ((least (map-least-parameter map)) (greatest (map-greatest-parameter map))
          (count (length +ray-inks+)))
     (if (< least greatest)

@@ -116,7 +116,7 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
         (setf (aref samples index) sample)))
     (skip-blanks input)
     (unless (= (input-position input) (length (input-octets input)))
-      (reject-image input "the image goes on behind the ~D values that its head promises; save one ~
+      (reject-image input "the image goes on after the ~D values that its head promises; save one ~
                            image only" count))
     samples))
 

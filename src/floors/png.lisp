@@ -49,7 +49,7 @@ more; NIL if the data are damaged."
           (t corner))))
 
 (defmacro add-to-row ((row above step left over corner) expected)
-  "Add EXPECTED to each octet of ROW behind the first STEP ones. LEFT, OVER and CORNER are bound to
+  "Add EXPECTED to each octet of ROW after the first STEP ones. LEFT, OVER and CORNER are bound to
 the octets to the left of it, in ABOVE, and to the left of that."
   (with-gensyms (index)
     `(loop for ,index of-type fixnum from ,step below (length ,row)
@@ -90,9 +90,9 @@ the octets to the left of it, in ABOVE, and to the left of that."
            (reject-damaged (png-input png) "its pixels end before the last row")))))
 
 (defun check-all-inflated (png inflater)
-  "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends behind the last row."
+  "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends after the last row."
   (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
-    (reject-damaged (png-input png) "its pixels go on behind the last row"))
+    (reject-damaged (png-input png) "its pixels go on after the last row"))
   (unless (ignore-errors (chipz:finish-dstate (inflater-state inflater)))
     (reject-damaged (png-input png) "the check sum of its pixels is missing or wrong")))
 
@@ -108,7 +108,7 @@ the octets to the left of it, in ABOVE, and to the left of that."
 
 (defun call-with-rows (function png)
   "Call FUNCTION with the number of each row of PNG, from the top, and the octets of its pixels,
-behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
+after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
          (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))
@@ -197,7 +197,7 @@ behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
          (ldb (byte depth 0) (ash (aref row (+ start octet)) (- (+ bit depth) 8)))))))
 
 (defun shade-row-by-table (row table depth step samples start width)
-  "Set WIDTH of SAMPLES from START by TABLE and the values of ROW, behind STEP octets."
+  "Set WIDTH of SAMPLES from START by TABLE and the values of ROW, after STEP octets."
   (declare (type octets row) (type samples table samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 1 16) depth) #.*hot*)
   (dotimes (x width)
@@ -212,7 +212,7 @@ behind PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 ;;; Several channels. Of two octets the high one is the first.
 
 (defun shade-row-by-sums (row channels octets step samples start width rule)
-  "Set WIDTH of SAMPLES from START by ROW, behind STEP octets, with CHANNELS of OCTETS each."
+  "Set WIDTH of SAMPLES from START by ROW, after STEP octets, with CHANNELS of OCTETS each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 2 4) channels) (type (integer 1 2) octets)
            #.*hot*)

@@ -117,7 +117,7 @@ UNUSABLE-FLOOR for ~user."
   (string-trim '(#\Space #\Tab #\Return) text))
 
 (defun without-comment (text)
-  "Return TEXT without a comment, which begins at its start or behind a blank."
+  "Return TEXT without a comment, which begins at its start or after a blank."
   (loop for start = (position #\# text) then (position #\# text :start (1+ start))
         while start
         when (or (zerop start) (blank-p (char text (1- start))))
@@ -126,7 +126,7 @@ UNUSABLE-FLOOR for ~user."
 
 (defun end-of-quoted (file line text)
   "Return where the quotes that TEXT begins with are closed. A quote that is doubled in single
-quotes, or behind a backslash in double ones, does not close them."
+quotes, or after a backslash in double ones, does not close them."
   (loop with quote = (char text 0)
         for i from 1 below (length text)
         for char = (char text i)
@@ -155,7 +155,7 @@ quotes, or behind a backslash in double ones, does not close them."
 (defun read-quoted (file line text)
   (let ((end (end-of-quoted file line text)))
     (unless (string= "" (without-comment (concatenate 'string " " (subseq text (1+ end)))))
-      (reject-floor file line "there is more behind the closing quote; leave that out"))
+      (reject-floor file line "there is more after the closing quote; leave that out"))
     (unquoted file line text end)))
 
 (defun read-list (file line text)
@@ -176,7 +176,7 @@ quotes, or behind a backslash in double ones, does not close them."
     (t (without-comment text))))
 
 (defun key-end (text)
-  "Return the position of the colon behind the key that TEXT begins with, or NIL."
+  "Return the position of the colon after the key that TEXT begins with, or NIL."
   (let ((end (position-if-not (lambda (char) (or (alphanumericp char) (find char "_-"))) text)))
     (and end
          (plusp end)
@@ -205,7 +205,7 @@ quotes, or behind a backslash in double ones, does not close them."
 (defun add-item (file line text entry)
   "Append the item in TEXT, on LINE of FILE, to the list of ENTRY above it."
   (unless (and entry (or (consp (entry-value entry)) (string= "" (entry-value entry))))
-    (reject-floor file line "an item of a list has no key above it; write the list behind its key, ~
+    (reject-floor file line "an item of a list has no key above it; write the list after its key, ~
                              as in origin: [0.0, 0.0, 0.0]"))
   (setf (entry-value entry)
         (append (and (consp (entry-value entry)) (entry-value entry))

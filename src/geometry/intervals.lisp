@@ -178,7 +178,8 @@ that is nothing (manual, Table 3.2)."
 
 (declaim (inline %grown))
 (defun %grown (interval amount)
-  "Return the bounds of INTERVAL, pushed outward by AMOUNT, or inward to the centre at most."
+  "Return the bounds of INTERVAL moved outward by AMOUNT. A negative AMOUNT moves them inward, at
+most to the centre."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
     (if (<= low high)

@@ -47,7 +47,8 @@ way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (%make-pt (double x) (double y)))
 
 (defmacro define-number-accessor (name (raw value object) check documentation)
-  "Define NAME, which reads OBJECT as RAW does, and sets it to a VALUE once CHECK is evaluated."
+  "Define the accessor NAME: it reads OBJECT with the accessor RAW; its SETF function evaluates
+CHECK, then stores VALUE as a double-float."
   `(progn
      (addition ,name)
      (settable ,name)
@@ -149,7 +150,8 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
     (pt-interval (%make-pt-interval (lift (%pt-interval-x x)) (lift (%pt-interval-y x))))))
 
 (defmacro define-side-accessor (name raw axis)
-  "Define NAME, which reads what RAW does of a point interval, its side along AXIS, and sets it."
+  "Define the accessor NAME: it reads the side of a point interval along AXIS with RAW; its SETF
+function copies the bounds of an interval into that side."
   `(progn
      (addition ,name)
      (settable ,name)

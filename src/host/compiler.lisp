@@ -229,14 +229,14 @@ first character can be read; NIL for other streams."
        (or (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream) 0)))
 
 (defun line-of-next (stream)
-  "Return the line of the character that LOAD reads next from STREAM, for which FORM-START is not
-NIL."
+  "Return the number of the line that holds the next character LOAD reads from STREAM, for which
+FORM-START must not return NIL."
   (car (internal (:sb-int #:line/col-from-charpos) stream)))
 
 ;; A word may end by the newline after it, which has been read by then.
 (defun line-reached (stream)
-  "Return the line of the last character that LOAD has read from STREAM, for which FORM-START is not
-NIL."
+  "Return the number of the line that holds the last character LOAD has read from STREAM, for which
+FORM-START must not return NIL."
   (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)
     (if (plusp column) line (max 1 (1- line)))))
 

@@ -12,10 +12,11 @@
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
   "A request or change to a run. KIND is :REQUEST for one performed at the start of a tick, else
-:CHANGE. TICK is the number of the last tick, or of the current one, in whose PHASE it was made (0:
-between ticks). MOMENT is the number of acts in that tick, by then, that forks repeat. OWN-P is true
-of an act that forks repeat. OPERATOR is the name of an operator, with externalized ARGUMENTS, or a
-function; ARGUMENTS are memorized. ASKER is a note of who made it, or NIL."
+:CHANGE. TICK is the current tick, or the last one between ticks. PHASE is the phase of the tick in
+which the act was made, 0 between ticks. MOMENT is the number of earlier acts in that tick that
+forks repeat. OWN-P is true of an act that forks repeat. OPERATOR is the name of an operator, with
+externalized ARGUMENTS, or a function; ARGUMENTS are memorized. ASKER is a note of who made the act,
+or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -232,8 +233,8 @@ is busy, it is due again at the end of the next tick."
   "How many times a thread that waits for a fork checks whether it was made, before it gives up.")
 
 (defun let-fork-be-kept (simulation)
-  "If SIMULATION could not keep a fork because this thread, now at rest, was busy, wait until the
-next tick has ended and there is one; but not long, as no tick may pass."
+  "If SIMULATION still has to keep a fork, because this thread was busy, wait until the next tick
+has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
       (loop repeat +looks-for-fork+

@@ -243,7 +243,7 @@
 (defun read-tail (text start depth)
   "Return the datum in TEXT from START on that is the tail of a list, and its end position."
   (multiple-value-bind (tail end) (read-datum text start depth)
-    (unless (char= #\) (char-at text end)) (error "something stands behind the tail of a list"))
+    (unless (char= #\) (char-at text end)) (error "there is something after the tail of a list"))
     (values tail end)))
 
 (defun read-list (text start depth)

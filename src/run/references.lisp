@@ -176,7 +176,7 @@ class without a reference, as each run has its own."
   (alike-atoms-p one other))
 
 (defun alike-p (one other)
-  "True if ONE and OTHER, externalized or memorized, may be the same in two runs."
+  "True if ONE and OTHER, both externalized or memorized, can denote the same object in two runs."
   (and (tree-p one) (tree-p other) (alike-trees-p one other)))
 
 (define-shared named)

@@ -42,7 +42,7 @@ number, or NIL for an outer object."
   (unless (typep name '(cons keyword (cons t (or null (cons t null)))))
     (error "one of its names makes no sense"))
   (unless (= (loaded-next loaded) (length (loaded-objects loaded)))
-    (error "it names a definition after its new objects"))
+    (error "a definition is listed after the objects of the run; definitions must come first"))
   (add-loaded (handler-case (apply #'outer-object name)
                 (unknown-name (trouble) (error trouble))
                 (error (trouble)

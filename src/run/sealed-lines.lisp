@@ -83,7 +83,7 @@
          (sum (text-checksum text sum)))
     (unless (eql sum (line-checksum line start)) (error "it is not as it was written"))
     (multiple-value-bind (datum end) (read-datum text)
-      (unless (= end (length text)) (error "something stands behind it"))
+      (unless (= end (length text)) (error "there is something after it"))
       (values datum sum))))
 
 (defun next-line (in)

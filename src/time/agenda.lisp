@@ -33,7 +33,7 @@
    (pending-p nil boolean "the event waits for its tick" :export))
   (:link
    (queued-p nil boolean "a bucket holds the event, pending or cancelled")
-   (next nil (or null event) "the event behind it in its bucket; the first behind the last")))
+   (next nil (or null event) "the event after it in its bucket; the first after the last")))
 
 (defmethod reference ((event event))
   (list :event (event-time event)))

@@ -174,7 +174,7 @@ before. Any thread may post. Return nothing. Signals MISUSE if the run is over (
   (values))
 
 (defun post-again (request timeline)
-  "Put REQUEST, which was taken from the inbox of TIMELINE, back there, behind the others. Called by
+  "Put REQUEST, which was taken from the inbox of TIMELINE, back there, after the others. Called by
 the owner."
   (atomic-push request (timeline-inbox timeline)))
 

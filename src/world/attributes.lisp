@@ -164,7 +164,7 @@ Signals MALFORMED-DEFINITION. Return the name."
 
 (defun asking-form-p (form)
   "True if FORM is a list (attribute value) or (attribute value threshold), whatever the values of
-that attribute are. A value is an atom or a list that ends, a threshold NIL or not below 0; numbers
+that attribute are. A value is an atom or a proper list, a threshold NIL or not below 0; numbers
 are from -1e15 to 1e15."
   (and (proper-list-p form)
        (<= 2 (length form) 3)
@@ -173,7 +173,7 @@ are from -1e15 to 1e15."
        (or (null (third form)) (amount-p (third form)))))
 
 (defun askable-p (value)
-  "True if VALUE, an atom or a list that ends, has no number beyond +-1e15 in it."
+  "True if VALUE, an atom or a proper list, has no number beyond +-1e15 in it."
   (if (consp value)
       (and (proper-list-p value) (every #'askable-p value))
       (or (not (realp value)) (quantity-p value))))

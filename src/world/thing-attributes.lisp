@@ -215,8 +215,8 @@ time.")
     (multiple-value-bind (recipe trouble)
         (unfit-recipe (map-things map) (attribute-name new))
       (when (and recipe (not (from-this-file-p (map-name map) *maps*)))
-        (warn-of-definition "In map ~(~A~), ~(~A~) has a value that it could not be given any ~
-                             more: ~A"
+        (warn-of-definition "In map ~(~A~), ~(~A~) has a value that the new definition does not ~
+                             allow: ~A"
                             (map-name map) (recipe-name recipe) trouble)))))
 
 (define-facts (thing thing)

@@ -189,7 +189,7 @@ CLAUSE if it has none."
       (reject-clause definition part
                      (format nil "(:sobol n (what low high)...), or :latin-hypercube or :random, ~
                                   with N from 1 to 100000, perhaps (:sobol n :seed integer ...), ~
-                                  and :integer or :log behind a range")))
+                                  and :integer or :log after a range")))
     (dolist (range ranges) (check-range definition range))
     (when (and (eq :sobol (first part)) (> (length ranges) +most-dimensions+))
       (reject-clause definition part

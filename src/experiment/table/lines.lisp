@@ -156,7 +156,8 @@ by it. If it cannot be written signals DAMAGED-TABLE and leaves FILE unchanged."
                 file "it cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
-  "Call FUNCTION with a function of one of FILES and a position; it returns the line there."
+  "Call FUNCTION with a reader: a function that takes one of FILES and a position, and returns the
+line there."
   (let ((streams (make-hash-table :test 'eq)))
     (unwind-protect
          (progn
