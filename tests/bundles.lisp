@@ -123,7 +123,7 @@
       (let ((count (pieces (time:current-simulation))))
         (is (= count (pieces (run:fork-simulation))))
         (run:call-with-replay (lambda () (is (= count (pieces (time:current-simulation)))))
-                              (run:end-of-journal (time:current-simulation)))))))
+                              (run:journal-up-to-now (time:current-simulation)))))))
 
 (test ways.without-jumps-do-not-mention-any
   (in-studio (robot)

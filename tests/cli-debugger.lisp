@@ -50,17 +50,17 @@
 
 (test hook.that-threads-share-follows-from-the-prompts-at-work
   "Whichever comes first: that of a window may, and go before the terminal's does."
-  (let ((before (base:common-debugger-hook)))
+  (let ((before (base:global-debugger-hook)))
     (cli::begin-sharing 'cli::enter-debugger)
     (cli::begin-sharing 'cli::enter-debugger)
     (cli::end-sharing 'cli::enter-debugger)
-    (is (eq 'cli::enter-debugger (base:common-debugger-hook)))
+    (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
     (cli::begin-sharing 'cli::debugger-disabled-hook)
-    (is (eq 'cli::enter-debugger (base:common-debugger-hook)))
+    (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
     (cli::end-sharing 'cli::enter-debugger)
-    (is (host:disabled-hook-p (base:common-debugger-hook)))
+    (is (host:disabled-hook-p (base:global-debugger-hook)))
     (cli::end-sharing 'cli::debugger-disabled-hook)
-    (is (eq before (base:common-debugger-hook)))))
+    (is (eq before (base:global-debugger-hook)))))
 
 ;;; Where somebody does.
 

@@ -25,7 +25,7 @@
     (let* ((simulation time:*simulation*) (tick (run:simulation-tick simulation))
            (session (cli:make-session :output (make-broadcast-stream))))
       (run:stop-simulator)
-      (is (not (cli::waits-p session)))
+      (is (not (cli::waits-for-commands-p session)))
       (is (mentions-p (cli::time-text session simulation) "RESUME"))
       (type-here "resume")
       (is (time:live-p simulation))

@@ -30,7 +30,7 @@
          (talk (make-talk :output output))
          (simulation (run:robot-simulation robot))
          (turn (lambda () (base:signal-semaphore (talk-turns talk))))
-         (session (cli:make-session :input (cli:make-window-text console) :output console
+         (session (cli:make-session :input (cli:make-window-input console) :output console
                                     :place turn)))
     (setf (talk-session talk) session
           (talk-thread talk)

@@ -162,7 +162,7 @@
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
       (is (not (mentions-p (window::time-text window) "waits for your answer")))
       (window::give-line conversation "(list (read) 2)")
-      (is (equal "(list (read) 2)" (await-in conversation news #'window::asked-by)))
+      (is (equal "(list (read) 2)" (await-in conversation news #'window::line-awaiting-input)))
       (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- control-C"))
       (is (mentions-p (window::time-text window) "; a program waits for your answer"))
       (is (equal "Answer> " (first (await-in conversation news #'window::line-shown))))
@@ -173,7 +173,7 @@
                       (declare (ignore conversation))
                       (find-if (lambda (line) (mentions-p line "Interrupted."))
                                (window::latest-lines transcript 20)))))
-      (is (null (window::asked-by conversation)))
+      (is (null (window::line-awaiting-input conversation)))
       (window::give-line conversation "quit")
       (base:join-thread (window::conversation-thread conversation)))))
 

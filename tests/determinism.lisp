@@ -9,7 +9,7 @@
   `(uiop:with-temporary-file (:pathname ,file :type "journal") ,@body))
 
 (defun end-journal (simulation)
-  (run:end-of-journal simulation))
+  (run:journal-up-to-now simulation))
 
 (test journal.replays-to-the-bit
   "Commands from continuations, parameters set on the way, things changed by hand."

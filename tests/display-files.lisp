@@ -118,7 +118,7 @@
   (dotimes (jump 4)
     (robot:place-robot robot (+ 2 jump) 6.5 0)
     (run:run-ticks 5))
-  (run:end-of-journal (time:current-simulation)))
+  (run:journal-up-to-now (time:current-simulation)))
 
 (test animation.shows-each-frame-in-its-turn
   (in-studio (robot)

@@ -103,7 +103,7 @@
             (drive)
             (run:save-simulation saved)
             (run:run-ticks 20)
-            (setf journal (run:end-of-journal (time:current-simulation))
+            (setf journal (run:journal-up-to-now (time:current-simulation))
                   digest (run:state-digest)))
           (is (= digest (nth-value 1 (run:replay journal))))
           (run:with-loaded-simulation (saved)

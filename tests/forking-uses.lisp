@@ -104,7 +104,7 @@
                           (is (equal '(0 4) (mapcar #'first (run:journal-entries
                                                              (run:simulation-journal fork)))))
                           (is (= (run:state-digest)
-                                 (nth-value 1 (run:replay (run:end-of-journal fork)))))))
+                                 (nth-value 1 (run:replay (run:journal-up-to-now fork)))))))
       (is (equal '(0 4) (mapcar #'first (run:journal-entries
                                          (run:simulation-journal time:*simulation*))))))))
 

@@ -359,7 +359,7 @@ the journal and the digest of the state at its end."
     (let ((*ride* (make-ride (base:make-dice seed "ride"))))
       (drive commands)
       (values *ride*
-              (and journal (run:end-of-journal time:*simulation*))
+              (and journal (run:journal-up-to-now time:*simulation*))
               (run:state-digest)))))
 
 (defun troubles-of-ride (commands seed)

@@ -305,7 +305,7 @@
           (robot:define-robot 'latecomer 'annex '(5 5) 0)
           (run:run-ticks 5 simulation)
           (is (= (run:state-digest simulation)
-                 (nth-value 1 (run:replay (run:end-of-journal simulation))))))))))
+                 (nth-value 1 (run:replay (run:journal-up-to-now simulation))))))))))
 
 (test place-robot.checks-and-keeps-odometers
   (with-rover ()

@@ -65,14 +65,14 @@ What the runner has cannot be read."
 (defun call-with-editor-asking (function)
   "Call FUNCTION, with a semaphore, as where an editor's debugger asks in a place of its own. A plan
 that breaks is stopped there until the semaphore is signalled."
-  (let ((before (base:common-debugger-hook)) (answered (base:make-semaphore "answered")))
+  (let ((before (base:global-debugger-hook)) (answered (base:make-semaphore "answered")))
     (flet ((ask (condition hook)
              (declare (ignore hook))
              (base:wait-on-semaphore answered)
              (continue condition)))
-      (setf (base:common-debugger-hook) #'ask)
+      (setf (base:global-debugger-hook) #'ask)
       (unwind-protect (base:with-debugger-hook (#'ask) (funcall function answered))
-        (setf (base:common-debugger-hook) before)))))
+        (setf (base:global-debugger-hook) before)))))
 
 (test published.plans-in-a-debugger-are-no-hogs
   (call-with-editor-asking

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(take-waiting make-window-text send-key typed-ahead))
+(export '(take-waiting make-window-input send-key typed-ahead))
 
 ;;; Keys typed while no line is read are kept by their effect: finished lines wait, each like a line
 ;;; chosen from a menu, and after them the text being typed, as if it had been pasted. The next
@@ -195,7 +195,7 @@ What is no whole line is being typed."
   (:default-initargs :by-hand-p t)
   (:documentation "The text that is typed in a window."))
 
-(defun make-window-text (console)
+(defun make-window-input (console)
   "Return input that is typed elsewhere, with its line shown on CONSOLE. It shares the history of
 the prompt at the terminal."
   (make-instance 'window-text :console console :history (make-history (file-for-history))

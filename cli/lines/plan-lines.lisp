@@ -74,7 +74,7 @@ package; NIL if there is none."
       (push job (session-jobs session))
       (note-plan-of-line (session-account session) task)
       (when (live-p (plan-job-simulation job)) (start-watching-plan job))
-      (unless (waits-p session)
+      (unless (waits-for-commands-p session)
         (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
 
 (defun read-data (text line)

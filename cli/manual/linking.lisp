@@ -109,7 +109,7 @@ show by themselves is called a text."
                         (list (linked-name (first-name (text-of part)) (format nil "~{~A~}" part)
                                            book)))
                        ((tag-called-p "a" token) (linked-anchor part page book))
-                       (t (list (linked-picture token page book)))))))
+                       (t (list (rewrite-picture-address token page book)))))))
 
 (defun linked-anchor (element page book)
   "Return the tokens of ELEMENT, a link on PAGE, leading to where that is in the manual."
@@ -117,7 +117,7 @@ show by themselves is called a text."
           (first element))
         (rest element)))
 
-(defun linked-picture (token page book)
+(defun rewrite-picture-address (token page book)
   "Return TOKEN; if it is a picture on PAGE, with the address of its copy."
   (if (tag-called-p "img" token)
       (with-attribute "src" (new-address (attribute-value "src" token) page book) token)

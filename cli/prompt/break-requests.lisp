@@ -114,19 +114,19 @@ thread of SIMULATION; or NIL."
 
 (defun begin-sharing (hook)
   (with-lock (*sessions-lock*)
-    (unless *hooks-at-work* (setf *hook-before* (common-debugger-hook)))
+    (unless *hooks-at-work* (setf *hook-before* (global-debugger-hook)))
     (push hook *hooks-at-work*)
-    (setf (common-debugger-hook) (hook-to-share))))
+    (setf (global-debugger-hook) (hook-to-share))))
 
 (defun end-sharing (hook)
   (with-lock (*sessions-lock*)
     (setf *hooks-at-work* (remove hook *hooks-at-work* :count 1)
-          (common-debugger-hook) (hook-to-share))))
+          (global-debugger-hook) (hook-to-share))))
 
 (defun answered-elsewhere-p ()
   "True if another front end, such as an editor, answers breaks, and this is not the thread of the
 prompt in which it started."
-  (let ((hook (common-debugger-hook)))
+  (let ((hook (global-debugger-hook)))
     (and (own-thread-p) (null *hooks-at-work*) hook (not (disabled-hook-p hook)))))
 
 (defun call-sharing (hook function)

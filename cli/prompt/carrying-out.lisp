@@ -263,7 +263,7 @@ could be typed either: so signal that."
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
                (session-console session)))
 
-(defun call-complaining (session function)
+(defun call-reporting-session-errors (session function)
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (regain-room condition)
@@ -340,9 +340,9 @@ code that keeps the simulator waiting is aborted, too."
              (setf whose (whose-code))))
       (handler-case
           (with-simple-restart (end-line "End the line.")
-            (call-complaining session
-                              (lambda ()
-                                (handler-bind ((error #'look-into)
-                                               (user-interrupt #'look-whose))
-                                  (call-open-to-interrupts function)))))
+            (call-reporting-session-errors session
+                                           (lambda ()
+                                             (handler-bind ((error #'look-into)
+                                                            (user-interrupt #'look-whose))
+                                               (call-open-to-interrupts function)))))
         (user-interrupt () (interrupted session whose))))))

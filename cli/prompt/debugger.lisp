@@ -19,7 +19,7 @@
                   (*standard-output* console)
                   (*query-io* (make-two-way-stream (make-concatenated-stream) console)))
              (with-simple-restart (end-line "End the line.")
-               (call-complaining session function)))))
+               (call-reporting-session-errors session function)))))
     (setf (break-request-call break-request)
           (spread-specials #'call-posted
                            '*package* '*readtable* '*read-default-float-format*)))
@@ -109,7 +109,8 @@
       (unless (break-request-told-p other) (tell-break session other))
       (loop while (member other (session-breaks session))
             until (session-over-p session)
-            do (call-complaining session (lambda () (read-debug-line session other)))))))
+            do (call-reporting-session-errors
+                session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session break-request)
   "Report BREAK-REQUEST, of another thread than that of SESSION: all, if it can be answered now."
@@ -195,7 +196,8 @@ those continue."
       (loop for break-request = (first (session-breaks session))
             while break-request
             do (when (session-over-p session) (invoke-restart 'end-line))
-               (call-complaining session (lambda () (read-debug-line session break-request)))))))
+               (call-reporting-session-errors
+                session (lambda () (read-debug-line session break-request)))))))
 
 (defun give-up (condition)
   "Abort what has signalled CONDITION, by the innermost restart for that."
@@ -285,7 +287,7 @@ Lisp's debugger without a terminal or window, or while a break is being answered
 
 (defun tell-of-inquiry (condition asker)
   "Report in the prompts of the simulation that ASKER asks how to continue after CONDITION."
-  (unless (eq 'enter-debugger (common-debugger-hook))
+  (unless (eq 'enter-debugger (global-debugger-hook))
     (dolist (session (remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
       (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
                               (break-words condition)

@@ -129,7 +129,7 @@ ticks at most. True if there is none."
   (let ((simulation *simulation*))
     (await (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
 
-(defun waits-p (session)
+(defun waits-for-commands-p (session)
   "True if SESSION reads the next line only after the commands issued so far have completed."
   (and *simulation*
        (null (session-trial session))
@@ -144,7 +144,7 @@ ticks at most. True if there is none."
   "Wait for what SESSION has issued, itself or by Lisp, if SESSION waits for that."
   (let ((after-rewind (shiftf (session-after-rewind session) nil)))
     (when after-rewind (funcall after-rewind session)))
-  (if (waits-p session)
+  (if (waits-for-commands-p session)
       (progn (await-jobs session)
              (setf (session-lisp-p session)
                    (and (shiftf (session-lisp-p session) nil)

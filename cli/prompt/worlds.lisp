@@ -122,7 +122,7 @@ world. Signals BAD-LINE."
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
                           name (mapcar #'map-name (all-worlds)))))))
 
-(defun robots-beside (robot-name)
+(defun robots-of-same-world (robot-name)
   (cons robot-name (remove robot-name (robots-of (world-of robot-name)))))
 
 (defun write-worlds ()

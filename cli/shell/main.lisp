@@ -67,11 +67,11 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   "Run the lines of SESSION, a batch, in a fresh world. Return the robot to continue with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
-  (call-by-name (robots-beside robot-name))
+  (call-by-name (robots-of-same-world robot-name))
   (call-with-simulation (lambda ()
                           (note-lines-typed *simulation*)
                           (run-session session))
-                        (robots-beside robot-name)
+                        (robots-of-same-world robot-name)
                         :seed seed :journal t :keep *forks-to-keep*)
   (session-next-robot session))
 

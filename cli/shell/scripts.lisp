@@ -50,7 +50,7 @@ begun before. Without a second value, return which form of a file is being loade
           ((user-calls-place calls) (whose-code calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
 
-(defun watch-for-calls (session calls ended)
+(defun watch-for-blocking-code (session calls ended)
   "Name users' code that blocks SESSION, by CALLS, until the semaphore ENDED is signalled. Code seen
 four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
   (loop with seen = nil and looks = 0
@@ -83,7 +83,7 @@ it cannot be ended, end this process."
           (say)
           (end-process +time-over+))))))
 
-(defun tell-at-once (session calls)
+(defun report-code-on-interrupt (session calls)
   "Make Control-C report whose code runs in SESSION, by CALLS, before it ends that at once."
   (setf *before-ending-at-once*
         (lambda ()
@@ -96,8 +96,9 @@ limit of OPTIONS, if any, ends FUNCTION."
          (ended (make-semaphore "session ended"))
          (thread (current-thread)) (seconds (option-value :time-limit options)))
     (unless (session-terminal-p session)
-      (tell-at-once session calls)
-      (start-thread (lambda () (watch-for-calls session calls ended)) "watcher of the batch"))
+      (report-code-on-interrupt session calls)
+      (start-thread (lambda () (watch-for-blocking-code session calls ended))
+                    "watcher of the batch"))
     (when seconds
       (start-thread (lambda () (end-at-limit session calls thread seconds ended)) "time limit"))
     (unwind-protect (funcall function)

@@ -202,7 +202,7 @@ the first one, as arguments come before bodies."
        (declare (ignorable #'build))
        ,(or code '(build)))))
 
-(defun plan-form-form (name node lambda-list clauses)
+(defun plan-form-definition (name node lambda-list clauses)
   (multiple-value-bind (waits given) (clause :waits clauses)
     `(define-plan-form ,name ,(if given (first waits) :must) ,lambda-list (form scope)
        (hoisting ,(clause :arguments clauses) form scope
@@ -246,5 +246,5 @@ there is neither :code nor a step.
                                     '(:parts :steps :step :unwind :child-ended :hot))
                          collect clause))))
        ,@(when (or node-p (clause :code all))
-           `(,(plan-form-form name node lambda-list all)))
+           `(,(plan-form-definition name node lambda-list all)))
        ',name)))

@@ -98,7 +98,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                    ;; A form whose value is a fluent is waited for.
                    (and (operator-in-p (second form) '("FLUENT-VALUE"))
                         (pulse-in-test (second form)))
-                   (some #'pulse-in-test (append (tests-in-loop form) (tested-in form))))))
+                   (some #'pulse-in-test (append (tests-in-loop form) (test-forms form))))))
     (and pulse
          (format nil "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
                       waits for the next one. A view that is made first, (fl-pulsed ~:*~A), ~

@@ -63,7 +63,7 @@ believed in, which does not know it."
 (defun question-of-plan (task plan arguments options)
   (let ((question (make-question task (asking-interface task) (fluent-value plan)
                                  (fluent-value arguments) options)))
-    (when (option question :world) (check-believable question))
+    (when (option question :world) (check-known-in-belief question))
     question))
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
@@ -122,7 +122,7 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
 
 ;;; From outside.
 
-(defun interface-to-ask (plan)
+(defun interface-for-projection (plan)
   "Return the interface whose plans are to be projected with PLAN. Signals MISUSE at a plan's step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
@@ -145,11 +145,11 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
 (defun project-plan (plan &key arguments trials horizon seed cost world print)
   "Return a projection of PLAN: PROJECT for Lisp code outside of plans. Signals UNKNOWN-NAME,
 WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
-  (let* ((interface (if world nil (interface-to-ask plan)))
+  (let* ((interface (if world nil (interface-for-projection plan)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
                                         :world world :print print))))
-    (when world (check-believable question))
+    (when world (check-known-in-belief question))
     (cond (*rolling-out* (projection-without-rollouts question))
           (t (first (project-branches question (if world nil (moment-with question))))))))
 

@@ -100,7 +100,7 @@ reaction may, or more, since it was called last, or made."
                  (t (and (kind-of object) object)))))
       (look object))))
 
-(defun check-believable (question)
+(defun check-known-in-belief (question)
   "Signal WRONG-ARGUMENT if QUESTION is about an object that a world believed in cannot know."
   (let ((object (or (question-subject question)
                     (object-of-run (list (question-plan question)

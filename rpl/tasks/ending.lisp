@@ -39,7 +39,7 @@
     (cond (parent
            (unlink-child task)
            (child-over parent task how result)
-           (report-circle-left parent))
+           (warn-of-remaining-cycle parent))
           (t (let ((runner (task-runner task)))
                (setf (runner-roots runner) (remove task (runner-roots runner)))
                (funcall (runner-on-end runner) task))))))
@@ -189,7 +189,7 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
     (atomic-push (cons task *asker*) (runner-ends-requested runner))
     (funcall (runner-on-post runner))))
 
-(defun end-requested (runner)
+(defun end-requested-tasks (runner)
   "Evaporate the tasks that other threads, or code outside of plans, have asked to end."
   (loop for requests = (runner-ends-requested runner)
         until (swap-if (runner-ends-requested runner) requests '())

@@ -71,7 +71,7 @@ Return the task, which runs at the next reaction."
   "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
 :budget when the steps of the reaction are spent, or all stand still while one thinks."
   (loop
-    (when (runner-ends-requested runner) (end-requested runner))
+    (when (runner-ends-requested runner) (end-requested-tasks runner))
     (when (or (>= (runner-steps runner) (runner-limit runner))
               (standing-still-p runner))
       (return :budget))

@@ -136,7 +136,7 @@ as soon as the task is at rest, and let the task at work wait until then."
 (defun interrupt (task frame value)
   "Evaporate as asked, or give way to a higher level or because TASK has taken its steps. FRAME and
 VALUE are what the last step returned; return what it should have."
-  (when (runner-ends-requested (task-runner task)) (end-requested (task-runner task)))
+  (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
          (preempted (>= mask (ash 2 (task-level task))))

@@ -98,7 +98,7 @@ frames, is about.")
           (some (lambda (obstacle) (part-of-p task obstacle)) (obstacles other)))
         others))
 
-(defun report-circle-left (task)
+(defun warn-of-remaining-cycle (task)
   "Queue a warning if the parts left to TASK, as one has ended, wait in a circle through it."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))

@@ -98,7 +98,7 @@ function of the window, and LIT-P is one or NIL."
 (defun time-text (window)
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
-          (asked-by (window-conversation window))
+          (line-awaiting-input (window-conversation window))
           (answers-text window)))
 
 (defun strip-lines (window)

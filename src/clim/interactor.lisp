@@ -36,7 +36,7 @@
 
 (defun row-above (conversation text)
   "Return the text above TEXT, which is being typed, and its ink."
-  (let ((reading (asked-by conversation))
+  (let ((reading (line-awaiting-input conversation))
         (asked (asked-text (ars-magna.cli:awaited-answers (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
     (cond (reading (list (line-text "~A waits for your answer" reading) :red))

@@ -60,7 +60,7 @@ in words how the last plan ended."
 reactions. Return its value, or :BUSY."
   (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
 
-(defun see-timeline (look interface)
+(defun update-timeline (look interface)
   "Give LOOK the timeline of the plans of INTERFACE. Return NIL if they are busy."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
@@ -96,7 +96,7 @@ reactions. Return its value, or :BUSY."
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)
-        ((eq :timeline (plan-look-view look)) (see-timeline look interface))
+        ((eq :timeline (plan-look-view look)) (update-timeline look interface))
         (t (see-tree look interface))))
 
 (defun look-now (look interface mark)

@@ -76,7 +76,7 @@ this thread."
                                 :stream (make-instance 'transcript-stream
                                                        :transcript transcript))))
     (make-conversation (ars-magna.cli:make-session
-                        :input (ars-magna.cli:make-window-text console) :output console
+                        :input (ars-magna.cli:make-window-input console) :output console
                         :color :always :place place
                         :package (ars-magna.cli:package-of-caller))
                        console over)))
@@ -152,7 +152,7 @@ this thread."
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
 
-(defun asked-by (conversation)
+(defun line-awaiting-input (conversation)
   "Return the running line, if a program in it waits for typed input; or NIL."
   (let ((console (conversation-console conversation)))
     (and (ars-magna.cli:console-asked-p console) (console-entered console))))

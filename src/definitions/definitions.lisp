@@ -33,7 +33,7 @@ typed."
   "Return the digest of the current definition's form, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
-(defun current-head ()
+(defun current-operator-and-name ()
   (and *definition* (head (defining-form *definition*))))
 
 (defun current-docstring ()

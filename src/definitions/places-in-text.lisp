@@ -22,7 +22,7 @@ Replaced, never modified.")
 
 (defun element-bounds (text start number)
   "Return start and end in TEXT of element NUMBER of the list at START; NIL if it cannot be read."
-  (with-words (text)
+  (with-form-reader (text)
     (destructuring-bind (last-text last-start last-number last-begin) *last-element*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)
                           (<= last-number number))))

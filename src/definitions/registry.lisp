@@ -15,7 +15,7 @@
 
 (define-record (entry (:constructor make-entry (name object source variable
                                                 &optional (digest (current-form-digest))
-                                                  (head (current-head))
+                                                  (head (current-operator-and-name))
                                                   (documentation (current-docstring)))))
   "The definition of NAME as OBJECT, in SOURCE."
   (name nil symbol "the symbol that is defined" :export)

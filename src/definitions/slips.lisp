@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(note-error-code variable-slip note-dispatch-character value-behind function-meant
-          ours-called test-doubt map-calls map-comparisons compared-words tested-in
+          ours-called test-doubt map-calls map-comparisons compared-words test-forms
           values-used-in code-doubt))
 
 (defun ours-called (name)
@@ -223,7 +223,7 @@ that compares them."
        (member (first form) names :test #'string=)
        t))
 
-(defun tested-in (form)
+(defun test-forms (form)
   "Return the tests in FORM, a call, if that is a condition."
   (cond ((lisp-call-p form "IF" "WHEN" "UNLESS") (list (second form)))
         ((lisp-call-p form "COND") (mapcar #'first (remove-if #'atom (rest form))))))
@@ -238,7 +238,7 @@ that compares them."
         ((lisp-call-p form "DOLIST") (and (typep (second form) '(cons t (cons t)))
                                        (list (second (second form)))))
         ((lisp-call-p form "CASE" "ECASE") (list (second form)))
-        (t (tested-in form))))
+        (t (test-forms form))))
 
 ;;; Error codes of commands.
 

@@ -40,7 +40,7 @@
 
 ;;; Finding a form in a text.
 
-(defmacro with-words ((text) &body body)
+(defmacro with-form-reader ((text) &body body)
   "Run BODY, where (READ-WORDS position) returns the form in TEXT that begins there, and its end."
   (with-gensyms (words)
     ;; Other packages are found by the local nicknames of the current one.
@@ -118,7 +118,7 @@
 (defun look-for-definitions (text form)
   (destructuring-bind (operator &optional name &rest clauses) form
     (declare (ignore clauses))
-    (with-words (text)
+    (with-form-reader (text)
       (loop for position in (openings text 0 (length text))
             when (word-at-p text (1+ position) operator)
               append (multiple-value-bind (found end) (read-words position)
@@ -140,7 +140,7 @@
 
 (defun forms-in (text start end)
   "Return conses (position . form) for the parenthesized forms in TEXT between START and END."
-  (with-words (text)
+  (with-form-reader (text)
     (loop for position in (openings text start end)
           collect (cons position (read-words position)))))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(grouped sample-of robot-entry sample-of-name jump-entries))
+(export '(grouped entry-with-sample robot-entry named-entry-with-sample jump-entries))
 
 ;;; An entry is a text with a function of a canvas and of X and Y, in pixels. The function draws a
 ;;; sample around X, Y, at most 16 pixels high and as wide as the entry says.
@@ -18,7 +18,7 @@ abridged, or NIL."
   (sample (constantly nil) :type function :read-only t)
   (whole nil :type (or null string) :read-only t))
 
-(defmacro sample-of ((canvas x y) text &body body)
+(defmacro entry-with-sample ((canvas x y) text &body body)
   "Return an entry with TEXT and a sample that BODY draws."
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
@@ -29,7 +29,7 @@ pixels wide."
     (make-entry (concatenate 'string text more) sample
                 :whole (and (string/= text name) name) :width width)))
 
-(defmacro sample-of-name ((canvas x y) (name &rest more-and-width) &body body)
+(defmacro named-entry-with-sample ((canvas x y) (name &rest more-and-width) &body body)
   "Return an entry for NAME with a sample that BODY draws. MORE-AND-WIDTH: a text to append to the
 name, and the width of the sample in pixels."
   `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)
@@ -69,7 +69,7 @@ names look the same."
 
 (defun robot-entry (name position)
   "Return an entry for the robot called NAME, a string, at POSITION among those of its world."
-  (sample-of-name (canvas x y) (name) (draw-ring canvas x y 6 0 position)))
+  (named-entry-with-sample (canvas x y) (name) (draw-ring canvas x y 6 0 position)))
 
 (defun robot-entries (snapshot)
   (loop for robot in (snapshot-robots snapshot)
@@ -118,12 +118,12 @@ number and the range of parameters, by number."
     (cond ((null ranges) '())
           ((not in-color*)
            (let ((black (make-wall-look black*)))
-             (list (sample-of (canvas x y) "wall" (draw-swatch canvas x y black black)))))
+             (list (entry-with-sample (canvas x y) "wall" (draw-swatch canvas x y black black)))))
           (t (loop for (number least greatest) in ranges
                    collect (wall-entry map number least greatest (svref materials number)))))))
 
 (defun wall-entry (map number least greatest material)
-  (sample-of-name (canvas x y)
+  (named-entry-with-sample (canvas x y)
       ((drawn-name (svref (map-substance-types map) number))
        (format nil " ~A" (range-text least greatest)))
     (draw-swatch canvas x y (wall-look-of material least) (wall-look-of material greatest))))
@@ -192,13 +192,13 @@ several."
                                    (lambda (canvas x y)
                                      (draw-thing-sample canvas image x y (sample-half image))))))
       (and (plusp (length (snapshot-things snapshot)))
-           (list (sample-of (canvas x y) "thing"
+           (list (entry-with-sample (canvas x y) "thing"
                    (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
 
 (defun shape-entries (snapshot)
   (flet ((plain (text predicate &rest options)
            (when (find-if predicate (snapshot-things snapshot))
-             (list (sample-of (canvas x y) text
+             (list (entry-with-sample (canvas x y) text
                      (draw-thing-sample canvas (apply #'make-thing-image :color white* options)
                                         x y 5))))))
     (and in-color*
@@ -215,7 +215,7 @@ several."
   "Return a list of the entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump of WAYS: lists of
 pieces, lists x y ... in pixels."
   (and (jumps-seen-p ways (pixels-of (shown-part snapshot)))
-       (list (sample-of (canvas x y) "put elsewhere"
+       (list (entry-with-sample (canvas x y) "put elsewhere"
                (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))
 
 (defun trail-jump-entries (snapshot)
@@ -226,14 +226,14 @@ pieces, lists x y ... in pixels."
 (defun reading-entries (snapshot)
   (declare (ignore snapshot))
   (when in-color*
-    (list (sample-of (canvas x y) "read: low to high"
+    (list (entry-with-sample (canvas x y) "read: low to high"
             (loop for ink in +ray-inks+ for at from -8 by 3
                   do (with-color ink
                        (draw-rectangle canvas draw-gcontext* (+ x at) (- y 4) 3 8 t)))))))
 
 (defun line-entry (layer)
   (let ((name (%layer-name layer)))
-    (sample-of (canvas x y) (%layer-legend layer)
+    (entry-with-sample (canvas x y) (%layer-legend layer)
       (with-halo ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
@@ -280,5 +280,5 @@ lines, ROBOTS those of robots. OPACITY is that of the map."
          (more (- (length entries) +entry-limit+)))
     (if (plusp more)
         (append (subseq entries 0 +entry-limit+)
-                (list (sample-of (canvas x y) (format nil "and ~D more kinds" more))))
+                (list (entry-with-sample (canvas x y) (format nil "and ~D more kinds" more))))
         entries)))

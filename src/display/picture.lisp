@@ -170,12 +170,12 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
 (defun ways-entries (ways)
   (append (loop for nil in ways for number from 0
                 collect (let ((position number))
-                          (sample-of-name (canvas x y)
+                          (named-entry-with-sample (canvas x y)
                               ((format nil "way~:[~; ~D~]" (rest ways) (1+ position)) "" 38)
                             (draw-way-sample canvas (list (- x 18) y (+ x 18) y)
                                              (nth-ink position) position))))
-          (and ways (list (sample-of (canvas x y) "start" (draw-start canvas x y black*))
-                          (sample-of (canvas x y) "end" (draw-goal canvas x y black*))))))
+          (and ways (list (entry-with-sample (canvas x y) "start" (draw-start canvas x y black*))
+                          (entry-with-sample (canvas x y) "end" (draw-goal canvas x y black*))))))
 
 (defun snapshot-of-map (map)
   "Return a snapshot of the current world if it is in MAP, else of the empty MAP."

@@ -61,13 +61,13 @@
                                            (view-wide view) (view-high view)))))
             (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
 
-(defun tail-glyphs (sheet)
+(defun movable-glyphs (sheet)
   "Return the glyphs of SHEET whose items are wherever there is room."
   (remove-if #'in-head-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
   "Return the complete legend of SHEET, as lines of at most COLUMNS characters."
-  (fill-lines (append (head-items sheet paint) (glyph-items (tail-glyphs sheet) paint)) columns))
+  (fill-lines (append (head-items sheet paint) (glyph-items (movable-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
 
@@ -162,7 +162,7 @@ ROWS may be NIL for any number."
                    0
                    (- columns +margin-columns+ (view-columns view) 2))))
     (multiple-value-bind (beside rest)
-        (side-legend (tail-glyphs sheet) side (view-rows view) paint)
+        (side-legend (movable-glyphs sheet) side (view-rows view) paint)
       (write-rows sheet beside paint stream)
       (write-items (lines-with-count (head-items sheet paint) (glyph-items rest paint) columns left)
                    stream))))

@@ -67,7 +67,7 @@
             (linked-names code)
             (names-used code))))
 
-(defun constant-meant (constant)
+(defun constant-or-called-name (constant)
   "Return the name in CONSTANT, of code, if it is a call by name; else CONSTANT."
   (if (internal-type-p constant :sb-kernel #:fdefn)
       (internal (:sb-kernel #:fdefn-name) constant)
@@ -89,7 +89,7 @@ symbols, other functions, constants and closed-over values."
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
        (mapcar #'method-code (methods-of-generic function))
-       (append (mapcar #'constant-meant (code-constants function))
+       (append (mapcar #'constant-or-called-name (code-constants function))
                (when (closure-p function) (closure-values function))))))
 
 (defun lambda-list-of (name)

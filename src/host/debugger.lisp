@@ -3,7 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(*report-addition* *front-end* serve-while-waiting hook-of-front-end ask-how-to-go-on
-          input-of-programs debugger-p foreign-hook debugger-hook common-debugger-hook
+          input-of-programs debugger-p foreign-hook debugger-hook global-debugger-hook
           *editor-gone-p* with-debugger-hook *answerer* calls-under-way disabled-hook-p
           take-foreground yield-foreground))
 
@@ -85,11 +85,11 @@ debugger."
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))
 
-(defun common-debugger-hook ()
+(defun global-debugger-hook ()
   "Return the global debugger hook, for threads without a binding, or NIL. Can be set."
   (global-value 'sb-ext:*invoke-debugger-hook*))
 
-(defun (setf common-debugger-hook) (function)
+(defun (setf global-debugger-hook) (function)
   (setf (global-value 'sb-ext:*invoke-debugger-hook*) function))
 
 (defmacro with-debugger-hook ((function) &body body)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(deferring-interrupts allowing-interrupts waiting interrupts-deferred-p protecting-strictly
+(export '(deferring-interrupts allowing-interrupts with-interruptible-wait
+          interrupts-deferred-p protecting-strictly
           call-holding-interrupts call-open-to-interrupts waiting-at-most deadline-passed
           in-any-case call-interruptible call-each time-limit let-callers-handle call-with-limit
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
@@ -46,23 +47,24 @@ another with interrupts allowed, if its second argument is true only where SBCL 
       (function (let ((*holding* nil)) (funcall holding function nil)))
       ((eql :strictly) (funcall function)))))
 
-(defun call-waiting (function)
+(defun call-with-interruptible-wait (function)
   (let ((holding *holding*))
     (if (functionp holding)
         (funcall holding function t)
         (funcall function))))
 
 (defmacro deferring-interrupts (&body body)
-  "Run BODY with interrupts deferred, except within ALLOWING-INTERRUPTS and WAITING."
+  "Run BODY with interrupts deferred, except within ALLOWING-INTERRUPTS and
+WITH-INTERRUPTIBLE-WAIT."
   (form-calling 'call-deferring-interrupts body))
 
 (defmacro allowing-interrupts (&body body)
   "Run BODY with interrupts allowed."
   (form-calling 'call-allowing-interrupts body))
 
-(defmacro waiting (&body body)
+(defmacro with-interruptible-wait (&body body)
   "Run BODY, which waits for a semaphore, with interrupts allowed during the wait."
-  (form-calling 'call-waiting body))
+  (form-calling 'call-with-interruptible-wait body))
 
 ;; SBCL allows interrupts at the end of a protected form. That could skip what is to follow.
 (defmacro protecting-strictly (form &body cleanup)

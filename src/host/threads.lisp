@@ -51,7 +51,7 @@ holds LOCK."
 
 (defun wait-on-semaphore (semaphore &optional seconds)
   "Decrement SEMAPHORE; true if that succeeded within SECONDS (NIL: no limit)."
-  (waiting
+  (with-interruptible-wait
     (if seconds
         ;; SBCL accepts no timeout of 0.
         (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))

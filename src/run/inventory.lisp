@@ -72,7 +72,7 @@ keyword and plain data, if it does not belong to one run; else NIL.")
 
 (defconstant +longest-text+ 1000 "The most characters of a string without a number.")
 (defconstant +longest-row+ 1000 "The most elements of a list or array in a line.")
-(defconstant +deepest-text+ 50 "The deepest nesting of lists without numbers.")
+(defconstant +max-nesting+ 50 "The deepest nesting of lists without numbers.")
 (defconstant +room-of-object+ 300000 "About the most characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
@@ -207,7 +207,7 @@ true in the latter case."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
-        do (let ((far-p (or (not (reserve-room 2 inventory)) (= depth +deepest-text+))))
+        do (let ((far-p (or (not (reserve-room 2 inventory)) (= depth +max-nesting+))))
              (when (mark-found tail (or far-p (= position +longest-row+)) inventory) (return))
              ;; The rest gets its own line and is surveyed later.
              (when (or far-p (= position +longest-row+))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(journal remark unremark note begin-journal end-of-journal))
+(export '(journal remark unremark note begin-journal journal-up-to-now))
 
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
 ;;; effect, and the tick at which it ended. An operator is a name defined by DEFINE-OPERATOR;
@@ -190,7 +190,7 @@ have changed since the journal was begun."
 (defun robot-names (simulation)
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
-(defun end-of-journal (simulation)
+(defun journal-up-to-now (simulation)
   "Return the journal of SIMULATION, extended to the current tick unless it is full. Signals MISUSE
 if it keeps none."
   (let ((journal (or (simulation-journal simulation)

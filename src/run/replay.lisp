@@ -172,7 +172,7 @@ or NIL for that of the current simulation up to now."
   (if journal
       (journal-given journal operator)
       (let ((simulation (current-simulation)))
-        (asking (simulation) (end-of-journal simulation)))))
+        (asking (simulation) (journal-up-to-now simulation)))))
 
 (addition replay)
 (defun replay (journal &key until anyway)
@@ -187,7 +187,7 @@ its truename. Signals MISUSE, as where FILE is something else than a journal, an
 unless FILE is a name; then FILE is as it was."
   (check-argument save-journal file (typep file '(or string pathname)) "the name of a file")
   (check-not-foreign file :journal "journal")
-  (asking (simulation) (write-journal (end-of-journal simulation) file)))
+  (asking (simulation) (write-journal (journal-up-to-now simulation) file)))
 
 (addition load-journal)
 (defun load-journal (file)

@@ -72,7 +72,7 @@
 (defun call-with-savable (function simulation without-p)
   "Call FUNCTION with SIMULATION and its journal. If these have parts that cannot be saved, leave
 these out if WITHOUT-P is true, or else signal UNSAVABLE."
-  (let* ((journal (and (simulation-journal simulation) (end-of-journal simulation)))
+  (let* ((journal (and (simulation-journal simulation) (journal-up-to-now simulation)))
          (texts (unsavable-texts simulation journal)))
     (cond ((null texts) (funcall function simulation journal))
           (without-p

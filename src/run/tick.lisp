@@ -32,8 +32,8 @@ phases up to that. It is 0 before and after."
   (setf (timeline-ticking-p timeline) nil
         (world-writer world) nil))
 
-(declaim (inline notice-parameters))
-(defun notice-parameters (simulation timeline)
+(declaim (inline record-changed-parameters))
+(defun record-changed-parameters (simulation timeline)
   "Check and record the parameters of SIMULATION, at least if a command may read them in this tick."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
@@ -121,7 +121,7 @@ record it in the same place of the new journal."
            (in-phases ((timeline-phase timeline))
              (:requests (when (simulation-past simulation) (remember-dice simulation))
                         (begin-changing timeline world)
-                        (notice-parameters simulation timeline)
+                        (record-changed-parameters simulation timeline)
                         (when (timeline-inbox timeline) (perform-requests simulation timeline)))
              (:events (advance-agenda (timeline-agenda timeline)))
              (:kickers (run-kickers world))

@@ -83,7 +83,7 @@ robot."
     (dolist (way ways) (draw #'draw-way way))))
 
 (defun bundle-entry (look opacity text)
-  (sample-of (canvas x y) text
+  (entry-with-sample (canvas x y) text
     (with-opacity (canvas opacity)
       (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look))
     (with-opacity (canvas +end-opacity+) (draw-marker-of canvas look (+ x 4) y))))
@@ -101,7 +101,8 @@ robot."
   "Return the entries of the legend for WAYS in the world of SNAPSHOT; WHAT as for OUTCOME-ENTRIES."
   (append (outcome-entries ways what)
           (and (starts-of ways snapshot)
-               (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
+               (list (entry-with-sample (canvas x y) "start of a way"
+                       (draw-start canvas x y black*))))
           (jump-entries (loop for way in ways collect (pieces-in-pixels (way-pieces way)))
                         snapshot black*)))
 

@@ -87,7 +87,7 @@ WRONG-ARGUMENT if OWN name other robots."
 (defun moved-robot-entry (name position)
   "Return an entry for the robot called NAME, at POSITION among those of its world, and for its
 way."
-  (sample-of-name (canvas x y) (name " and its way" 54)
+  (named-entry-with-sample (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
     (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (nth-ink position) position)))
 
@@ -112,10 +112,10 @@ way."
   "Return the entries of the legend for WAYS and SPOTS of a run that ended as SNAPSHOT shows."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
-            (list (sample-of (canvas x y) "start of a way" (draw-start canvas x y black*))))
+            (list (entry-with-sample (canvas x y) "start of a way" (draw-start canvas x y black*))))
           (jump-entries (loop for (nil . pieces) in ways collect (pieces-in-pixels pieces))
                         snapshot black*)
-          (and spots (list (sample-of (canvas x y) "see below"
+          (and spots (list (entry-with-sample (canvas x y) "see below"
                              (draw-number canvas x y "1"))))))
 
 ;;; The whole.

@@ -22,7 +22,7 @@
                "its world does not have the size of ~A" (world-map world))
     (dotimes (index size) (check-cell index stock met))))
 
-(defun check-stock (stock)
+(defun check-thing-table (stock)
   (must-hold (and (<= 0 (stock-count stock) (length (stock-things stock)))
                   (<= +least-stock+ (length (stock-things stock)))
                   (= (length (stock-things stock)) (length (stock-nexts stock))
@@ -174,7 +174,7 @@ is a state that a run can reach."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
              "its dice are invalid")
-  (check-stock (world-stock world))
+  (check-thing-table (world-stock world))
   (check-cells world)
   (check-things world)
   (check-places world)

@@ -90,7 +90,7 @@ the text of CONTROL and ARGUMENTS if no contrast has trials."
   "Return the comparison of PAIRS, of RESULTS, in the measures NAMES; print it to STREAM, if any."
   (let ((contrasts (loop for (first second) in pairs
                          for contrast = (contrast-of-conditions results first second place)
-                         collect (contrast-samples contrast results first results second names))))
+                         collect (compare-samples contrast results first results second names))))
     (finish-comparison
      (make-comparison
       (sample-experiment (first (first pairs)))
@@ -269,8 +269,8 @@ of conditions that only one of them has."
       (let* ((experiment (check-one-experiment before after))
              (contrasts (loop for (sample other) in pairs
                               for contrast = (make-contrast (sample-condition sample) first second)
-                              collect (contrast-samples contrast after sample before other
-                                                        names))))
+                              collect (compare-samples contrast after sample before other
+                                                       names))))
         (finish-comparison
          (make-comparison
           experiment (format nil "~A against ~A, before" after-name before-name)

@@ -132,7 +132,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
   (and (plusp (contrast-trials contrast))
        (= (contrast-same contrast) (contrast-trials contrast))))
 
-(defun contrast-samples (contrast results first other-results second names)
+(defun compare-samples (contrast results first other-results second names)
   "Set CONTRAST to the comparison of the samples FIRST, of RESULTS, and SECOND, of OTHER-RESULTS, in
 the measures NAMES. Return CONTRAST."
   (let* ((pairs (common-trials first second)) (count (length pairs)))

@@ -120,7 +120,7 @@ way, and a line for the prompt that opens one of them. Return nothing."
                   (native-name directory)))
     directory))
 
-(defun place-of-trial (sample trial)
+(defun trial-index (sample trial)
   "Return the index of TRIAL in the vectors of SAMPLE. Signals MISUSE if there is no such trial."
   (or (position trial (sample-trials sample))
       (reject-use "trial-series: there is no trial ~D of ~A in these results." trial
@@ -161,7 +161,7 @@ file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (let* ((results (designated-results results))
          (file (series-file (directory-of-series results)))
          (sample (designated-sample results condition))
-         (place (place-of-trial sample trial))
+         (place (trial-index sample trial))
          (index (index-series (list file) (header-of file *series-layout*)))
          (block (block-of-trial index sample place)))
     (and block

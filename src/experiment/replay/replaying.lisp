@@ -162,7 +162,7 @@ there is none."
   "Return the journal of the current simulation if JOURNAL is true; save it if that is a name."
   (when journal
     (when (typep journal '(or string pathname)) (save-journal journal))
-    (end-of-journal (current-simulation))))
+    (journal-up-to-now (current-simulation))))
 
 (defvar *trial-replayed* nil
   "The TRIAL-WORDS of the trial that REPLAY-TRIAL runs in this thread, or NIL.")

@@ -35,8 +35,8 @@ which should let them return; those that do not are ended. Errors of FUNCTION ar
   (let* ((lparallel:*kernel* (lparallel:make-kernel
                               count :name "trials"
                               ;; Threads that are ended would print a message.
-                              :bindings `((*standard-output* . ,*nowhere*)
-                                          (*error-output* . ,*nowhere*))))
+                              :bindings `((*standard-output* . ,*null-output*)
+                                          (*error-output* . ,*null-output*))))
          (channel (lparallel:make-channel))
          (left count))
     (unwind-protect
@@ -95,8 +95,8 @@ which should let them return; those that do not are ended. Errors of FUNCTION ar
             (and (plusp rate) (< done total) (duration-text (/ (- total done) rate))))))
 
 ;; A trial is named if it takes longer than both.
-(defconstant +long+ 10 "A number of seconds.")
-(defconstant +longer+ 5 "A multiple of the average duration of trials before it.")
+(defconstant +slow-trial-seconds+ 10 "A number of seconds.")
+(defconstant +slow-trial-factor+ 5 "A multiple of the average duration of trials before it.")
 
 (defun trials-under-way (progress)
   (sort (remove nil (coerce (progress-under-way progress) 'list)) #'< :key #'third))
@@ -117,7 +117,8 @@ longer than others took; else NIL."
   (let ((oldest (first (trials-under-way progress))))
     (when oldest
       (destructuring-bind (condition trial moment &optional seed) oldest
-        (when (> (seconds-since moment) (max +long+ (* +longer+ (average-seconds progress))))
+        (when (> (seconds-since moment) (max +slow-trial-seconds+
+                                               (* +slow-trial-factor+ (average-seconds progress))))
           (format nil "trial ~D of ~A~@[, seed ~D,~] has been under way for ~A" trial
                   (condition-name condition) seed (duration-text (seconds-since moment))))))))
 

@@ -20,12 +20,13 @@ gate to call as well, or NIL."
 
 ;;; Surroundings.
 
-(defvar *nowhere* (make-broadcast-stream) "A stream that discards the output of trials.")
+(defvar *null-output* (make-broadcast-stream) "A stream that discards the output of trials.")
 
 (defun call-in-silence (function)
   "Call FUNCTION. Discard its output; entering the debugger is an error."
-  (let* ((nobody (make-two-way-stream (make-concatenated-stream) *nowhere*))
-         (*standard-output* *nowhere*) (*error-output* *nowhere*) (*trace-output* *nowhere*)
+  (let* ((nobody (make-two-way-stream (make-concatenated-stream) *null-output*))
+         (*standard-output* *null-output*) (*error-output* *null-output*)
+         (*trace-output* *null-output*)
          (*query-io* nobody) (*debug-io* nobody) (*terminal-io* nobody)
          (*break-on-user-error* nil))
     (answering-debugger ((lambda (condition there-p)
