@@ -11,7 +11,7 @@
   "What the documentation of names that the manual does not have ends with.")
 
 (defun tell-addition (symbol)
-  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on a line of its own, instead of
+  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on its own line, instead of
 the chapter that its form names."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
@@ -21,7 +21,7 @@ the chapter that its form names."
                       *addition-sentence*))))))
 
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
-;;; function can be set and is not marked as SETTABLE, a face has a symbol of its own for it.
+;;; function can be set and is not marked as SETTABLE, a face has its own symbol for it.
 
 (defun only-read-p (symbol)
   "True if users may call the function called SYMBOL, but not SETF it, as layers do."
@@ -111,7 +111,7 @@ nor those of tools."
   (setf *marking-p* t)
   (mapc #'unlock-package (our-packages)))
 
-;;; The prompt is a system of its own, which nothing here depends on.
+;;; The prompt is a separate system, which nothing here depends on.
 
 (public cli)
 (defun cli (&rest options)

@@ -76,7 +76,7 @@
                          (base:take-messages)))))))
 
 (test awaiting.a-line-that-waits-for-plans-can-answer-what-they-wait-for
-  "The plans are held until whoever waits for them does what he is needed for."
+  "The plans are held until the thread that waits for them does what it is needed for."
   (in-studio (robot)
     (let ((interface (ars-magna.rpl-robot::ensure-interface))
           (held (base:make-semaphore "held")) (answered (base:make-semaphore "answered"))

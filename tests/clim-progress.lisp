@@ -52,7 +52,7 @@
     (call-while-code-holds
      (lambda (simulation)
        (is (mentions-p (progress-text-of simulation) "a program has broken")))
-     ;; As whoever enters a debugger does.
+     ;; As code that enters a debugger does.
      robot #'base:note-waiting)))
 
 (test progress.names-users-code-that-does-not-return

@@ -69,7 +69,7 @@
       (run:stop-simulator))))
 
 (test names.are-known-from-any-package
-  "A robot, map or kicker is asked for by the symbol of whoever asks."
+  "A robot, map or kicker is found by the symbol in the caller's package."
   (with-own-definitions
     (eval '(world:defmap shed (10 10)))
     (eval '(robot:defrobot cl-user::mole (cl-user::shed (2 2) 0)))
@@ -86,7 +86,7 @@
     (signals sb-ext:package-lock-violation
       (let ((*package* (find-package :ars-user))) (eval form)))))
 
-;;; Words. Whoever wrote the world, or asks, gets back a symbol of his own.
+;;; Words. The author of a world, and any caller, get back symbols of their packages.
 
 (defmacro with-packages ((author asker) &body body)
   "Run BODY with two packages that know nothing of ours."

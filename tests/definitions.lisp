@@ -150,7 +150,7 @@
     (funcall function path)))
 
 (defun rewrite (path text)
-  "Let the file PATH hold TEXT, as an editor does it: whoever is reading the old one still does."
+  "Let the file PATH hold TEXT, as an editor does: a reader of the old file still reads that."
   (with-open-file (out path :direction :output :if-exists :rename-and-delete)
     (write-string text out)))
 

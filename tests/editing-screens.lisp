@@ -68,7 +68,7 @@
 ;;; What it is to show: all that was written, then the line.
 
 (defun rows-in (text columns)
-  "Return TEXT as rows of COLUMNS, as whoever reads it breaks it."
+  "Return TEXT as rows of COLUMNS, as its reader breaks it."
   (loop for line in (uiop:split-string text :separator '(#\Newline))
         append (loop for start from 0 to (max 0 (1- (length line))) by columns
                      collect (without-blanks-after

@@ -104,7 +104,7 @@ plan has seen."
     (is (null (rpl:fluent-value *gong*)))))
 
 (test fluents.code-of-the-original-called-from-a-fork-finds-its-own
-  "Whoever works in a fork may let the original go on, whose plans, continuations and kickers find
+  "Code in a fork may let the original go on. Plans, continuations and kickers of the original find
 their fluents as they are there."
   (with-gong (own)
     (let ((original time:*simulation*) (other nil) (seen '()))

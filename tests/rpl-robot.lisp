@@ -140,7 +140,7 @@
 ;;; Order.
 
 (test answers.are-seen-whole
-  "Whoever hears the pulse sees the values and error code that belong to it; none comes twice."
+  "Code that receives the pulse sees its values and error code; none comes twice."
   (with-fitter (:clean t)
     (is (equal '((:interrupt nil) (nil 1d0) (nil 0.5d0))
                (run-as-plan

@@ -181,7 +181,7 @@ the end, a list, and the errors about runs that are over."
   (is-told-once "is forked" (lambda ()
                               (run:with-fork (:continuations t) (run:run-ticks 5)))))
 
-;;; Whoever takes the robot over ends it at once, also while a camera looks, or a speed is set.
+;;; Another command to the robot ends it at once, also while a camera looks, or a speed is set.
 
 (defun told-to-stop (robot begin tick)
   "Return what the continuation of BEGIN, a function of it, has got 30 ticks after ROBOT was told to

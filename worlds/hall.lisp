@@ -37,7 +37,7 @@
 
 (defmap hall (75 75)
   (rect (0 0) (75 75) bricks 0 12 30 18)
-  ;; The east end is a room of its own, with a doorway.
+  ;; The east end is a separate room, with a doorway.
   (wall (54 0) (54 35) plaster 9 16)
   (wall (54 37) (54 74) plaster 16 24)
   ;; A screen, four pillars and a round one.

@@ -196,7 +196,7 @@ at the terminal of SESSION. Return the values of FUNCTION."
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
-    "Repeat the run recorded in FILE, in a world of its own, and show the tick and state at its end.
+    "Repeat the run recorded in FILE, in a separate world, and show the tick and state at its end.
 ANYWAY does so even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
       (replay-showing session (load-journal (path-called file)) (anyway-p anyway))

@@ -120,7 +120,7 @@ END is not NIL, they wait for time to pass: END returns NIL until they are done,
 ;;;; Who asks
 
 ;;; What a line requests while time stands still ends under a later line, such as RESUME. So where
-;;; lines are counted, each has an asker text of its own: equal to that of others, but another
+;;; lines are counted, each has its own asker text: equal to that of others, but another
 ;;; object.
 
 (define-constant +asker+ "the prompt" :test #'string=

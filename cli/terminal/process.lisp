@@ -73,7 +73,7 @@ values of THEN, another function, which is not interrupted."
             (funcall function)))
       (user-interrupt () (funcall then)))))
 
-;; Users' code may handle this signal as an error of its own, or block interrupts. The function that
+;; Users' code may handle this signal as its own error, or block interrupts. The function that
 ;; counts how often Control-C comes runs in any thread and calls no users' code.
 
 (defvar *before-ending-at-once* nil

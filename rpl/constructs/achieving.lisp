@@ -80,7 +80,7 @@ value. Return what a step returns."
 If the matching DEF-GOAL of BELIEF says that GOAL is believed already, return that value and do
 nothing. Otherwise run the matching DEF-GOAL of ACHIEVE and return its value. Fails with
 UNKNOWN-GOAL if there is none, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards. If no
-BELIEF matches, the end of the plan counts as success. (CRAM's and XFRM's.)"
+BELIEF matches, the end of the plan counts as success. (From CRAM and XFRM.)"
   (:arguments goal)
   (:parts (goal function (value-lambda goal scope)))
   (:steps
@@ -105,7 +105,7 @@ BELIEF matches, the end of the plan counts as success. (CRAM's and XFRM's.)"
   "Find out whether GOAL holds, in a plan, by the matching DEF-GOAL of PERCEIVE. That should not
 change the world. GOAL is evaluated, such as `(on ,a ,b). Return whether GOAL is believed
 afterwards, by the matching DEF-GOAL of BELIEF; if there is none, what was perceived. Fails with
-UNKNOWN-GOAL if no PERCEIVE matches, and as its plan fails. (CRAM's and XFRM's; the return value is
+UNKNOWN-GOAL if no PERCEIVE matches, and as its plan fails. (From CRAM and XFRM; the return value is
 ours.)"
   (:like achieve)
   (:steps

@@ -95,8 +95,8 @@
 When the place is lost, BODY evaporates, GO runs again and BODY starts again. A GO that does not
 lead there counts as an attempt. After ATTEMPTS fails with LOCATION-LOST, which names PLACE; fails
 as GO fails. Several plans of one robot: those whose place fits run without driving; others wait, in
-order of arrival, until no plan is at a place. (CRAM's; THERE and GO are ours, where CRAM asks its
-process modules.)"
+order of arrival, until no plan is at a place. (From CRAM; THERE and GO are ours, where CRAM asks
+its process modules.)"
   (:code (progn
            (unless (and (option-given-p :there form) (option-given-p :go form))
              (reject-clause (text-title) form "(at-location (place :there test :go form) form...)"))

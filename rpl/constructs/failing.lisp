@@ -160,7 +160,7 @@ BODY again. At the end of the handler the failure propagates. Return all values 
 
 (define-construct with-retry-counters (counters &body body)
   "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY, GET-COUNTER and
-RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
+RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
   (:in-lisp (progn
               (check-counters counters)
               `(let ,(loop for (name number) in counters
@@ -170,7 +170,7 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "In a handler: if COUNTER is positive, decrement it and run BODY, usually (retry). (CRAM's.)"
+  "In a handler: if COUNTER is positive, decrement it and run BODY, usually (retry). (From CRAM.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))
@@ -181,13 +181,13 @@ RESET-COUNTER. A counter is a variable, too. (CRAM's; the variable is ours.)"
 
 (addition get-counter)
 (defmacro get-counter (counter &environment environment)
-  "Return how often DO-RETRY will still run for COUNTER, of WITH-RETRY-COUNTERS. (CRAM's.)"
+  "Return how often DO-RETRY will still run for COUNTER, of WITH-RETRY-COUNTERS. (From CRAM.)"
   (check-counter "get-counter" counter environment)
   counter)
 
 (addition reset-counter)
 (defmacro reset-counter (counter &environment environment)
-  "Set COUNTER, of WITH-RETRY-COUNTERS, to its first value, and return that. (CRAM's.)"
+  "Set COUNTER, of WITH-RETRY-COUNTERS, to its first value, and return that. (From CRAM.)"
   (check-counter "reset-counter" counter environment)
   `(setq ,counter ,(start-variable counter)))
 

@@ -158,7 +158,7 @@ and b are what ?a and ?b stand for; ?x twice matches the same twice, and a patte
 and ?x. BODY's value, or that of (succeed-with value), is the goal's. Of several patterns that
 match, the most specific is meant, or else the one defined first (ours; CRAM's is the first). A
 pattern that differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION.
-(CRAM's; the variables are as in DEF-INTERP-MACRO.)"
+(From CRAM; the variables are as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()

@@ -31,12 +31,12 @@
 (addition policy-init-failed)
 (define-condition policy-init-failed (policy-failure)
   ()
-  (:documentation "The :INIT of a named policy returned false: nothing else was done (CRAM's)."))
+  (:documentation "The :INIT of a named policy returned false: nothing else was done (from CRAM)."))
 
 (addition policy-check-condition-met)
 (define-condition policy-check-condition-met (policy-failure)
   ()
-  (:documentation "The :CHECK of a named policy became true while its body ran (CRAM's)."))
+  (:documentation "The :CHECK of a named policy became true while its body ran (from CRAM)."))
 
 (addition failed-policy)
 (setf (documentation 'failed-policy 'function) "Return the policy that does not hold.")
@@ -86,14 +86,14 @@ does not take these."
 (addition policy-get)
 (defmacro policy-get (&whole form name &environment environment)
   "In a clause of a policy: return the value last stored under NAME, which is evaluated, while the
-policy is in force; NIL if there is none. See POLICY-SETF (CRAM's)."
+policy is in force; NIL if there is none. See POLICY-SETF (from CRAM)."
   (check-in-clause form environment)
   `(remembered ,+use-variable+ ,name))
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
   "In a clause of a policy: store VALUE under NAME, both evaluated, for the other clauses and as
-long as the policy is in force. Return VALUE (CRAM's)."
+long as the policy is in force. Return VALUE (from CRAM)."
   (check-in-clause form environment)
   `(remember ,+use-variable+ ,name ,value))
 
@@ -154,7 +154,7 @@ clauses, after an optional documentation string, are plan text: they may wait.
   (:clean-up form...)  runs last, in every case, even if :INIT fails; but not if :INIT returned
                        false.
 The clauses share values by POLICY-GET and POLICY-SETF. See WITH-NAMED-POLICY. Return NAME. Signals
-MALFORMED-DEFINITION. (CRAM's, which polls.)"
+MALFORMED-DEFINITION. (From CRAM, where it polls.)"
   (let ((definition (title "define-policy" name))
         (text (and (stringp (first clauses)) (pop clauses))))
     (expand-definition
@@ -171,7 +171,7 @@ MALFORMED-DEFINITION. (CRAM's, which polls.)"
 (addition make-policy)
 (define-user-macro make-policy ((&rest parameters) &body clauses &environment environment)
   "Return a policy without a name; PARAMETERS and CLAUSES are as for DEFINE-POLICY. Its clauses see
-the variables around it. (CRAM's, where it takes a name.)"
+the variables around it. (From CRAM, where it takes a name.)"
   (policy-code "make-policy" nil parameters clauses environment))
 
 ;;; Being in force.
@@ -222,7 +222,7 @@ the variables around it. (CRAM's, where it takes a name.)"
 
 (define-construct with-named-policy (policy arguments &body body)
   "Run BODY in a plan while POLICY, a policy or its name, is in force with ARGUMENTS, a list of
-forms. See DEFINE-POLICY. Return the value of BODY. (CRAM's; the manual's WITH-POLICY takes plan
+forms. See DEFINE-POLICY. Return the value of BODY. (From CRAM; the manual's WITH-POLICY takes plan
 text as its policy.)"
   (:code
    (progn
@@ -231,9 +231,9 @@ text as its policy.)"
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
-force. The first starts first and takes precedence over the others. (CRAM's.)"
+force. The first starts first and takes precedence over the others. (From CRAM.)"
   (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)
-  "Do as WITH-POLICIES. (CRAM's.)"
+  "Do as WITH-POLICIES. (From CRAM.)"
   (:like with-policies))

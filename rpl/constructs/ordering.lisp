@@ -40,7 +40,7 @@
 
 (define-construct join-task (task)
   "Wait in a plan until TASK is over. Return its value, or fail as it failed; return NIL if it
-evaporated or was left (CRAM's; the last is ours)."
+evaporated or was left (from CRAM; the last is ours)."
   (:arguments task)
   (:parts (target function (value-lambda task scope)))
   (:steps
@@ -197,7 +197,7 @@ not start before a is over, in whatever way it ends.
   a may also be a fluent: b starts when it is true or has been pulsed since.
 Orders hold until the whole ends. A task that has started already cannot be b. Cycles of the tags in
 STEPS are errors when the plan is defined; other cycles are reported as a deadlock. Return the value
-of the last step (CRAM's; the value is ours)."
+of the last step (from CRAM; the value is ours)."
   (:parts (branches simple-vector (branches-code steps (single-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))

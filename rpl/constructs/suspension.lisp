@@ -59,7 +59,7 @@ of TASK is :BLOCKED meanwhile. From CRAM (2009)."
   "Run BODY in a plan. Each time the task is stopped meanwhile, by SUSPEND, WITH-TASK-BLOCKED or the
 loss of a valve, run REACTION first, at once: a form that cannot wait, such as a command that stops
 the robot. An error in REACTION is a message and has no other effect. Return the value of BODY
-(CRAM's; that REACTION cannot wait is ours)."
+(from CRAM; that REACTION cannot wait is ours)."
   (:parts (reaction node (refuse-code reaction scope form))
           (body node (body-code body scope)))
   (:steps
@@ -77,8 +77,8 @@ the robot. An error in REACTION is a message and has no other effect. Return the
     (mapc #'evaporate (task-children task))))
 
 (define-construct retry-after-suspension (&body body)
-  "Run BODY in a plan as a task of its own. When it is stopped, it evaporates, with its cleanups;
-when it may run again, it starts from the beginning. Return its value (CRAM's)."
+  "Run BODY in a plan as a separate task. When it is stopped, it evaporates, with its cleanups;
+when it may run again, it starts from the beginning. Return its value (from CRAM)."
   (:parts (body node (body-code body scope)))
   (:steps
    (begin
@@ -97,8 +97,8 @@ when it may run again, it starts from the beginning. Return its value (CRAM's)."
 (define-construct without-scheduling (&body body)
   "Run BODY in a plan as one step. Meanwhile nothing can suspend or end the task, and no other task
 runs; requests take effect at the end. BODY cannot wait, call plans or leave: that is an error when
-the plan is defined. Return its value. In ordinary Lisp this is PROGN (CRAM's; that BODY cannot wait
-is ours, as nothing else could run meanwhile)."
+the plan is defined. Return its value. In ordinary Lisp this is PROGN (from CRAM; that BODY cannot
+wait is ours, as nothing else could run meanwhile)."
   (:waits :may)
   (:in-lisp `(progn ,@body))
   (:code (refuse-code (note-own-text `(progn ,@body)) scope form)))

@@ -15,7 +15,7 @@
 the tasks that it starts, and nowhere else. WITH-TASK-VARIABLES binds it. In other tasks its value
 is VALUE, or what was set outside of plans. (Special variables belong to the whole thread, and LET
 cannot bind them around forms that wait.) Functions that plans call see it too, if they are compiled
-after it. Defining it again sets its value, as DEFPARAMETER does (CRAM's; what setting in a task
+after it. Defining it again sets its value, as DEFPARAMETER does (from CRAM; what setting in a task
 does is ours)."
   (check-task-variable name)
   (unless (typep documentation '(or null string))

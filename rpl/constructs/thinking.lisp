@@ -81,7 +81,7 @@ and how its body has ended: with a RESULT, or a SIGNAL."
         (values (frame-up frame) (thought-result thought)))))
 
 (define-construct with-charge ((span &key unit alone) &body body)
-  "Run BODY in a plan, as a task of its own, at the price of SPAN ticks, or seconds if UNIT is
+  "Run BODY in a plan, as a separate task, at the price of SPAN ticks, or seconds if UNIT is
 :seconds. Return its value, only one. Where thinking is charged, the steps of BODY do not count,
 and its value or failure comes SPAN after its start, or when BODY ends if that is later. ALONE is
 as for THINK, for the wait after BODY. Elsewhere just run BODY. If the task evaporates, it does so

@@ -256,7 +256,7 @@ tick. CONDITION may itself wait. (Ours: policies and AT-LOCATION watch their con
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
 (define-construct with-deadline ((span &key unit) &body body)
-  "Run BODY in a plan as a task of its own. Return its value, only one. If it has not ended SPAN
+  "Run BODY in a plan as a separate task. Return its value, only one. If it has not ended SPAN
 ticks after its start, or seconds if UNIT is :seconds, it evaporates, and the whole fails with a
 DEADLINE-MISSED. Its cleanups may take longer. Time counts while it is suspended. SPAN is a number
 up to 1e15; with 0 or less BODY must not take any time (ours; CRAM's is a timeout-policy)."

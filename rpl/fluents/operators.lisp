@@ -5,7 +5,7 @@
 (export '(function-given-p counts-each-event-p lifting))
 
 ;;; A view is a network with a memory. Reading it, by FLUENT-VALUE or by being woken by it, resets
-;;; it; so each reader needs a view of its own. While a task waits for it, it is true for the
+;;; it; so each reader needs its own view. While a task waits for it, it is true for the
 ;;; instant of an event; its value then is a number that it never had before, so that each event is
 ;;; a change. Nothing is missed while no task waits: fluents count how often they were set and
 ;;; pulsed, so that a view costs nothing until it is read.
@@ -47,7 +47,7 @@
     (setf view (%make-view name (lambda (&rest values) (read-view view (first values)))
                            sources (height-over sources) bases memory always-p test key))))
 
-;; What it remembers is a state, and it is of the fork's fluents.
+;; The twin starts with the memory of VIEW, and reads the fork's fluents.
 (defmethod fresh-twin ((view view) realm)
   (flet ((twins (fluents) (mapcar (lambda (fluent) (entity-in fluent realm)) fluents)))
     (make-view (fluent-name view) (twins (derived-sources view)) (twins (view-bases view))
@@ -62,8 +62,8 @@ of the events while no task waited:
   :ONCE: the next reading is true, however many events there were, even before this call;
   :ALWAYS: as many readings are true as there were events;
   :NEVER: as :ONCE, but events before this call are ignored.
-A network is pulsed when one of its sources is, whatever its value. Signals WRONG-ARGUMENT. (CRAM's;
-the pulse of a network is ours.)"
+A network is pulsed when one of its sources is, whatever its value. Signals WRONG-ARGUMENT. (From
+CRAM; the pulse of a network is ours.)"
   (check-argument fl-pulsed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-pulsed handle-missed-pulses
                   (member handle-missed-pulses '(:once :never :always)) ":once, :never or :always")
@@ -85,7 +85,7 @@ the pulse of a network is ours.)"
 (defun fl-value-changed (fluent &key (test #'eql) (key #'identity))
   "Return a view: a fluent that is true if KEY of the value of FLUENT differs, by TEST, from what
 it was when the view was last read or, at first, made. Reading it, or being woken by it, resets it.
-A pulse is no change. Signals WRONG-ARGUMENT. (CRAM's.)"
+A pulse is no change. Signals WRONG-ARGUMENT. (From CRAM.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-value-changed test (function-given-p test) "a function of two values")
   (check-argument fl-value-changed key (function-given-p key) "a function of a value")

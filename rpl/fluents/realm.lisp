@@ -5,7 +5,7 @@
 (export '(*realm* +root+ fork-realm leave-realm source-realm entity twin-here here fresh-twin
           foreign-p next-token))
 
-;;; Plans, vectors, networks and global variables refer to fluents. A fork needs states of its own
+;;; Plans, vectors, networks and global variables refer to fluents. A fork needs its own states
 ;;; for all of them. So each object that is an ENTITY belongs to a realm, and has a twin in each
 ;;; realm that was forked from that. HERE finds the twin, however the caller got the entity. Twins
 ;;; have the same TOKEN, a number. Twins that a fork's plans refer to are made with the fork.

@@ -115,7 +115,7 @@ parts begun; its memory is the environment to be."
                                 :body ,(binding-body-code body
                                                           (variable-scope scope variables))))))
 
-;;; A local function whose body waits becomes a procedure of its own, which only plans can call;
+;;; A local function whose body waits becomes a separate procedure, which only plans can call;
 ;;; others are Lisp functions, kept in an environment. One that may wait (see SUSPENSION) becomes a
 ;;; procedure unless its name is also used as #'name.
 

@@ -162,7 +162,7 @@ nodes" :writable :export)
                      "the name of a lexical variable; bind this one by with-task-variables"))))
 
 (defun variable-scope (scope variables)
-  "Return SCOPE with VARIABLES bound in an environment of their own."
+  "Return SCOPE with VARIABLES bound in a separate environment."
   (check-variables variables (scope-environment scope))
   (check-lexical variables (scope-environment scope))
   (let ((level (1+ (scope-level scope)))

@@ -5,11 +5,11 @@
 (export '(start-branch tagged-scope tags-in with-tags-code))
 
 ;;; WITH-TAGS binds the name of each (:tag name form) in it to a task that is yet to start, so that
-;;; other branches can refer to it before. A second run of the same form gets a task of its own,
+;;; other branches can refer to it before. A second run of the same form gets a separate task,
 ;;; with the same status fluent.
 
 (define-expression tagged
-  "BODY as a task of its own called NAME. PLACE returns the environment that holds the task and
+  "BODY as a separate task called NAME. PLACE returns the environment that holds the task and
 its index there, NIL if none does. LAYERS are those of its scope; REPLACED is NIL, or a list of what
 BODY is the code of and of the node that it stands for: see Replacing below."
   (:parts (name symbol) (place function) (body node) (layers list) (replaced list))
@@ -189,8 +189,8 @@ there is exactly one such place. (Ours.)"
   "Let tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on. Running tasks
 are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and local
 plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true. Redefining
-the plan discards FORM. Return FORM. Signals as TASK-CODE does, and MALFORMED-DEFINITION. (CRAM's,
-which takes a function.)"
+the plan discards FORM. Return FORM. Signals as TASK-CODE does, and MALFORMED-DEFINITION. (From
+CRAM, where it takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
          (body (call-blaming-form
                 (lambda ()

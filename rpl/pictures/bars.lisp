@@ -145,7 +145,7 @@ grey: tests/palette.lisp measures it.")
     (dolist (span spans) (draw-span canvas span y scale))
     (loop for (span next) on spans do (write-span canvas span next y scale))))
 
-;;; Commands stand in a lane of their own, so that neither they nor their names lie on others'.
+;;; Commands stand in a separate lane, so that neither they nor their names lie on others'.
 
 (defconstant +command-size+ 9 "How high the font of commands is, in pixels.")
 

@@ -68,7 +68,7 @@ believed in, which does not know it."
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
-of the run with a seed of its own, in which PLAN runs until it has ended or HORIZON ticks have
+of the run with its own seed, in which PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
   PLAN is a plan procedure or its name, which gets the list ARGUMENTS; a list of both; or a task,
 whose remaining part is projected.

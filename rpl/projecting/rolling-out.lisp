@@ -154,7 +154,7 @@ SCENE, where that has ended in the world that the question believes in."
       (values-list values))))
 
 ;;; A run is forked once for a question: that fork, the moment, never goes on. Each rollout is a
-;;; fork of it with a seed of its own; so all begin alike, also if the run goes on meanwhile, and
+;;; fork of it with its own seed; so all begin alike, also if the run goes on meanwhile, and
 ;;; any of them can be looked at again.
 
 (defun call-undisturbed (function print)

@@ -5,7 +5,7 @@
 (export '(interface-p holding-p call-with-plans))
 
 ;;; The thread in which plans react holds the interface's lock. Headless that is the thread that
-;;; passes ticks or starts plans; live it is a thread of their own, which exists while there are
+;;; passes ticks or starts plans; live it is their own thread, which exists while there are
 ;;; plans and a clock. The simulator only posts to that thread and never waits for it.
 ;;;
 ;;; Rule for shared data: timers, ready tasks and everything else of the runner are read and
@@ -212,7 +212,7 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
 ;;; Which interface.
 
 (defun interface-valid-p (interface)
-  "True if the robot of INTERFACE still is in its world, and that in the same simulation."
+  "True if the robot of INTERFACE is still in its world, and the world in the same simulation."
   (let ((robot (interface-robot interface))
         (simulation (interface-simulation interface)))
     (and (not (interface-closed-p interface))

@@ -106,7 +106,7 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
     (funcall function)))
 
 ;;; Headless, plans react at the end of each tick until all wait, so that they see every tick; live
-;;; too, unless the thinking mode of the run gives them a thread of their own.
+;;; too, unless the thinking mode of the run gives them their own thread.
 
 (defun thread-wanted-p (interface)
   (let ((simulation (interface-simulation interface)))

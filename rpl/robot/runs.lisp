@@ -10,8 +10,8 @@
   "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
 
 (defun robot-to-drive ()
-  "Return the robot of the current simulation that plans drive by default: the only one, or that of
-the prompt. Signals MISUSE if that could be several, or the run is over."
+  "Return the robot of the current simulation that plans drive by default: the only one, or the
+prompt's. Signals MISUSE if several robots are possible, or the run is over."
   (check-not-over (current-simulation))
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
@@ -77,7 +77,7 @@ called with that before anything else can happen."
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
-it runs as ticks pass; live in a thread of its own. Signals UNKNOWN-NAME."
+it runs as ticks pass; live in its own thread. Signals UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
     (prog1 (begin-in interface plan arguments #'identity)
       (warn-if-no-ticks-pass plan interface))))
@@ -191,7 +191,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
 how it ended. Test the second value: a failure is true, and the value of a successful plan may be
 NIL.
   :succeeded, :failed, :evaporated: as the task.
-  :deadlock: headless; it waits for what can never happen. Live there is only a warning, since
+  :deadlock: headless; the plan waits for what can never happen. Live there is only a warning, since
 somebody may still make it happen.
   :limit: headless; *PLAN-LIMIT* ticks have passed.
   :stopped: the simulator was stopped or restarted, the robot was redefined, or another thread
@@ -199,8 +199,8 @@ rewound the run.
 The robot is that of RPL-INIT-ROBOT; without that the only one of the current simulation, or at the
 prompt the one commanded there, even if that has changed since RPL-INIT-ROBOT. Failures, deadlocks
 and limits are reported. A plan that is not over when RUN-PLAN returns or is left, as by an abort,
-is ended; but one of a rewound run continues in the run that replaces it. Signals UNKNOWN-NAME, and
-MISUSE, also if the run is over before it begins."
+is ended; but a plan of a rewound run continues in the run that replaces it. Signals UNKNOWN-NAME,
+and MISUSE, also if the run is over before it begins."
   (let ((interface (ensure-interface)))
     (check-outside interface)
     (let ((task nil) (state nil))

@@ -5,7 +5,7 @@
 (export '(gate hold-back release-hold spawn-gated block-task check-together make-block-hook
           unblock-task))
 
-;;; A task with a gate is at a frame of its own before its first expression, and goes on when
+;;; A task with a gate is at its own frame before its first expression, and goes on when
 ;;; nothing holds the gate any more. Its status is :created until then.
 
 (define-record (gate (:constructor make-gate ()))
@@ -144,7 +144,7 @@ asks or TASK is in none; else by a post, before the runner reacts again. Return 
 (addition suspend)
 (defun suspend (task)
   "Stop TASK and its parts until WAKE-UP, and return TASK. Fluents that TASK waits for still count
-for it. A second SUSPEND changes nothing (CRAM's).
+for it. A second SUSPEND changes nothing (from CRAM).
   A task that suspends itself, or a task around it, stops after its current step. One that has not
 started will stop when it does. An evaporating task is not stopped. A suspended part does not keep
 the whole from ending.
@@ -160,7 +160,7 @@ the whole from ending.
 (addition wake-up)
 (defun wake-up (task)
   "Undo SUSPEND of TASK, and return TASK; does not undo WITH-TASK-BLOCKED and the like. From
-anywhere, as SUSPEND (CRAM's)."
+anywhere, as SUSPEND (from CRAM)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
     (call-or-post #'wake-up task

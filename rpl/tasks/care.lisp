@@ -165,13 +165,13 @@ counts as the steps that take as long, so that a plan that only fails uses up it
                (make-ready-first task))))))
 
 (defun end-plan-of (task)
-  "Evaporate the plan of TASK, which is ready; if that was cleaning up, not to the end."
+  "Evaporate the plan of TASK, which is ready. If the plan was cleaning up, abandon the cleanup."
   (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
 
 (defun end-current-plan (runner)
-  "Evaporate the plan of the running task of RUNNER; if that was cleaning up, not to the end."
+  "Evaporate the plan of the running task of RUNNER. If it was cleaning up, abandon the cleanup."
   (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
     (make-ready-first task)

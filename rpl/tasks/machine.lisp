@@ -85,7 +85,7 @@ environment."))
 (declaim (inline enter))
 (defun enter (node environment frame)
   "Begin NODE in ENVIRONMENT for FRAME: return what a step returns. The next step of FRAME gets
-the value. A leaf takes no frame of its own."
+the value. A leaf has no separate frame."
   (if (leaf-p node)
       (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))

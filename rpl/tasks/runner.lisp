@@ -265,8 +265,8 @@ function WORD with the list ARGUMENTS and then SUBJECT, a task of theirs or thei
     (values)))
 
 (defgeneric task-now (client task)
-  (:documentation "Return what TASK, one of the plans of CLIENT, is in the run that this thread
-works in, or that goes on since that of TASK was rewound: TASK itself if it is not there.")
+  (:documentation "Return the counterpart of TASK, one of the plans of CLIENT, in the run that
+this thread works in, or in the run that replaced a rewound one. Return TASK if there is none.")
   (:method (client task)
     (declare (ignore client))
     task))

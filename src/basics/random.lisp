@@ -76,7 +76,7 @@
   (reseed (make-random-state nil) seed))
 
 (defun call-with-own-lisps-dice (function)
-  "Call FUNCTION with a random state of its own for CL:RANDOM."
+  "Call FUNCTION with a separate random state for CL:RANDOM."
   (let ((*random-state* (make-random-state nil))) (funcall function)))
 
 (defmacro rolling ((state) &body body)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.clim)
 
 ;;; On a screen with a high resolution, letters of 12 pixels are too small to read. So a window is
-;;; arranged, painted and pointed at in pixels of its own. Each is several screen pixels wide, as
+;;; arranged, painted and pointed at in its own pixels. Each is several screen pixels wide, as
 ;;; the user wants: a whole number, so that letters keep their columns.
 
 (define-constant +smallest-size+ '(640 480)

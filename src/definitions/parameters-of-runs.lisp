@@ -77,7 +77,7 @@ PARAMETER-VALUES."
 
 (defun follow-parameters (known global-p note)
   "Find the parameters that have changed since KNOWN, a vector of PARAMETER-VALUES, was last
-updated, and update it. If GLOBAL-P, the caller is a thread with bindings of its own: values set
+updated, and update it. If GLOBAL-P, the caller is a thread with its own bindings: values set
 globally by others are adopted, and values set here become global. An unusable value is
 reset, with an error message. NOTE is called with each symbol and its new value."
   (declare #.*hot* (type simple-vector known) (type function note))

@@ -97,7 +97,7 @@ loading from a file, or NIL. Can be set" :writable :export)
   (when *user-calls* (setf (user-calls-waiting-p *user-calls*) t)))
 
 (defun abort-user-code (count)
-  "Abort this thread's users' code, if that is still the call numbered COUNT."
+  "Abort this thread's users' code, if its call is still the one numbered COUNT."
   (let ((calls *user-calls*))
     (when (and calls (user-calls-origin calls) (= count (user-calls-count calls)))
       (abort))))
@@ -134,8 +134,8 @@ program that makes requests of a finished run is not reported."
 ;;; Code that runs by itself, such as a kicker, may fail again and again.
 
 (defgeneric recurring-code (item)
-  (:documentation "Return the user's function that runs repeatedly by itself, if that is the source
-of trouble, from ITEM of its message; else NIL.")
+  (:documentation "Return the user's function that runs repeatedly by itself and is the source of
+trouble, from ITEM of the message about it; NIL if there is none.")
   (:method (item)
     (declare (ignore item))
     nil))
@@ -213,7 +213,7 @@ an error message that it came from ORIGIN (an item or list of items) and return 
      (setf trouble nil)
      (block call
        (flet ((go-on ()
-                ;; The callee may have continued in another run, with a queue of its own.
+                ;; The callee may have continued in another run, with its own queue.
                 (let ((*message-queue* queue))
                   (cond ((null trouble)
                          (apply #'error-set (append (ensure-list origin) '(" was aborted"))))

@@ -29,7 +29,7 @@ pixel wide.")
   (line-style :solid line-style
               "how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set" :writable :export)
   (dashes 4 dashes "how long dashes and the gaps between them are, in pixels: one integer for all,
-by default 4, or a list (dash gap ...). Can be set. A canvas may have dashes of its own
+by default 4, or a list (dash gap ...). Can be set. A canvas may have its own dashes
 instead" :writable :export))
 
 (public draw-gcontext*)

@@ -9,7 +9,8 @@
 ;;; name; a fresh simulation makes another by the same blueprint.
 
 (defun blueprint-robot (blueprint)
-  "Return the current robot of BLUEPRINT: the value of its variable, or that in the resident world."
+  "Return the current robot of BLUEPRINT: the value of its variable, or the robot in the
+resident world of its map."
   (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name)))
          (map (find-map (blueprint-map blueprint) nil)))
     (cond ((robot-p value) value)

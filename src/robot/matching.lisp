@@ -84,8 +84,8 @@ by name."
 ;;; match. Undeclared attributes are treated by the shape of the value.
 
 (defstruct (demand (:copier nil))
-  "One attribute specification: a reading fits if it is a number from LOW to HIGH, or when these
-are NIL, if it is one of CHOICES."
+  "One attribute specification: a reading fits if it is a number from LOW to HIGH or, when these
+are NIL, one of CHOICES."
   (key nil :type symbol :read-only t)
   (attribute nil :type (or null attribute) :read-only t)
   (low nil :type (or null real) :read-only t)

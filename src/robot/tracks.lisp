@@ -98,8 +98,8 @@ unless SILENTLY."
     (free-number designator)))
 
 (defun end-track (camera code &optional warning)
-  "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If it
-is lost and no other camera tracks the designator, that is dropped."
+  "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If the
+track is lost and no other camera tracks the designator, drop the designator."
   (let* ((track (camera-tracking camera))
          (designator (stop-track camera code warning)))
     (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
@@ -130,8 +130,9 @@ is lost and no other camera tracks the designator, that is dropped."
 (note-lasting 'watch-thing)
 
 (defun survives-move-p (designator by-hand)
-  "True if DESIGNATOR stays valid although its denotation has moved: tracked, it can be followed; or
-BY-HAND is true, as it was grasped or set down, and it is and stays local (reading 139)."
+  "True if DESIGNATOR stays valid although its denotation has moved. A tracked one does if it can be
+followed; others if a hand grasped it or set it down (BY-HAND), and it was and is local (reading
+139)."
   (if (tracked-p designator)
       (eq (denotation-space designator) (designator-location designator))
       (and by-hand

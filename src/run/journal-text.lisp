@@ -185,7 +185,7 @@
 
 (defun read-journal (file &optional (operator 'read-journal))
   "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL, which names the
-entry, if it is none or incomplete; WRONG-ARGUMENT unless FILE is a name."
+entry, if FILE has no journal or an incomplete one; WRONG-ARGUMENT unless FILE is a name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
   (reading-file (in file :journal 'damaged-journal) (journal-from (read-data in))))

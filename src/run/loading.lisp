@@ -224,7 +224,7 @@ journal, if any. Map, robots and all else that it uses must be loaded. Nothing i
 Signals:
 - DAMAGED-SIMULATION if FILE is damaged or no saved run
 - UNKNOWN-NAME if something it uses is not defined
-- DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if that is defined differently now, unless
+- DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since, unless
   ANYWAY is true
 - WRONG-ARGUMENT unless FILE is a name"
   (values (load-saved file anyway)))

@@ -227,10 +227,10 @@ over."
 (addition rewind)
 (defun rewind (ticks &optional (simulation (current-simulation)))
   "Take SIMULATION back TICKS ticks, plans included. Return the simulation that continues from
-there. It is the current one then, its robots are the values of their variables, and it is live, at
-the same rate, if SIMULATION was. SIMULATION itself is over; its robots take no more commands. It
-must keep forks, see KEEP-FORKS. TICKS is a number from 0, which undoes what was done since the last
-tick, to how many have passed since it began to keep them.
+there: it becomes the current one, with its robots as the values of their variables, and is live, at
+the same rate, if SIMULATION was. SIMULATION itself is over; its robots take no more commands.
+SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, which undoes what was done
+since the last tick, to how many ticks have passed since SIMULATION began to keep forks.
 - Requests and changes after that tick have not happened. The journal records the rewind.
 - Commands and plans in progress continue. Programs do not: continuations of commands in progress at
   the call receive :INTERRUPT now, and those of commands that continue are never called. So a

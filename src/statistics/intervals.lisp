@@ -34,7 +34,7 @@ from 0 to TRIALS, and CONFIDENCE between 0 and 1."
 
 (defun exact-low (successes trials tail)
   "Return the probability of success for which SUCCESSES or more of TRIALS have the probability
-TAIL; and that of failure."
+TAIL; and the corresponding probability of failure."
   (if (zerop successes)
       (values 0d0 1d0)
       (beta-quantile tail (double successes) (double (- trials successes -1)))))

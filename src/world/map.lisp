@@ -108,7 +108,7 @@ map as its value, such as ROOM, the map of that name."
         (t `',form)))
 
 (defun map-meant (name)
-  "Return the value of the variable NAME, if that can be a map, or NAME, that of a map."
+  "Return the value of the variable NAME, if that can be a map; otherwise NAME, a map's name."
   (let ((value (and (boundp name) (symbol-value name))))
     (if (or (map-p value)
             (stringp value)

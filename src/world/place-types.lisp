@@ -230,7 +230,7 @@ messages (reading 72)."
     or over all others if NAME is T; without it, a type that was defined earlier wins
   :documentation text -- ours: what the place type is
 A matcher may have integers dx dy after the direction, as a checker's values: ours too. Checker and
-directions are tried once on a small map of their own. Maps built earlier learn of the type from
+directions are tried once on a small separate map. Maps built earlier learn of the type from
 REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment
                      (lambda () (place-type-forms name lambda-list options))))

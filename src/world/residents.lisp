@@ -5,7 +5,7 @@
 (export '(map-resident-world))
 
 ;;; A map has one resident world, made when first asked for: the one that top-level code works
-;;; in. Headless simulations bind *WORLD* to worlds of their own.
+;;; in. Headless simulations bind *WORLD* to their own worlds.
 
 (defvar *residents-lock* (make-lock "resident worlds"))
 

@@ -22,7 +22,7 @@
 
 (defun note-slip (operator thing key &key read)
   "Warn once if KEY, which OPERATOR was given for THING, is undeclared, of no thing, and resembles a
-declared attribute or, if it is READ, one that a thing has."
+declared attribute or, if KEY is READ, an attribute that a thing has."
   (let ((world (thing-world thing)))
     (when (and world (not (attribute-of key)))
       (let ((like (known-likeness key world)))

@@ -181,7 +181,7 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
 ;;; would only hide others. Saved runs refer to a world's slots by name, so the slot is still called
 ;;; NOTED-NAMES, though it now holds all warnings given, not only names of attributes.
 
-;;; Plans of live runs warn in a thread of their own: NOTED-NAMES is read and changed under a lock.
+;;; Plans of live runs warn in their own thread: NOTED-NAMES is read and changed under a lock.
 
 (defvar *noted-names-lock* (make-lock "noted names"))
 

@@ -11,8 +11,8 @@
   (if *directory-given-p* "begin in another directory" "run the experiment again"))
 
 (defun differing-column (columns texts others)
-  "Return a list: the first of COLUMNS in which the rows TEXTS and OTHERS differ, the text there in
-OTHERS, and that in TEXTS."
+  "Return a list: the first of COLUMNS in which the rows TEXTS and OTHERS differ, its text in
+OTHERS, and its text in TEXTS."
   (loop for column in columns
         for text in texts
         for other in others

@@ -65,7 +65,8 @@
 
 (defun remove-incomplete-line (file columns)
   "Remove an incomplete last line, as a killed process leaves it, from FILE, a table with COLUMNS.
-True if any lines are left. Signals DAMAGED-TABLE, and leaves FILE unchanged, if it is none."
+True if any lines are left. If FILE is not such a table, leaves it unchanged and signals
+DAMAGED-TABLE."
   (when (existing-path file)
     (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))

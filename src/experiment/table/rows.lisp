@@ -39,8 +39,8 @@
                (write-string (csv-line (cons (integer-text tick) texts)) out)))))
 
 (defun texts-with-checksum (texts experiment series)
-  "Return TEXTS, of a row of EXPERIMENT; if that records series, with the checksum of SERIES, the
-trial's lines, at the end."
+  "Return TEXTS, of a row of EXPERIMENT. If EXPERIMENT records series, add the checksum of SERIES,
+the trial's lines, at the end."
   (if (experiment-series experiment)
       (append texts (list (format nil "~8,'0X" (text-checksum series))))
       texts))
