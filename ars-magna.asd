@@ -208,12 +208,12 @@
       :components ((:file "keys") (:file "changes") (:file "history") (:file "kinds-of-lines")
                    (:file "editor") (:file "typing")))
      (:module "prompt" :serial t
-      :components ((:file "reporting") (:file "listener") (:file "session") (:file "open-trial")
-                   (:file "listening") (:file "line") (:file "quantities") (:file "arguments")
-                   (:file "jobs") (:file "reading") (:file "finding") (:file "loading")
-                   (:file "carrying-out") (:file "plans") (:file "worlds")
-                   (:file "break-requests") (:file "debugger") (:file "clx") (:file "completing")
-                   (:file "prompt")))
+      :components ((:file "loading") (:file "quantities") (:file "reporting") (:file "worlds")
+                   (:file "listener") (:file "session") (:file "open-trial") (:file "clx")
+                   (:file "listening") (:file "jobs") (:file "line") (:file "finding")
+                   (:file "arguments") (:file "plans") (:file "break-requests")
+                   (:file "reading") (:file "carrying-out") (:file "debugger")
+                   (:file "completing") (:file "prompt")))
      (:module "lines" :serial t
       :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")

@@ -47,8 +47,6 @@ DATUM.")
   (or (member type '(:designator :destination))
       (part-type-p type)))
 
-(defun type-key (type) (make-keyword (symbol-name type)))
-
 (defmethod argument-words ((type symbol))
   (let ((key (type-key type)))
     (if (by-number-p key)

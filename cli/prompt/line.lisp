@@ -118,6 +118,8 @@ DETAILS, strings, are paragraphs below the parameters."
 (defun robot-resource-p (command)
   (same-name-p (spec-type (command-resource command)) 'robot))
 
+(defun type-key (type) (make-keyword (symbol-name type)))
+
 (defun part-family (command)
   (let ((type (type-key (spec-type (command-resource command)))))
     (case type
