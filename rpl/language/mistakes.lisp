@@ -101,8 +101,8 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                    (some #'pulse-in-test (append (tests-in-loop form) (test-forms form))))))
     (and pulse
          (format nil "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
-                      waits for the next one. A view that is made first, (fl-pulsed ~:*~A), ~
-                      is true if there was one since." pulse))))
+                      waits for the next one. A view made before the command, ~
+                      (fl-pulsed ~:*~A), is true if there was a pulse since." pulse))))
 
 ;; Each pulse has ended before the next begins.
 (defun joined-pulses (form)

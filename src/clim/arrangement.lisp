@@ -4,8 +4,8 @@
 
 ;;; Rows from top to bottom: menus, tool bar, displays, a splitter, the transcript, the line being
 ;;; typed, the status strip. In the row of displays the world is on the left, then a splitter and a
-;;; column of sections, each a title with a display below it. If there is room, plans have a column
-;;; of their own before that, and a splitter. In a low window the column of sections continues
+;;; column of sections, each a title with a display below it. If there is room, plans have a
+;;; separate column before that, and a splitter. In a low window the column of sections continues
 ;;; beside the transcript, to have room for more lines. Nothing here depends on CLIM: a part is a
 ;;; name, a place is (name left top width height), in pixels.
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.clim)
 
-;;; McCLIM cannot copy texts that do not fit into one X message. So both directions use connections
-;;; of their own, on which nothing else happens: one for each text that is fetched, and one, with a
+;;; McCLIM cannot copy texts that do not fit into one X message. So both directions use separate
+;;; connections, on which nothing else happens: one for each text that is fetched, and one, with a
 ;;; thread, for each text that is offered until another program copies something. Long texts go in
 ;;; pieces (X calls this INCR): the receiver deletes each piece to acknowledge it.
 

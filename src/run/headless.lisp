@@ -171,8 +171,8 @@ of names."
                                            (get (first used) 'command-shape)))
                                     (values-used-in form))))
                  (when call
-                   (doubt-definition "~(~A~) returns nothing: it only begins the command. What ~
-                                      comes of that is told to its continuation, when ticks have ~
+                   (doubt-definition "~(~A~) returns nothing: it only begins the command. The ~
+                                      results go to the continuation, when ticks have ~
                                       passed." (first call)))))
              body))
 
