@@ -44,7 +44,7 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:run-again #:trial-words #:*trial-replayed* #:call-until-error
                 #:call-aside #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
-                #:result-outcome #:result-reason #:result-ticks #:result-error #:measured
+                #:result-outcome #:result-reason #:result-ticks #:result-error #:measure-values
                 #:print-failures
                 #:run-experiment #:trial-under-way #:merge-results #:processors
                 #:settle-fingerprints

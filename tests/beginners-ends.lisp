@@ -213,11 +213,11 @@
     (let ((world (run:simulation-world time:*simulation*)))
       (unwind-protect
            (progn
-             (is (null (run::text-on-leaving world)))
+             (is (null (run::undone-work-text world)))
              (time:pause)
              (command:robot-turn (symbol-value 'rover) 1 (lambda (&rest ignore) ignore))
              (run:stop-simulator)
-             (is-true (has-words-p (run::text-on-leaving world) "robot-turn has ended"
+             (is-true (has-words-p (run::undone-work-text world) "robot-turn has ended"
                                    "(await-idle) waits")))
         (run:stop-simulator)))))
 

@@ -89,7 +89,7 @@
             (list (cli::make-break-request (make-condition 'simple-condition :format-control "oh")
                                            (list (find-restart 'continue))
                                            (base:current-thread) (list session))))
-      (is (equal " A break waits for one of 0 continue." (cli::what-goes-on session))))))
+      (is (equal " A break waits for one of 0 continue." (cli::ongoing-work-text session))))))
 
 (test break.can-be-left-with-the-prompt
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))

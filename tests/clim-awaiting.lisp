@@ -51,7 +51,8 @@
            (console (window::conversation-console conversation)))
       (setf (cli::console-edited-p console) t)
       (cli::show-prompt console "Break> ")
-      (cli::tell-waiting (window::window-session window) (broken "oh" (base:current-thread)))
+      (cli::report-waiting-break (window::window-session window)
+                                 (broken "oh" (base:current-thread)))
       (is (mentions-p (said-in window) "It waits until the one before is answered"))
       (is (equal "Break> " (cli:unpainted-text (first (window::line-shown conversation))))))))
 

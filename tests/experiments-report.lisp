@@ -260,8 +260,8 @@ And more."
 (test report.breaks-what-is-longer-than-a-line
   (is (equal '("aaa bbb" "ccc") (base:wrapped-text "aaa bbb ccc" 8)))
   (is (equal '("x," "aaa bbb") (base:wrapped-text
-                                (format nil "x, ~A" (experiment::unbroken "aaa bbb")) 8)))
-  (is (equal '("aaa bbb" "ccc") (base:wrapped-text (experiment::unbroken "aaa bbb ccc") 8)))
+                                (format nil "x, ~A" (experiment::no-break-text "aaa bbb")) 8)))
+  (is (equal '("aaa bbb" "ccc") (base:wrapped-text (experiment::no-break-text "aaa bbb ccc") 8)))
   (is (equal '("aaaa" "aa") (base:wrapped-text "aaaaaa" 4))))
 
 ;;; Trials added until intervals are narrow.
@@ -274,7 +274,7 @@ And more."
       (let ((summary (first (experiment:summarize-results results))))
         (is (< 50 (experiment:summary-trials summary)))
         (is (= (experiment::confidence-at-look
-                (experiment::look-after (experiment:summary-trials summary)))
+                (experiment::interim-look-number (experiment:summary-trials summary)))
                (experiment:summary-confidence summary)))
         (is (>= 2/10 (- (experiment:estimate-high (experiment:summary-success summary))
                         (experiment:estimate-low (experiment:summary-success summary)))))

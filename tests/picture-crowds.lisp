@@ -207,7 +207,7 @@ of the lines that lead to names, x y x y each."
          (index (display::index-boxes boxes)))
     (loop repeat 200
           for box = (rolled-box dice)
-          for found = (display::all-overlapping box index)
+          for found = (display::overlapping-items box index)
           do (is (null (set-exclusive-or
                         found
                         (remove-if-not (lambda (other) (display::overlap-p box other)) boxes)))))))

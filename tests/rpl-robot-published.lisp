@@ -156,7 +156,7 @@ that breaks is stopped there until the semaphore is signalled."
          (setf (driver::interface-thread interface) (base:current-thread))
          (driver::close-interface interface)
          (is-false (rpl:task-over-p task) "it is left to the thread")
-         (driver::call-with-plans (lambda () (driver::leave-to-ticks interface)) interface)
+         (driver::call-with-plans (lambda () (driver::run-plans-in-ticks interface)) interface)
          (is-true (rpl:task-over-p task))
          (is (null (driver::interface-thread interface)))))
      '(fitter))))

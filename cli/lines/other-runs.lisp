@@ -57,8 +57,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
-        (all-starting (string-upcase start) (mapcar #'experiment-name (all-experiments))
-                      #'string))))
+        (items-with-prefix (string-upcase start) (mapcar #'experiment-name (all-experiments))
+                           #'string))))
 
 (defun experiment-meant (name)
   "Return the experiment called NAME, or the only one whose name begins so. Signals BAD-LINE."
@@ -108,7 +108,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 
 (defun measures-text (trial result)
   (format nil "~:{~(~A~) ~A~:^, ~}"
-          (loop for (name value) in (measured (open-trial-experiment trial) result)
+          (loop for (name value) in (measure-values (open-trial-experiment trial) result)
                 collect (list name (case value ((t) "yes") ((nil) "no") (:none "none")
                                      (t (format-briefly nil "~A" value)))))))
 
@@ -191,7 +191,7 @@ at the next tick. A second Control-C, if that does not come, leaves the trial."
            (setf left-p t))
       (setf (session-trial session) nil)
       (drop-jobs session)
-      (call-by-name (robots-here))
+      (call-by-name (current-robot-names))
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
 
 (defun drop-jobs (session)

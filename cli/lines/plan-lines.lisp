@@ -15,7 +15,7 @@ package; NIL if there is none."
 
 (defun plan-meant (name)
   "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
-  (let ((candidates (all-starting (string-upcase name) (plan-names) #'string)))
+  (let ((candidates (items-with-prefix (string-upcase name) (plan-names) #'string)))
     (cond ((plan-called name))
           ((null candidates) (reject-absent "plan" name (plan-names) "PLAN lists all plans."))
           ((rest candidates) (reject-ambiguous name candidates))

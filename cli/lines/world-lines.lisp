@@ -28,7 +28,7 @@
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
     ;; A run at tick 0 would continue instead of starting again.
-    (when (member robot-name (robots-here)) (end-run-left old))
+    (when (member robot-name (current-robot-names)) (end-run-left old))
     (let ((robot (simulator robot-name :display nil
                                        :rate (if old (simulation-rate old) *default-rate*))))
       (when old (end-replaced-run session old robot))
@@ -72,8 +72,8 @@ ends the present run."
 worlds and their robots."
   (let ((name (and name (robot-called name))))
     (cond ((null name) (list-robots))
-          ((member name (robots-here))
-           (call-by-name (robots-here))
+          ((member name (current-robot-names))
+           (call-by-name (current-robot-names))
            (setf *prompt-robot* name)
            (note-robot-commanded))
           (t (reject-elsewhere name)))))

@@ -14,7 +14,7 @@ Signal BAD-LINE if it means none. Parts are given by number. Without a method fo
 DATUM.")
   (:method (type datum robot)
     (cond ((part-type-p type)
-           (numbered datum (parts-of-kind robot type) (kind-words type) robot))
+           (number-of-element datum (parts-of-kind robot type) (kind-words type) robot))
           ((by-number-p type) (designator-numbered datum robot))
           (t datum))))
 
@@ -26,7 +26,7 @@ DATUM.")
 
 ;;; Parts by number.
 
-(defun numbered (index elements kind robot)
+(defun number-of-element (index elements kind robot)
   (let ((count (length elements)))
     (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
           ((not (typep index 'unsigned-byte))
@@ -75,7 +75,7 @@ DATUM.")
     (set-dispatch-macro-character #\# #\S #'refuse-syntax)
     (read-from-string text t nil :start start :preserve-whitespace t)))
 
-(defun unquoted (datum)
+(defun strip-quote (datum)
   "Return DATUM without the quote that Lisp users may type before it."
   (if (typep datum '(cons (eql quote) (cons t null)))
       (second datum)
@@ -85,7 +85,7 @@ DATUM.")
   "Return the Lisp datum in TEXT at START and where it ends (reading 196). It is not evaluated, so a
 quote before it does not matter."
   (handler-case (multiple-value-bind (datum end) (read-data-from-string text start)
-                  (values (unquoted datum) end))
+                  (values (strip-quote datum) end))
     (end-of-file ()
       (reject-line "~A is not complete: a parenthesis or quote is missing. ~A"
                    (subseq text start) (arguments-text line)))
@@ -102,7 +102,7 @@ quote before it does not matter."
       (round value)
       value))
 
-(defun fitting (value type)
+(defun coerce-for-type (value type)
   "Return VALUE, as typed, or the integer that it is, if only that is of the argument TYPE."
   (if (argument-of-type-p value type)
       value
@@ -133,9 +133,10 @@ quote before it does not matter."
                     (token (string-trim "\"" (subseq text start end))))
                (values (token-value (line-parameter-type parameter) token) end)))
     (t (multiple-value-bind (datum end) (read-number-or-datum parameter text start line)
-         (let ((value (fitting (read-argument (type-key (line-parameter-type parameter)) datum
-                                              (reading-robot line))
-                               (line-parameter-type parameter))))
+         (let ((value (coerce-for-type
+                       (read-argument (type-key (line-parameter-type parameter)) datum
+                                      (reading-robot line))
+                       (line-parameter-type parameter))))
            (check-read value parameter line)
            (values value end))))))
 
@@ -217,7 +218,7 @@ May signal BAD-LINE, as when there is no robot.")
                          (choices :file session typed))))
 
 (define-choices :robot-name (robot-names))
-(define-choices :robot-here (robots-here))
+(define-choices :robot-here (current-robot-names))
 
 ;;; Files.
 
@@ -245,7 +246,7 @@ May signal BAD-LINE, as when there is no robot.")
 
 (defmethod choices ((type (eql :command)) session typed)
   (declare (ignore session))
-  (let ((names (if (all-starting (string-upcase typed) (all-lines) #'line-name)
+  (let ((names (if (items-with-prefix (string-upcase typed) (all-lines) #'line-name)
                    (mapcar #'line-name (all-lines))
                    (all-line-names))))
     (mapcar #'string-downcase (append names (mapcar #'first *aliases*)))))

@@ -44,7 +44,7 @@
         (show-prompt console "Break> ")
         (finish-output console))))
 
-(defun tell-waiting (session break-request)
+(defun report-waiting-break (session break-request)
   (let ((console (session-console session)))
     (write-fitted console
                   "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is answered.~%"

@@ -273,7 +273,7 @@ could be typed either: so signal that."
                                 (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
         (error (trouble) (complain-of-printing session trouble))))))
 
-(defun command-carried-out (robot)
+(defun running-command-name (robot)
   (let ((event (and (at-work-p robot) (resource-event robot))))
     (and (typep event 'operation)
          (string-upcase (command-prompt-name (operation-command event))))))
@@ -283,10 +283,10 @@ could be typed either: so signal that."
 NIL if it carries out none."
   (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
          (name (and robot (or (some #'job-name (jobs-under-way session))
-                              (command-carried-out robot)))))
+                              (running-command-name robot)))))
     (and name (values robot name))))
 
-(defun what-goes-on (session)
+(defun ongoing-work-text (session)
   "Return sentences that say what continues in the simulator after the line of SESSION has ended,
 and how to end it; or, if nothing does, how to leave the prompt. In a trial, nothing continues.
 During the answer to a break, return how to answer."
@@ -301,7 +301,7 @@ During the answer to a break, return how to answer."
                      robot command plans-p))
             (t " QUIT leaves.")))))
 
-(defun whose-code (&optional (calls *user-calls*))
+(defun running-code-owner (&optional (calls *user-calls*))
   "Return in words whose code a thread runs, by CALLS, or which form of a file it loads; NIL if
 neither, or if that is not recorded."
   (let ((origin (and calls (user-calls-origin calls)))
@@ -309,7 +309,7 @@ neither, or if that is not recorded."
     (cond (origin (text-of-origin origin))
           (place (funcall place)))))
 
-(defun say-where (session text)
+(defun report-with-place (session text)
   "Write TEXT to the error output, with the place of the running line of SESSION."
   (let* ((account (session-account session)) (line (line-done-now account)))
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
@@ -320,16 +320,17 @@ neither, or if that is not recorded."
                ~:*~[~;it~:;them~] back.~]"
           count))
 
-(defun interrupted (session whose)
+(defun report-interrupt (session whose)
   "Report in SESSION that an interrupt has ended the line, in code of WHOSE, a text or NIL. Users'
 code that keeps the simulator waiting is aborted, too."
   (when (session-batch-p session)
-    (say-where session (format nil "stopped~@[ in ~A~]." whose))
+    (report-with-place session (format nil "stopped~@[ in ~A~]." whose))
     (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
   (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))
     (answered console)
-    (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped) (what-goes-on session))))
+    (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped)
+                  (ongoing-work-text session))))
 
 (defun call-guarded (session function)
   "Call FUNCTION, which may be interrupted; report its errors."
@@ -337,7 +338,7 @@ code that keeps the simulator waiting is aborted, too."
     (flet ((look-into (condition) (debug-if-wanted session condition))
            (look-whose (condition)
              (declare (ignore condition))
-             (setf whose (whose-code))))
+             (setf whose (running-code-owner))))
       (handler-case
           (with-simple-restart (end-line "End the line.")
             (call-reporting-session-errors session
@@ -345,4 +346,4 @@ code that keeps the simulator waiting is aborted, too."
                                              (handler-bind ((error #'look-into)
                                                             (user-interrupt #'look-whose))
                                                (call-open-to-interrupts function)))))
-        (user-interrupt () (interrupted session whose))))))
+        (user-interrupt () (report-interrupt session whose))))))

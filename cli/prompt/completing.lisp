@@ -90,7 +90,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
     (symbol (string-downcase choice))
     (t (princ-to-string choice))))
 
-(defun matching (typed choices)
+(defun matching-texts (typed choices)
   "Return the texts of those CHOICES that begin with TYPED, ignoring case, sorted."
   (flet ((begins-p (text) (starts-with-subseq typed text :test #'char-equal)))
     (remove-duplicates (stable-sort (remove-if-not #'begins-p (mapcar #'text-of-choice choices))
@@ -153,7 +153,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
   (let ((names '()))
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
-(defun symbols-here ()
+(defun meaningful-symbols ()
   "Return the symbols of this package, except those that have no meaning and were only typed."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
@@ -171,22 +171,22 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
                  for name in (exported-names package)
                  collect (uiop:strcat prefix name)))
           (colon (append (keywords-of operator) (attribute-keys)))
-          (operator-p (remove-if-not #'fboundp (symbols-here)))
-          (t (symbols-here)))))
+          (operator-p (remove-if-not #'fboundp (meaningful-symbols)))
+          (t (meaningful-symbols)))))
 
 (defun lisp-completions (session text point)
   (let ((quote (open-quote text point)))
     (if quote
         (let ((typed (subseq text (1+ quote) point)))
-          (values (1+ quote) (matching typed (choices :file session typed)) "\""))
+          (values (1+ quote) (matching-texts typed (choices :file session typed)) "\""))
         (let* ((start (token-start text point))
                (typed (subseq text start point))
                (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
           (values start
                   (and (string/= "" typed)
-                       (or (matching typed (values-of (last-attribute text start)))
-                           (matching typed (symbol-choices typed operator-p
-                                                           (operator-at text start)))))
+                       (or (matching-texts typed (values-of (last-attribute text start)))
+                           (matching-texts typed (symbol-choices typed operator-p
+                                                                 (operator-at text start)))))
                   "")))))
 
 (defun specification-completions (text point)
@@ -195,9 +195,9 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
          (typed (subseq text start point))
          (key (last-attribute text start)))
     (values start
-            (matching typed (if (or (null key) (starts-with-subseq ":" typed))
-                                (attribute-keys)
-                                (values-of key)))
+            (matching-texts typed (if (or (null key) (starts-with-subseq ":" typed))
+                                      (attribute-keys)
+                                      (values-of key)))
             "")))
 
 ;;; Arguments.
@@ -258,13 +258,13 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
                   (quoted-p (starts-with-subseq "\"" typed))
                   (begun (if quoted-p (subseq typed 1) typed)))
              (as-arguments start
-                           (matching begun (append (unit-choices before text start)
-                                                   (and type (choices type session begun))))
+                           (matching-texts begun (append (unit-choices before text start)
+                                                         (and type (choices type session begun))))
                            quoted-p)))))))
 
 (defun word-completions (text words)
   (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
-    (as-arguments start (matching (subseq text start) words) nil)))
+    (as-arguments start (matching-texts (subseq text start) words) nil)))
 
 (defun line-completions (session text start)
   (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
@@ -272,7 +272,7 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
          (typed (subseq text start end)))
     (cond ((starts-with-subseq "(" typed) (lisp-completions session text (length text)))
           ((= end (length text))
-           (values start (matching typed (choices :command session typed)) " "))
+           (values start (matching-texts typed (choices :command session typed)) " "))
           (t (let ((line (find-line (split-line (expand-alias (format nil "~A " typed))))))
                (argument-completions session line text end))))))
 
@@ -286,9 +286,10 @@ completions, and what follows a single completion."
                (lisp-completions session text point))
               (break-request
                (values 0
-                       (matching text (append '("backtrace" "quit")
-                                              (mapcar #'restart-name
-                                                      (break-request-restarts break-request))))
+                       (matching-texts
+                        text (append '("backtrace" "quit")
+                                     (mapcar #'restart-name
+                                             (break-request-restarts break-request))))
                        ""))
               (t (line-completions session text 0)))
       (ars-magna-error () nil))))

@@ -104,7 +104,7 @@
 (defun answer-those-before (session break-request)
   "Read lines for breaks in other threads before BREAK-REQUEST, which is in this one."
   (let ((breaks (copy-list (session-breaks session))))
-    (when breaks (tell-waiting session break-request))
+    (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)
       (unless (break-request-told-p other) (tell-break session other))
       (loop while (member other (session-breaks session))
@@ -116,7 +116,7 @@
   "Report BREAK-REQUEST, of another thread than that of SESSION: all, if it can be answered now."
   (if (or (break-state-own (session-break-state session))
           (not (eq break-request (first (session-breaks session)))))
-      (tell-waiting session break-request)
+      (report-waiting-break session break-request)
       (tell-break session break-request)))
 
 (defun forget-break (session break-request)
@@ -166,11 +166,11 @@ run, or else all; NIL if its user has left it."
          (or (remove-if-not #'can-answer-p (sessions-showing *simulation*))
              (remove-if-not #'can-answer-p (sessions-at-work))))))
 
-(defun broken-here (condition sessions)
+(defun break-request-for-condition (condition sessions)
   "Return a break request for CONDITION in this thread, for the users of SESSIONS."
   (make-break-request condition (restarts-to-offer condition) (current-thread) sessions))
 
-(defun debug-here (session break-request)
+(defun run-debugger-prompt (session break-request)
   (flet ((read-lines ()
            (answer-those-before session break-request)
            (tell-break session break-request)
@@ -184,7 +184,8 @@ run, or else all; NIL if its user has left it."
   ;; Others may say how to continue if its user no longer can.
   (let ((others (sessions-to-answer-for session)))
     (when others
-      (debug-elsewhere others (broken-here (break-request-condition break-request) others))))
+      (debug-elsewhere
+       others (break-request-for-condition (break-request-condition break-request) others))))
   (invoke-restart 'end-line))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
@@ -227,8 +228,9 @@ that does other things too."
            (with-debugger-hook ('debugger-disabled-hook)
              (tell-listeners *break-hooks*)
              (if (eq (session-thread (first sessions)) (current-thread))
-                 (debug-here (first sessions) (broken-here condition sessions))
-                 (debug-elsewhere sessions (broken-here condition sessions)))))
+                 (run-debugger-prompt (first sessions)
+                                      (break-request-for-condition condition sessions))
+                 (debug-elsewhere sessions (break-request-for-condition condition sessions)))))
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
           (*session* (debugger-disabled-hook condition hook)))))
 
@@ -289,10 +291,11 @@ Lisp's debugger without a terminal or window, or while a break is being answered
   "Report in the prompts of the simulation that ASKER asks how to continue after CONDITION."
   (unless (eq 'enter-debugger (global-debugger-hook))
     (dolist (session (remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
-      (say-in session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
-                              (break-words condition)
-                              (words-for-thread session (current-thread))
-                              asker)))))
+      (show-line-in-session
+       session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
+                       (break-words condition)
+                       (words-for-thread session (current-thread))
+                       asker)))))
 
 (attend *inquiry-hooks* tell-of-inquiry)
 

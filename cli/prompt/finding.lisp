@@ -18,7 +18,7 @@
                                (remove nil (mapcar #'line-full-name (robot-lines))))
                        :test #'string= :from-end t)))
 
-(defun all-starting (start items key)
+(defun items-with-prefix (start items key)
   "Return those of ITEMS whose names, which KEY returns, begin with START."
   (remove-if-not (lambda (item)
                    (let ((name (funcall key item)))
@@ -111,8 +111,8 @@
 (defun complete-line (name)
   "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
 whose name begins all the others."
-  (let ((candidates (or (all-starting name (all-lines) #'line-name)
-                        (all-starting name (robot-lines) #'line-full-name))))
+  (let ((candidates (or (items-with-prefix name (all-lines) #'line-name)
+                        (items-with-prefix name (robot-lines) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
           ;; STOP, not STOP-PLAN.
           ((find-if (lambda (line) (every (lambda (other)

@@ -160,7 +160,7 @@ ticks at most. True if there is none."
        (live-p *simulation*)
        (stands-still-p *simulation*)))
 
-(defun how-ended (jobs lisp-p)
+(defun outcome-of-jobs (jobs lisp-p)
   "Return :OK or :FAILED if JOBS are done and, if LISP-P, what Lisp has issued is; else NIL."
   (cond ((notevery #'job-over-p jobs) nil)
         ((and lisp-p (not (settled-p))) nil)
@@ -176,12 +176,12 @@ ticks at most. True if there is none."
 
 (defun end-of-jobs (session)
   "Return NIL if what SESSION has issued last has ended, or if CATCH-UP has not waited for it. Else
-return a function that returns what HOW-ENDED does."
+return a function that returns what OUTCOME-OF-JOBS does."
   (let ((jobs (remove-if #'job-apart-p (jobs-under-way session)))
         (lisp-p (lisp-goes-on-p session)))
-    (unless (how-ended jobs lisp-p)
+    (unless (outcome-of-jobs jobs lisp-p)
       (dolist (job jobs) (setf (job-apart-p job) t))
-      (lambda () (how-ended jobs lisp-p)))))
+      (lambda () (outcome-of-jobs jobs lisp-p)))))
 
 (defun unfinished-p (session)
   "True if something that SESSION or its Lisp has issued has not ended because time stands still."

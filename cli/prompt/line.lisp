@@ -175,7 +175,7 @@ DETAILS, strings, are paragraphs below the parameters."
 
 ;;; Those that differ.
 
-(defun tracked (camera)
+(defun tracked-designator (camera)
   "Return the designator that CAMERA tracks. Signals BAD-LINE if it tracks none."
   (or (camera-tracks camera)
       (reject-line "~A is not tracking anything." camera)))
@@ -186,7 +186,7 @@ DETAILS, strings, are paragraphs below the parameters."
 (define-line "CAM-INSERT-DESIG" (session (cam camera "the camera to insert"))
     (:camera)
     "Insert the camera CAM into the thing whose local designator it tracks."
-  (send-named session 'camera-insert cam (tracked cam)))
+  (send-named session 'camera-insert cam (tracked-designator cam)))
 
 (define-line "CAM-INSERT-BIN" (session (cam camera "the camera to insert")
                                        (bin storage-bin "the storage bin"))
@@ -198,11 +198,11 @@ DETAILS, strings, are paragraphs below the parameters."
                                           (cam camera "the camera that tracks the thing"))
     (:hand)
     "Insert the hand HAND into the thing whose local designator the camera CAM tracks."
-  (send-named session 'hand-insert hand (tracked cam)))
+  (send-named session 'hand-insert hand (tracked-designator cam)))
 
 ;; As reading 195 says.
 (define-line "HAND-GRASP" (session (hand hand "the hand that is to grasp")
                                    (cam camera "the camera that tracks the thing"))
     (:hand)
     "Grasp with the hand HAND the thing that the camera CAM tracks, in the same location."
-  (send-named session 'hand-grasp-desig hand cam (tracked cam)))
+  (send-named session 'hand-grasp-desig hand cam (tracked-designator cam)))

@@ -232,7 +232,7 @@ and the name of the robot that it commands there; NIL if there is none."
 
 ;;; Others are told.
 
-(defun say-in (session text)
+(defun show-line-in-session (session text)
   "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
   (with-lock ((session-lock session))
     (let ((console (session-console session)))
@@ -242,14 +242,14 @@ and the name of the robot that it commands there; NIL if there is none."
 (defun tell-others (session simulation text)
   "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions there."
   (dolist (other (remove session (sessions-showing simulation)))
-    (say-in other text)))
+    (show-line-in-session other text)))
 
 (defun tell-of-run (session simulation robot-name)
   "Move SESSION to the robot ROBOT-NAME of SIMULATION, as another session does so: report that, and
 show messages from there. Do nothing if it is there. Any thread may ask."
   (unless (eq simulation (session-simulation session))
-    (say-in session (format nil "From here on: ~A in ~A.~%" robot-name
-                            (words-for-run simulation)))
+    (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
+                                          (words-for-run simulation)))
     (stop-listening session)
     (listen-to session simulation)))
 
@@ -268,4 +268,4 @@ show messages from there. Do nothing if it is there. Any thread may ask."
         (tell-of-run session simulation name)
         (go-to-run simulation)
         (setf *prompt-robot* name)
-        (call-by-name (robots-here))))))
+        (call-by-name (current-robot-names))))))

@@ -123,7 +123,7 @@
 (defun begin-trial (session trial)
   "Make the robots' names known to Lisp, and open a window if there can be one."
   (unless (shiftf (open-trial-begun-p trial) t)
-    (call-by-name (robots-here))
+    (call-by-name (current-robot-names))
     (when (display-wanted-p session)
       (announce-display (session-robot) '()))))
 
@@ -144,7 +144,7 @@
 
 ;;; Between ticks.
 
-(defun tell-stop (session trial)
+(defun report-trial-stop (session trial)
   "Report that the ticks which were to pass in TRIAL have passed, or were stopped."
   (when (shiftf (open-trial-interrupted-p trial) nil)
     (answered (session-console session))
@@ -186,6 +186,6 @@
   (lambda (simulation)
     (declare (ignore simulation))
     (when (open-trial-left-p trial) (leave-open-trial session))
-    (tell-stop session trial)
+    (report-trial-stop session trial)
     (loop until (tick-passes-p session trial) do (run-line-in-trial session trial))
     1))

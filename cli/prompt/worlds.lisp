@@ -93,7 +93,7 @@ BAD-LINE if there are none."
 (defun robot-names ()
   (mapcar #'blueprint-name (all-blueprints)))
 
-(defun robots-here ()
+(defun current-robot-names ()
   (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
 
 (defun world-of (robot-name)

@@ -46,8 +46,8 @@
   "Return in words whose code runs in SESSION, by CALLS, or in its live run; and how many calls were
 begun before. Without a second value, return which form of a file is being loaded, or NIL."
   (let ((simulation (session-simulation session)))
-    (cond ((user-calls-origin calls) (values (whose-code calls) (user-calls-count calls)))
-          ((user-calls-place calls) (whose-code calls))
+    (cond ((user-calls-origin calls) (values (running-code-owner calls) (user-calls-count calls)))
+          ((user-calls-place calls) (running-code-owner calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
 
 (defun watch-for-blocking-code (session calls ended)
@@ -58,13 +58,14 @@ four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
         do (multiple-value-bind (whose count) (call-under-way session calls)
              (unless (eql count seen) (setf seen count looks 0))
              (when (and whose count (= 4 (incf looks)))
-               (say-where session
-                          (format nil "~A has not returned for ~D s. Control-C ends ~
-                                       the batch, and so does the option --time-limit SECONDS."
-                                  whose *hog-patience*))))))
+               (report-with-place
+                session
+                (format nil "~A has not returned for ~D s. Control-C ends ~
+                             the batch, and so does the option --time-limit SECONDS."
+                        whose *hog-patience*))))))
 
 (defun say-stopped (session whose reason)
-  (say-where session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
+  (report-with-place session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
 (defun end-at-limit (session calls thread seconds ended)
   "End SESSION, which THREAD runs, after SECONDS, unless the semaphore ENDED is signalled before. If

@@ -7,7 +7,7 @@ that a robot believes in, and choosing by that.")
         :ars-magna.rpl.language :ars-magna.rpl-robot)
   (:import-from :ars-magna.statistics #:wilson-interval)
   (:import-from :ars-magna.world #:*world*)
-  (:import-from :ars-magna.time #:*simulation* #:current-simulation #:secluded)
+  (:import-from :ars-magna.time #:*simulation* #:current-simulation #:with-seclusion)
   (:import-from :ars-magna.robot #:robot-name)
   (:import-from :ars-magna.run #:simulation-messages
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots

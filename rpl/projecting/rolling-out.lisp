@@ -4,9 +4,9 @@
 
 (defun end-of (task question interface)
   "Return how TASK, or else the asking task of QUESTION, has ended; NIL if it has not."
-  (cond (task (how-over interface task))
+  (cond (task (final-state-of-task interface task))
         ((question-ended question))
-        (t (how-over interface (task-top (wish-task question))))))
+        (t (final-state-of-task interface (task-top (wish-task question))))))
 
 (defun cost-p (object)
   "True of real numbers, and of positive infinity, the worst; not of a NaN."
@@ -120,7 +120,7 @@ those that FUNCTION makes cannot be changed, and fluents of outside are as in a 
     (progv (mapcar #'robot-name robots) '()
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
         (let ((*simulation* nil) (*world* nil) (*interface* nil) (*realm* (fork-realm *realm*)))
-          (secluded (funcall function)))))))
+          (with-seclusion (funcall function)))))))
 
 (defun run-in-belief (scene trial seed)
   (unless *simulation*
@@ -129,8 +129,9 @@ those that FUNCTION makes cannot be changed, and fluents of outside are as in a 
   (let ((question (scene-question scene)) (interface (ensure-interface)))
     (run-rollout scene trial seed question interface
                  (lambda ()
-                   (begin-in interface (question-plan question) (question-arguments question)
-                             #'identity)))))
+                   (begin-plan-in-interface
+                    interface (question-plan question) (question-arguments question)
+                    #'identity)))))
 
 (defun no-rollout (scene trial seed condition)
   (multiple-value-bind (how result cost broken) (broken-off condition :world)
@@ -194,7 +195,8 @@ counts, or NIL: see NOTE-ENDED."
                      interface)
     (cond ((question-subject question))
           ((null task)
-           (begin-in interface (question-plan question) (question-arguments question) #'identity))
+           (begin-plan-in-interface
+            interface (question-plan question) (question-arguments question) #'identity))
           ((and (question-branches question) (not (eq :branch (option question :until))))
            (task-top task)))))
 

@@ -166,11 +166,12 @@ has given as many as it may in this tick."
              (notany (lambda (loser) (part-of-p (action-task older) loser))
                      (valve-losers (interface-valve interface))))
     (let ((interrupted (action-text older)) (by (action-text newer)))
-      (tell-once interface (list :clash interrupted by)
-                 "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a ~
-                  time. Give them one after the other, or let each task have the robot while it ~
-                  needs it: (with-valve ((rpl-robot-valve)) ...)."
-                 interrupted by (action-resource older)))))
+      (warn-once-in-run
+       interface (list :clash interrupted by)
+       "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a ~
+        time. Give them one after the other, or let each task have the robot while it ~
+        needs it: (with-valve ((rpl-robot-valve)) ...)."
+       interrupted by (action-resource older)))))
 
 ;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
@@ -203,10 +204,11 @@ action NEWER, most likely by mistake; NIL if that may be meant, as where it reac
   "Say once if the action NEWER of INTERFACE has cut OLDER short before it began, or just after."
   (let ((ticks (and newer (haste older newer))))
     (when ticks
-      (tell-once interface (list :hurry-in-plan (action-name older) (action-name newer))
-                 "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
-                  does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries ~
-                  out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
-                 (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
-                 (action-name newer) (action-resource older)
-                 (end-wait-text (action-outcome older) (action-resource older))))))
+      (warn-once-in-run
+       interface (list :hurry-in-plan (action-name older) (action-name newer))
+       "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
+        does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries ~
+        out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
+       (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
+       (action-name newer) (action-resource older)
+       (end-wait-text (action-outcome older) (action-resource older))))))

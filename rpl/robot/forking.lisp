@@ -26,14 +26,14 @@
     (eq (era-of number (runner-client (task-runner task)))
         (era-of number interface))))
 
-(defmethod counterpart-here ((task task))
+(defmethod counterpart-in-current-run ((task task))
   (let* ((client (and (task-runner task) (runner-client (task-runner task))))
          (interface (and client (interface-of (interface-robot client) *simulation*))))
     (and interface
          (same-era-p task interface)
          (task-numbered (task-serial task) (interface-runner interface)))))
 
-(defun task-of-now (task simulation)
+(defun counterpart-of-task (task simulation)
   "Return the counterpart of TASK in SIMULATION, a fork of its run or the successor of a rewound
 run; TASK itself if it is over there. Signals MISUSE if the run was rewound to before its start, or
 plans were begun again since."
@@ -222,5 +222,5 @@ realm of runs that are no forks. Fluents have the values there that they had las
 
 ;;; Counterparts.
 
-(defmethod counterpart-here ((entity entity))
+(defmethod counterpart-in-current-run ((entity entity))
   (here entity))

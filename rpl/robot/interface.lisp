@@ -222,7 +222,7 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
          (member robot (simulation-robots simulation))
          t)))
 
-(defun tell-once (interface key control &rest arguments)
+(defun warn-once-in-run (interface key control &rest arguments)
   "Warn once by KEY in the run of INTERFACE, with the text formatted from CONTROL and ARGUMENTS."
   (warn-once key (simulation-world (interface-simulation interface))
              (apply #'format nil control arguments)))
@@ -234,12 +234,12 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
        (or (null *world*)
            (eq *world* (robot-world (interface-robot interface))))))
 
-(defun interface-here ()
+(defun interface-in-use-here ()
   "Return the interface whose plans react here, or else the one in use; or NIL."
   (or *reacting* *interface*))
 
 (defun usable-interface ()
-  (let ((interface (interface-here)))
+  (let ((interface (interface-in-use-here)))
     (and (usable-p interface) interface)))
 
 (defun the-interface ()

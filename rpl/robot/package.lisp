@@ -17,7 +17,7 @@
                 #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:robot-meant #:simulation-over #:doubt-wait
+                #:resolve-robot #:simulation-over #:doubt-wait
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:simulation-observers
                 #:simulation-world #:simulation-messages #:robot-simulation
@@ -32,7 +32,7 @@
                 #:fork-simulation #:refuse-fork
                 #:participant-place #:simulation-participants #:fork-p #:note-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
-                #:counterpart-here #:latest #:let-fork-be-kept #:note-doing
+                #:counterpart-in-current-run #:latest #:await-postponed-fork #:note-doing
                 #:simulation-past #:simulation-journal #:remark #:unremark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable

@@ -113,7 +113,7 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
     (and (timeline-real-p (simulation-timeline simulation))
          (live-p simulation))))
 
-(defun charge-as-told (interface)
+(defun charge-declared-time (interface)
   (let ((timeline (simulation-timeline (interface-simulation interface))))
     (set-charges (interface-runner interface)
                  (thinking-charged-p timeline)
@@ -143,7 +143,7 @@ nothing happens."
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))
             (*goes-on-in-forks-p* t))
-        (charge-as-told interface)
+        (charge-declared-time interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
         (let ((outcome (rolling ((plans-dice interface)) (react-and-serve interface))))
           ;; If it was closed while its plans reacted, the rest is done here.

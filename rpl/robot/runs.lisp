@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*plan-failed* ensure-interface begin-in note-robot-commanded pass-until how-over
+(export '(*plan-failed* ensure-interface begin-plan-in-interface
+          note-robot-commanded pass-until final-state-of-task
           plan-ending-p))
 
 (addition *plan-limit*)
@@ -49,7 +50,7 @@ the prompt has begun to command since."
           (interface)
           (t (init-robot (robot-to-drive))))))
 
-(defun begin-in (interface plan arguments note)
+(defun begin-plan-in-interface (interface plan arguments note)
   "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
 called with that before anything else can happen."
   (check-not-secluded (interface-simulation interface))
@@ -68,18 +69,19 @@ called with that before anything else can happen."
   "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
   (let ((robot (interface-robot interface)))
     (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *ticks-follow-p*))
-      (tell-once interface (list :kept (robot-name robot) :plan)
-                 "The plan ~A waits until ticks pass: none of ~A do by themselves now. (run-ticks ~
-                  N) lets some pass, (simulator '~(~A~)) all that come."
-                 (if (symbolp plan) (string-downcase plan) "that was begun")
-                 robot (robot-name robot)))))
+      (warn-once-in-run
+       interface (list :kept (robot-name robot) :plan)
+       "The plan ~A waits until ticks pass: none of ~A do by themselves now. (run-ticks ~
+        N) lets some pass, (simulator '~(~A~)) all that come."
+       (if (symbolp plan) (string-downcase plan) "that was begun")
+       robot (robot-name robot)))))
 
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
 it runs as ticks pass; live in its own thread. Signals UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
-    (prog1 (begin-in interface plan arguments #'identity)
+    (prog1 (begin-plan-in-interface interface plan arguments #'identity)
       (warn-if-no-ticks-pass plan interface))))
 
 (defconstant +longest-report+ 4000
@@ -101,7 +103,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
             ((>= (simulation-tick simulation) last) (return :limit)))
       (run-ticks 1 simulation))))
 
-(defun how-over (interface task)
+(defun final-state-of-task (interface task)
   "Return the state of TASK if it is over; :STOPPED if it evaporated with all plans of INTERFACE."
   (cond ((not (task-over-p task)) nil)
         ((or (ended-by-itself-p task) (interface-valid-p interface)) (task-state task))
@@ -112,7 +114,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
   (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
                   "a number of ticks, up to 1e9")
   (pass-until interface
-              (lambda () (how-over interface task))
+              (lambda () (final-state-of-task interface task))
               (+ (simulation-tick (interface-simulation interface)) *plan-limit*)))
 
 (defun await-over (interface task)
@@ -178,12 +180,13 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
                 (typep (task-result task) 'lisp-failure) ; an error is reported anyway
                 (message-queue-listener (simulation-messages simulation))
                 (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
-      (tell-once interface (list :failed (task-label task))
-                 "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says so, :FAILED; ~
-                  the first is the failure, which is true."
-                 (task-label task)
-                 (failure-text (task-result task))
-                 (missed-text (task-result task))))))
+      (warn-once-in-run
+       interface (list :failed (task-label task))
+       "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says so, :FAILED; ~
+        the first is the failure, which is true."
+       (task-label task)
+       (failure-text (task-result task))
+       (missed-text (task-result task))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
@@ -205,13 +208,13 @@ and MISUSE, also if the run is over before it begins."
     (check-outside interface)
     (let ((task nil) (state nil))
       (in-any-case
-        (progn (begin-in interface plan arguments
-                         (lambda (begun)
-                           (setf task begun)
-                           (atomic-push begun (interface-awaited interface))))
+        (progn (begin-plan-in-interface interface plan arguments
+                                        (lambda (begun)
+                                          (setf task begun)
+                                          (atomic-push begun (interface-awaited interface))))
                (setf state (await-plan interface task))
                (when (eq :failed state) (warn-of-failure interface task)))
-        (when (and task (not (task-over-p task))) (end-in interface task))
+        (when (and task (not (task-over-p task))) (end-plans-of-interface interface task))
         (when task (atomic-remove task (interface-awaited interface))))
       (values (task-result task) state))))
 
@@ -231,7 +234,7 @@ and MISUSE, also if the run is over before it begins."
     (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
   (stop-plan (interface-runner interface) task))
 
-(defun end-in (interface task)
+(defun end-plans-of-interface (interface task)
   "Evaporate TASK of INTERFACE, or all if it is NIL: now, or later in the thread of the plans."
   (want-end interface task)
   (unless (or (holding-p interface) (thread-of interface))
@@ -240,7 +243,7 @@ and MISUSE, also if the run is over before it begins."
 
 (defun repeat-end (subject)
   "Repeat the end of SUBJECT, a task or, for all of its plans, a runner."
-  (end-in (usable-interface) (and (task-p subject) subject)))
+  (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
   "True if TASK, a plan, was ended from outside; it may still be running."
@@ -254,7 +257,7 @@ and MISUSE, also if the run is over before it begins."
   (let ((interface (and (task-runner task) (runner-client (task-runner task)))))
     (cond ((or (null (task-runner task)) (task-over-p task)))
           ((null interface) (stop-plan (task-runner task) task))
-          ((eq interface (interface-here)) (end-in interface task))
+          ((eq interface (interface-in-use-here)) (end-plans-of-interface interface task))
           (t (want-end interface task)))))
 
 (defun elsewhere-p (interface)
@@ -267,11 +270,11 @@ that has replaced it since a rewind."
 
 (defmethod task-now ((interface interface) task)
   (let ((latest (latest (interface-simulation interface))))
-    (cond ((elsewhere-p interface) (task-of-now task *simulation*))
-          ((not (eq latest (interface-simulation interface))) (task-of-now task latest))
+    (cond ((elsewhere-p interface) (counterpart-of-task task *simulation*))
+          ((not (eq latest (interface-simulation interface))) (counterpart-of-task task latest))
           (t task))))
 
-(defun task-here (task)
+(defun task-in-current-run (task)
   (let ((client (and (task-runner task) (runner-client (task-runner task)))))
     (if client (task-now client task) task)))
 
@@ -285,8 +288,8 @@ TASK was rewound to before its start."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (if (eq task :all)
-      (end-in (the-interface) nil)
-      (end-task (task-here task)))
+      (end-plans-of-interface (the-interface) nil)
+      (end-task (task-in-current-run task)))
   (values))
 
 ;;; The name of a plan that is not quoted is a variable to Lisp.

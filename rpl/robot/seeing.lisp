@@ -78,7 +78,7 @@ is true, also print stacks, variables and valves: see PRINT-TASKS."
 (defun robot-that-failed-last (simulation)
   "Return the robot of SIMULATION of which a command failed last, or else its first one."
   (flet ((tick-of-failure (robot) (or (getf (last-failure robot) :tick) -1)))
-    (loop with last = (robot-meant nil 'why)
+    (loop with last = (resolve-robot nil 'why)
           for robot in (simulation-robots simulation)
           when (> (tick-of-failure robot) (tick-of-failure last)) do (setf last robot)
           finally (return last))))

@@ -4,7 +4,7 @@
 
 (export '(*robot-to-drive*))
 
-(defun end-plans-here (interface)
+(defun end-plans-in-this-thread (interface)
   "End the plans of INTERFACE, which is to end, in this thread. An interrupt breaks off one of their
 cleanups at most."
   (flet ((end ()
@@ -24,7 +24,7 @@ or around this call, as soon as they can."
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
         (cond ((holding-p interface) (stop-plan (interface-runner interface)))
               ((thread-of interface) (wake-plans interface))
-              (t (end-plans-here interface)))))))
+              (t (end-plans-in-this-thread interface)))))))
 
 (defun attach (interface)
   (let ((simulation (interface-simulation interface)))
@@ -66,11 +66,12 @@ as one of them says so itself."
                (interface-valid-p interface)
                (or (not same-p) (participant-around-p interface))
                (eq (interface-simulation interface) (robot-simulation robot)))
-      (tell-once interface (list :ended-by (robot-name before) (robot-name robot))
-                 "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans drive one robot ~
-                  at a time. Let them end first, as (run-plan ...) does, or drive one of the ~
-                  robots by commands and continuations~;. Call it before the plan, not in it~]."
-                 robot (length tasks) (mapcar #'task-label tasks) before same-p))))
+      (warn-once-in-run
+       interface (list :ended-by (robot-name before) (robot-name robot))
+       "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans drive one robot ~
+        at a time. Let them end first, as (run-plan ...) does, or drive one of the ~
+        robots by commands and continuations~;. Call it before the plan, not in it~]."
+       robot (length tasks) (mapcar #'task-label tasks) before same-p))))
 
 ;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
 (defun do-traced (traced-p function &rest arguments)

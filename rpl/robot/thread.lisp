@@ -76,7 +76,7 @@ it has ended: warn of plans that keep it, and end them if they are to end."
 ;;; The thread exists while there are plans and ticks pass by themselves. It sleeps only while no
 ;;; plan is ready. The next tick that finds plans starts another.
 
-(defun leave-to-ticks (interface)
+(defun run-plans-in-ticks (interface)
   "Run the plans of INTERFACE in the ticks from now on, without a thread."
   (swap-if (interface-thread interface) (current-thread) nil)
   ;; Another thread may have closed it before, and left the rest to this one.
@@ -88,14 +88,14 @@ it has ended: warn of plans that keep it, and end them if they are to end."
   "Let the plans of INTERFACE react. Return :IDLE, :BUDGET, :OVER if none go on, or NIL if aborted."
   (with-plans (interface)
     (unless (timeline-real-p (simulation-timeline (interface-simulation interface)))
-      (return-from react-in-thread (leave-to-ticks interface)))
+      (return-from react-in-thread (run-plans-in-ticks interface)))
     ;; Read first: a request to end the plans is served in this reaction.
     (let* ((closing-p (interface-closing-p interface))
            (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
       (cond ((and (tasks-of interface) (not closing-p))
              (if (and (not (live-p (interface-simulation interface)))
                       (or (eq :idle outcome) (waits-for-tick-p interface)))
-                 (leave-to-ticks interface)
+                 (run-plans-in-ticks interface)
                  outcome))
             (t (setf (interface-thread interface) nil)
                :over)))))
@@ -117,7 +117,7 @@ it has ended: warn of plans that keep it, and end them if they are to end."
 (defun run-thread (interface)
   (loop
     (loop while (plusp (interface-wanted interface)) do (yield-thread))
-    (let-fork-be-kept (interface-simulation interface))
+    (await-postponed-fork (interface-simulation interface))
     (ecase (react-in-thread interface)
       (:over (return))
       ;; A tick may have come meanwhile without a call to wake.

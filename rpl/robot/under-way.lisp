@@ -245,12 +245,13 @@ commands of the robot such as COMMAND; or NIL."
 (defun warn-of-outside (interface command)
   (let ((task (call-with-plans-if-free (lambda () (watcher-of-end interface command)) interface)))
     (when task
-      (tell-once interface (list :outside (task-label task))
-                 "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is ~
-                  not woken. Let a plan issue it: ~A."
-                 command (task-label task)
-                 (fluent-text (symbol-value (pulse-of-command command)))
-                 (plan-call-text command)))))
+      (warn-once-in-run
+       interface (list :outside (task-label task))
+       "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is ~
+        not woken. Let a plan issue it: ~A."
+       command (task-label task)
+       (fluent-text (symbol-value (pulse-of-command command)))
+       (plan-call-text command)))))
 
 (defun note-outside-command (interface)
   (let* ((robot (interface-robot interface))

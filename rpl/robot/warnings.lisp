@@ -140,10 +140,10 @@ end of the same command."
 (defun warn-of-unawaited (interface task)
   (let ((action (first (unawaited-actions interface task))))
     (when action
-      (tell-once interface (list :unawaited (task-label task))
-                 "The plan ~A succeeded while its command rpl-~(~A~) was under way, which ~
-                  continues.~@[ ~A~]"
-                 (task-label task) (action-name action) (unawaited-advice action)))))
+      (warn-once-in-run interface (list :unawaited (task-label task))
+                        "The plan ~A succeeded while its command rpl-~(~A~) was under way, which ~
+                         continues.~@[ ~A~]"
+                        (task-label task) (action-name action) (unawaited-advice action)))))
 
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
 ;;; and run; without a reader of messages it is shown if the plan still waits when the run ends.

@@ -294,7 +294,7 @@ run is over, or an argument is of another run."
          (arguments (if (some #'consp arguments)
                         (copy-argument (command-name command) "arguments" arguments)
                         arguments)))
-    (note-asked (occupied command resource))
+    (count-request (occupied command resource))
     (doubt-interrupting command (occupied command resource) arguments timeline)
     (doubt-repeating command (occupied command resource) arguments timeline)
     (post (make-operation command (occupied command resource) arguments

@@ -127,7 +127,7 @@ SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
                    (picture-kind 'save-animation file)
                    (picture-kind 'save-animation file '(:html :svg)
                                  ".html or .svg; with :series t in .svg or .png")))
-         (journal (journal-meant journal 'save-animation))
+         (journal (resolve-journal journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (checked-end-tick 'save-animation journal until)))
          (title (title-with-remark title journal anyway))
@@ -165,7 +165,7 @@ grasped, released or stowed something, that a command failed, that a plan or a p
 was ended, and errors in your code. JOURNAL is a journal, a file with one, or NIL for that of the
 current simulation so far; UNTIL is the last tick, by default that of its end. ANYWAY accepts a run
 whose definitions are not the present ones. Signals what REPLAY does."
-  (let ((journal (journal-meant journal 'journal-moments)))
+  (let ((journal (resolve-journal journal 'journal-moments)))
     (checked-end-tick 'journal-moments journal until)
     (multiple-value-bind (watch seen) (make-moments-watcher)
       (sort-moments (append (call-with-replay seen journal :until until :anyway anyway

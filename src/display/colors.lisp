@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.canvas)
 
-(export '(color shade color-called mix +least-contrast+ primaries color-of-primaries luminance
-          color-contrast ink-on tinted +textures+ draw-texture))
+(export '(color shade color-called mix-colors +least-contrast+ primaries color-of-primaries
+          luminance color-contrast ink-on tint-grey +textures+ draw-texture))
 
 ;;; A colour is an integer #xRRGGBB, like a pixel in CLX. Vectors run from dark to light. The manual
 ;;; names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight plain
@@ -15,7 +15,7 @@
   "A colour as #xRRGGBB."
   '(unsigned-byte 24))
 
-(defun mix (dark light fraction)
+(defun mix-colors (dark light fraction)
   "Return the colour at FRACTION, from 0 to 1, between DARK and LIGHT."
   (loop with color = 0
         for position in '(16 8 0)
@@ -25,7 +25,7 @@
         finally (return color)))
 
 (defun shades (count dark light)
-  (coerce (loop for index below count collect (mix dark light (/ index (1- count))))
+  (coerce (loop for index below count collect (mix-colors dark light (/ index (1- count))))
           'simple-vector))
 
 (public black* white* grey*)
@@ -118,7 +118,7 @@ attribute; black if NAME is not a colour (manual B; reading 212)."
   "Return black or white, whichever has more contrast to COLOR: at least 4.5."
   (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
-(defun tinted (grey hue fraction)
+(defun tint-grey (grey hue fraction)
   "Return the colour GREY mixed with FRACTION, from 0 to 1, of the colour HUE. The luminance stays
 the same, and so does a print in grey."
   (let* ((light (luminance grey)) (strength (luminance hue)))

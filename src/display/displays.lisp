@@ -162,7 +162,8 @@ widths are in proportion.")
   (with-color (layer-ink :tracks)
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext*
-                     (append (around x y angle (* 1/2 +dial+)) (around x y angle +dial+))))))
+                     (append (point-at-distance x y angle (* 1/2 +dial+))
+                             (point-at-distance x y angle +dial+))))))
 
 (defun draw-dial (canvas robot camera y)
   "Draw CAMERA as a wedge in its direction on the map, as wide as its field of view, with a tick in
@@ -175,8 +176,8 @@ the believed direction of what it tracks."
       (draw-arc canvas draw-gcontext* (- x +dial+) (- y +dial+) (* 2 +dial+) (* 2 +dial+)
                 (- (+ angle half)) (* 2 half) in-color*))
     (draw-lines canvas draw-gcontext*
-                (append (around x y (- angle half) +dial+) (list x y)
-                        (around x y (+ angle half) +dial+)))
+                (append (point-at-distance x y (- angle half) +dial+) (list x y)
+                        (point-at-distance x y (+ angle half) +dial+)))
     (when track
       (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
 

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(nth-cyclic nth-ink to-pixels pixels-of with-halo around draw-circle box-around overlap-p))
+(export '(nth-cyclic nth-ink to-pixels pixels-of with-halo point-at-distance
+          draw-circle box-around overlap-p))
 
 ;;; Lines are dark and have a light halo. The line is visible on light ground, the halo on dark
 ;;; ground, and both between. So the ground does not matter.
@@ -52,7 +53,7 @@ wide, with DASHES."
   "Return POINTS, a list of coordinates in metres, in pixels."
   (mapcar #'to-pixels points))
 
-(defun around (x y angle radius)
+(defun point-at-distance (x y angle radius)
   "Return the point (x y) at the distance RADIUS from X, Y in direction ANGLE."
   (list (+ x (* radius (cosine angle))) (+ y (* radius (sine angle)))))
 
@@ -144,7 +145,7 @@ wide, with DASHES."
 (defun wall-color (shade hue)
   "Return the shade SHADE of grey*, tinted with HUE, a colour or NIL."
   (let ((grey (svref grey* shade)))
-    (if hue (tinted grey hue +tint-strength+) grey)))
+    (if hue (tint-grey grey hue +tint-strength+) grey)))
 
 ;;; Looks.
 

@@ -138,12 +138,12 @@ earlier ROBOTS on the same spot."
   (+ (robot-radius) (* +between-rings+ (1- (count-on-spot image robots)))))
 
 (defun draw-arrowhead (canvas x y radius angle fill-p)
-  (let ((tip (around x y angle radius)))
+  (let ((tip (point-at-distance x y angle radius)))
     (draw-lines canvas draw-gcontext*
                 (append tip
-                        (around x y (+ angle 2.5d0) radius)
-                        (around x y angle (* -0.25d0 radius))
-                        (around x y (- angle 2.5d0) radius)
+                        (point-at-distance x y (+ angle 2.5d0) radius)
+                        (point-at-distance x y angle (* -0.25d0 radius))
+                        (point-at-distance x y (- angle 2.5d0) radius)
                         (and (not fill-p) tip))
                 :fill-p fill-p)))
 
@@ -158,7 +158,8 @@ ring of RADIUS."
         for camera in (robot-image-cameras image)
         for angle = (+ (robot-image-angle image) (camera-image-angle camera))
         unless (camera-image-location camera)
-          collect (append (around x y angle (+ radius 1)) (around x y angle (* 8/5 radius)))))
+          collect (append (point-at-distance x y angle (+ radius 1))
+                          (point-at-distance x y angle (* 8/5 radius)))))
 
 (defun draw-ring (canvas x y radius angle position)
   "Draw the ring and the arrowhead, in direction ANGLE, of the robot at POSITION among its world's."
@@ -252,9 +253,9 @@ parameter of MAP."
 
 (defun believed-place (robot designator)
   "Return the point (x y), in metres, where ROBOT believes DESIGNATOR to be, seen from where it is."
-  (around (robot-image-x robot) (robot-image-y robot)
-          (+ (robot-image-angle robot) (designator-image-angle designator))
-          (designator-image-distance designator)))
+  (point-at-distance (robot-image-x robot) (robot-image-y robot)
+                     (+ (robot-image-angle robot) (designator-image-angle designator))
+                     (designator-image-distance designator)))
 
 (defun track-radius () (max 4 (* 1/2 graphics-scale*)))
 
@@ -322,4 +323,5 @@ heading."
     (with-halo ((layer-ink :odometer) :dashes (layer-dashes :odometer))
       (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
-        (draw-segments canvas draw-gcontext* (pixels-of (list* x y (around x y angle 3))))))))
+        (draw-segments canvas draw-gcontext*
+                       (pixels-of (list* x y (point-at-distance x y angle 3))))))))

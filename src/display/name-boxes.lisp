@@ -40,7 +40,7 @@
     (mapc (lambda (box item) (enter-box box item index)) boxes items)
     index))
 
-(defun find-overlapping (box index &optional (test (constantly t)))
+(defun find-overlapping-item (box index &optional (test (constantly t)))
   "Return an item of INDEX whose box overlaps BOX and for which TEST is true, or NIL."
   (flet ((among (entries)
            (loop for (other . item) in entries
@@ -48,9 +48,9 @@
     (or (among (box-index-large index))
         (some-square (lambda (square) (among (gethash square (box-index-squares index)))) box))))
 
-(defun all-overlapping (box index)
+(defun overlapping-items (box index)
   (let ((items '()))
-    (find-overlapping box index (lambda (item) (pushnew item items) nil))
+    (find-overlapping-item box index (lambda (item) (pushnew item items) nil))
     items))
 
 ;;; Names.
@@ -95,7 +95,7 @@ best first."
   "Return boxes as NAME-BOXES does. If a box of the index MARKS lies there, such as the ring of a
 track, add boxes beside such a ring. Without a ring, a name so far away would be ambiguous."
   (append (name-boxes x y half width)
-          (and (find-overlapping (box-around x y half) marks)
+          (and (find-overlapping-item (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
 
 (defun within-shown-p (snapshot box)
@@ -144,7 +144,7 @@ that SNAPSHOT shows, meet none of the index TAKEN, and for which OWN-P is true; 
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)
-                        (not (find-overlapping box taken))
+                        (not (find-overlapping-item box taken))
                         (funcall own-p box)
                         (box-cost snapshot layers box anywhere-p))
         when (and cost (or (null least) (< cost least)))

@@ -124,7 +124,7 @@ around each other, share their names."
     (destructuring-bind (left top right bottom) box
       (confusable-spots
        spot
-       (all-overlapping (list (- left off) (- top off) (+ right off) (+ bottom off)) spots)
+       (overlapping-items (list (- left off) (- top off) (+ right off) (+ bottom off)) spots)
        reach))))
 
 (defun beside-robot-p (spot rivals)
@@ -151,15 +151,15 @@ around each other, share their names."
         append (loop for turn below 16
                      for angle = (* turn (/ pi 8))
                      collect (destructuring-bind (x y)
-                                 (around (spot-x spot) (spot-y spot) angle
-                                         (+ length (spot-half spot)))
+                                 (point-at-distance (spot-x spot) (spot-y spot) angle
+                                                    (+ length (spot-half spot)))
                                (box-at-end x y angle width)))))
 
 (defun leader-ends (spot box)
   "Return the ends of the line from SPOT to BOX, as a list x y x y."
   (let ((x (spot-x spot)) (y (spot-y spot)))
     (multiple-value-bind (to-x to-y) (nearest-in box x y)
-      (append (around x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
+      (append (point-at-distance x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
               (list to-x to-y)))))
 
 (defun robots-to-avoid (spot rivals)
@@ -175,8 +175,8 @@ thing inside a ring may cross that ring."
 SPOT is a thing, boxes that meet SPOT do not count."
   (let ((own (spot-box spot)))
     (and (not (overlap-p at own))
-         (find-overlapping at taken (lambda (other)
-                                      (or (spot-robot spot) (not (overlap-p other own))))))))
+         (find-overlapping-item at taken (lambda (other)
+                                           (or (spot-robot spot) (not (overlap-p other own))))))))
 
 (defun leader-clear-p (spot box taken rivals)
   "True if the line from SPOT to BOX crosses no ring of a robot of RIVALS and no box of the index
@@ -244,7 +244,7 @@ NIL."
 
 (defun on-other-spot-p (spot spots)
   "True if SPOT lies on or right beside another of SPOTS."
-  (and (find-overlapping (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
+  (and (find-overlapping-item (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
 
 (defun name-box (snapshot layers spot width taken marks spots robots)
   "Return the box for the name of SPOT, WIDTH pixels wide, or NIL; and whether it needs a line.

@@ -188,7 +188,7 @@
 
 ;;; Where.
 
-(defun gather (canvas function)
+(defun collect-output (canvas function)
   "Call FUNCTION; return what it wrote, and the box of that, as two values."
   (let ((stream (svg-stream canvas)) (reach (svg-reach canvas)))
     (setf (svg-reach canvas) (list 1d9 1d9 -1d9 -1d9))
@@ -200,7 +200,7 @@
       (setf (svg-stream canvas) stream (svg-reach canvas) reach))))
 
 (defmethod call-with-clipping (function (canvas svg-canvas) x y width height)
-  (multiple-value-bind (text reach) (gather canvas function)
+  (multiple-value-bind (text reach) (collect-output canvas function)
     (destructuring-bind (left top right bottom) reach
       (note-reach canvas (max x left) (max y top)
                   (min (+ x width) right) (min (+ y height) bottom))
@@ -213,7 +213,7 @@
 ")))))
 
 (defmethod call-with-origin (function (canvas svg-canvas) x y)
-  (multiple-value-bind (text reach) (gather canvas function)
+  (multiple-value-bind (text reach) (collect-output canvas function)
     (destructuring-bind (left top right bottom) reach
       (note-reach canvas (+ x left) (+ y top) (+ x right) (+ y bottom)))
     (write-svg canvas "<g transform=\"translate(" x "," y ")\">

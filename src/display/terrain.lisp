@@ -134,7 +134,7 @@ narrow."
   (with-color (wall-look-color look)
     (draw-rectangles canvas draw-gcontext* rectangles t))
   (when tile
-    (with-color (mix (wall-look-color look) white* 6/10)
+    (with-color (mix-colors (wall-look-color look) white* 6/10)
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)

@@ -111,7 +111,7 @@ in the last line, if there is room for that. ROWS may be NIL for any number."
 
 (defconstant +margin-columns+ 5 "How many characters stand left of a text map.")
 
-(defun unpainted (text ink)
+(defun ignore-ink (text ink)
   (declare (ignore ink))
   text)
 
@@ -177,7 +177,7 @@ floor."
           for view = (view-of snapshot region (- columns +margin-columns+)
                               (and rows (max 1 (- rows 1 lines))))
           for sheet = (sheet-of image view layers letters colored-p)
-          for head = (fill-lines (head-items sheet #'unpainted) columns)
+          for head = (fill-lines (head-items sheet #'ignore-ink) columns)
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))
             return sheet)))
 
@@ -220,7 +220,7 @@ Signals WRONG-ARGUMENT."
                   (format nil "a list of some of ~{~(~S~)~^, ~}" (text-layers)))
   (let ((sheet (fitting-sheet robot (if radius (region-near robot radius) region)
                               columns rows layers (and paint t)))
-        (paint (or paint #'unpainted)))
+        (paint (or paint #'ignore-ink)))
     (with-output-to-string (stream)
       (if only-legend
           (write-items (whole-legend sheet columns paint) stream)

@@ -15,7 +15,7 @@
 (defconstant +ray-spacing+ 0.01d0
   "The angle between rays that find what is in a field of view, in radians.")
 
-(defun cells-seen (map opaque-p x y angle)
+(defun visible-cells (map opaque-p x y angle)
   "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."
   (let ((indices '()))
     (walk-grid (lambda (index at column)
@@ -33,9 +33,9 @@
          (opaque-p (opaque-cells (view-snapshot view))))
     (remove-duplicates
      (loop for ray to count
-           append (loop for index in (cells-seen (view-map view) opaque-p
-                                                 (robot-image-x robot) (robot-image-y robot)
-                                                 (+ first (* ray (/ width count))))
+           append (loop for index in (visible-cells (view-map view) opaque-p
+                                                    (robot-image-x robot) (robot-image-y robot)
+                                                    (+ first (* ray (/ width count))))
                         when (block-of-index view index) collect it)))))
 
 (defun cone-marks (view robot)

@@ -63,8 +63,9 @@ very short way, and none that overlaps OTHERS."
            (let ((reach (+ more (* 1/2 +arrow-length+))))
              (with-gcontext (draw-gcontext* :foreground color)
                (draw-lines canvas draw-gcontext*
-                           (append (around x y angle reach) (around x y (+ angle 2.4d0) reach)
-                                   (around x y (- angle 2.4d0) reach))
+                           (append (point-at-distance x y angle reach)
+                                   (point-at-distance x y (+ angle 2.4d0) reach)
+                                   (point-at-distance x y (- angle 2.4d0) reach))
                            :fill-p t)))))
     (let ((ink (if in-color* color black*)) (larger (if hollow-p 2 0)))
       (head white* (+ larger 3/2))

@@ -20,7 +20,7 @@ undone at its end and do not affect other simulations.")
   "True if SIMULATION is a fork of another."
   (timeline-fork-p (simulation-timeline simulation)))
 
-(defun environment-here (simulation)
+(defun environment-in-this-thread (simulation)
   "Return a list (symbol . value) of the variables of SIMULATION as this thread sees them."
   (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
                       #'symbol-value
@@ -68,7 +68,7 @@ A headless simulation around it may have bound them."
 
 (defun note-environment (simulation)
   "Store the current values of its variables in SIMULATION, in which this thread works."
-  (setf (simulation-environment simulation) (environment-here simulation))
+  (setf (simulation-environment simulation) (environment-in-this-thread simulation))
   (publish-variables simulation))
 
 (defun environment-of (simulation)
@@ -77,7 +77,8 @@ the dice that SIMULATION was loaded with, if any."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
            (simulation-environment simulation))
-      (let ((environment (environment-here simulation)) (dice (simulation-dice simulation)))
+      (let ((environment (environment-in-this-thread simulation))
+            (dice (simulation-dice simulation)))
         (if (and dice (not (assoc *lisps-dice* environment)))
             (acons *lisps-dice* dice environment)
             environment))))

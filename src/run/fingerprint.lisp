@@ -48,7 +48,7 @@
   (let ((journal (simulation-journal simulation)))
     (and journal (journal-newest-first journal))))
 
-(defun asked-for (operator position simulation)
+(defun journalled-arguments (operator position simulation)
   "Return the arguments at POSITION of the entries for OPERATOR in the journal of SIMULATION."
   (remove-duplicates
    (loop for entry in (entries-so-far simulation)
@@ -69,7 +69,7 @@
                                         (lambda (attachment)
                                           (kicker-name (attachment-kicker attachment)))
                                         #'thing-kickers)
-                       (asked-for 'set-kicker 1 simulation)))
+                       (journalled-arguments 'set-kicker 1 simulation)))
       (:place-type (loop for type in (elements-in-use (map-places map) (map-place-types map))
                          collect (if (place-type-p type) (place-type-name type) type)))
       (:attribute (names-on-things simulation #'first #'thing-attributes))
@@ -87,7 +87,7 @@
                 append (loop for name in (names-in-use kind simulation)
                              for entry = (lookup-entry name registry)
                              when entry collect (definition-of kind entry)))
-          (loop for name in (asked-for 'manipulate 0 simulation)
+          (loop for name in (journalled-arguments 'manipulate 0 simulation)
                 collect (list :manipulation (name-string name)))))
 
 ;;; The files that contain them.

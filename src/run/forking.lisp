@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(call-with-fork *fork-asker* refuse-fork counterpart-here))
+(export '(call-with-fork *fork-asker* refuse-fork counterpart-in-current-run))
 
 ;;; A fork is a headless run with its own world. The variables bound in the original (its robots,
 ;;; the fluents of plans) are copied as well: the fork keeps their values as its environment, which
@@ -162,7 +162,9 @@ NIL and false if no fork is to be made."
   "Return the simulation in ARGUMENTS, those of FORK-SIMULATION, and the plist of options."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
-      (values (if arguments (simulation-meant (first arguments) *fork-asker*) (current-simulation))
+      (values (if arguments
+                  (resolve-simulation (first arguments) *fork-asker*)
+                  (current-simulation))
               (rest arguments))))
 
 (defun check-fork-options (options)
@@ -248,7 +250,7 @@ successor."
 
 ;;; The copy of an object in a fork.
 
-(defgeneric counterpart-here (object)
+(defgeneric counterpart-in-current-run (object)
   (:documentation "Return the copy of OBJECT, of another run, in the current simulation, a fork of
 that run; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
   (:method (object)
@@ -256,22 +258,22 @@ that run; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
                      (one-line "a robot, a part of one, a thing, a designator, an odometer, a
 task, a fluent or a valve"))))
 
-(defmethod counterpart-here ((robot robot))
+(defmethod counterpart-in-current-run ((robot robot))
   (find (robot-name robot) (simulation-robots *simulation*) :key #'robot-name :test #'eq))
 
-(defmethod counterpart-here ((part part))
-  (let ((robot (counterpart-here (part-robot part))))
+(defmethod counterpart-in-current-run ((part part))
+  (let ((robot (counterpart-in-current-run (part-robot part))))
     (and robot (robot-part robot (type-of part) (part-index part)))))
 
-(defmethod counterpart-here ((odometer odometer))
-  (let ((robot (counterpart-here (odometer-robot odometer))))
+(defmethod counterpart-in-current-run ((odometer odometer))
+  (let ((robot (counterpart-in-current-run (odometer-robot odometer))))
     (and robot (robot-odometer robot (odometer-name odometer)))))
 
-(defmethod counterpart-here ((designator designator))
-  (let ((robot (counterpart-here (designator-robot designator))))
+(defmethod counterpart-in-current-run ((designator designator))
+  (let ((robot (counterpart-in-current-run (designator-robot designator))))
     (and robot (serial-designator robot (designator-serial designator)))))
 
-(defmethod counterpart-here ((thing thing))
+(defmethod counterpart-in-current-run ((thing thing))
   (find-thing (thing-serial thing) *world*))
 
 (addition counterpart)
@@ -283,4 +285,4 @@ destroyed there, the designator invalid, the task over. Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
                   (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")
-  (call-inside (latest fork) (lambda () (counterpart-here object))))
+  (call-inside (latest fork) (lambda () (counterpart-in-current-run object))))

@@ -141,13 +141,13 @@ LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have p
 USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they were signalled,
 shown or read. A run that was rewound stands for its successor. When a simulator starts, the errors
 of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
-  (let ((simulation (latest (simulation-meant simulation 'simulation-errors))))
+  (let ((simulation (latest (resolve-simulation simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest run)))))))
 
 ;;; The macro, and warnings about misspelt forms.
 
-(defun unquoted (form)
+(defun strip-quote (form)
   "Return FORM without a leading quote."
   (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
@@ -222,7 +222,7 @@ ERRORS; the run continues in each case:
 In each case a line on the error output says so if no ticks have passed although something was
 requested, or if a plan waits for what nothing in the run will bring about."
   (let* ((form-p (robots-form-p robots environment))
-         (robots (if form-p robots (unquoted robots)))
+         (robots (if form-p robots (strip-quote robots)))
          (variables (if form-p '() (variables-among robots))))
     (warn-of-used-values body)
     `(call-with-simulation (lambda ()
@@ -235,8 +235,8 @@ requested, or if a plan waits for what nothing in the run will bring about."
                            :errors ,errors)))
 
 (defmethod advice-on-use ((operator (eql 'with-simulation)) form)
-  (let* ((head (unquoted (second form)))
-         (names (and (consp head) (mapcar #'unquoted (ldiff head (member-if #'keywordp head))))))
+  (let* ((head (strip-quote (second form)))
+         (names (and (consp head) (mapcar #'strip-quote (ldiff head (member-if #'keywordp head))))))
     (cond ((null head) "name a robot: (with-simulation (ROBOT) ...)")
           ((symbolp head) (format nil "write (with-simulation (~(~A~)) ...)" head))
           ((rest names)

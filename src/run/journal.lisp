@@ -84,11 +84,11 @@ Signals WRONG-ARGUMENT."
 (defun arguments-to-keep (arguments)
   "Return the externalized ARGUMENTS for a journal entry: functions are copied with the values they
 close over. See RESTORED-ARGUMENTS."
-  (if (some #'functionp arguments) (memorized arguments) arguments))
+  (if (some #'functionp arguments) (memorize-arguments arguments) arguments))
 
 (defun restored-arguments (arguments simulation)
   "Return ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for SIMULATION, a repetition of that run."
-  (if (some #'functionp arguments) (recalled arguments simulation) arguments))
+  (if (some #'functionp arguments) (recall-arguments arguments simulation) arguments))
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun note (simulation operator arguments &optional request)

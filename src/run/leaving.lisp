@@ -109,7 +109,7 @@ checked for itself what was in progress. A prompt always does that, which does n
         when (and (typep request 'request) (issued-by-program-p request))
           collect (string-downcase (request-name request))))
 
-(defun text-on-leaving (world)
+(defun undone-work-text (world)
   "Return a text about what is left undone in WORLD, with a remedy; or NIL."
   (let ((undone (remove-duplicates (left-undone world) :test #'string=)))
     (when undone
@@ -117,12 +117,12 @@ checked for itself what was in progress. A prompt always does that, which does n
                    (await-idle) waits for that."
               undone (rest undone) (map-name (world-map world)) (world-tick world)))))
 
-(defun tell-of-left-undone ()
+(defun warn-of-undone-work ()
   "If there is no debugger, warn on the error output about requests left undone in resident worlds."
   (when (disabled-hook-p (debugger-hook))
     (dolist (map (all-maps))
       (let ((text (and (map-resident map)
-                       (ignore-errors (text-on-leaving (map-resident map))))))
+                       (ignore-errors (undone-work-text (map-resident map))))))
         (when text (format *error-output* "~&*WARNING* -> ~A~%" text))))))
 
-(call-when-leaving 'tell-of-left-undone)
+(call-when-leaving 'warn-of-undone-work)

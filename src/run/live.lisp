@@ -194,7 +194,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
   "Stop the live SIMULATION, which may be given as one of its robots, after its current tick.
 Commands in progress stay pending. If SIMULATION was rewound, stop its successor. Return nothing.
 See reading 89."
-  (let ((simulation (simulation-meant simulation 'stop-simulator)))
+  (let ((simulation (resolve-simulation simulation 'stop-simulator)))
     (stop-clock simulation)
     ;; Another thread may have started it again.
     (asking (simulation)

@@ -65,7 +65,7 @@
 (defun read-contents (reading loaded)
   "Read the contents of the objects LOADED from READING. Return the waiting requests."
   (let ((*numbered* (loaded-objects loaded)))
-    (loop until (all-said-p loaded) do (fill-next (next-datum reading) loaded))
+    (loop until (all-objects-complete-p loaded) do (fill-next (next-datum reading) loaded))
     (fill-tables loaded)
     (loop for datum = (next-datum reading)
           do (unless (and (tagged-p :waiting datum) (<= (length datum) 2))

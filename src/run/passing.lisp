@@ -162,7 +162,7 @@ left to do. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and
 simulator is paused after a failure: the wait would never end."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
-  (let ((simulation (simulation-meant simulation 'await-idle)))
+  (let ((simulation (resolve-simulation simulation 'await-idle)))
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))
            (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(note-doing let-fork-be-kept))
+(export '(note-doing await-postponed-fork))
 
 ;;; A run that keeps forks has a PAST: these forks, and its ACTS, everything done to the run since
 ;;; the oldest fork, in order: the entries of the journal, and requests to plans from outside. A
@@ -65,7 +65,7 @@ externalized and memorized."
 (defun change-act (simulation operator arguments)
   "Return the act for a change by OPERATOR with ARGUMENTS at the current tick and phase."
   (let ((timeline (simulation-timeline simulation)))
-    (make-act :change (simulation-tick simulation) (phase-here timeline)
+    (make-act :change (simulation-tick simulation) (phase-in-this-thread timeline)
               (timeline-moments timeline)
               (goes-on-in-forks-p) operator arguments nil)))
 
@@ -74,7 +74,7 @@ externalized and memorized."
 REQUEST. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
   (let ((past (simulation-past simulation)))
     (when past
-      (let ((arguments (memorized arguments)))
+      (let ((arguments (memorize-arguments arguments)))
         ;; Any thread may act.
         (atomic-push (if request
                          (request-act request simulation operator arguments)
@@ -87,7 +87,7 @@ REQUEST. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
   (loop for request in (timeline-inbox (simulation-timeline simulation))
         for (operator . arguments) = (request-entry request)
         collect (request-act request simulation operator
-                             (memorized (externalize arguments)))))
+                             (memorize-arguments (externalize arguments)))))
 
 ;;; Programs around the run and continuations use the same CL:RANDOM state as plans, but are not
 ;;; repeated in forks. So its state is recorded after they have changed it.
@@ -112,7 +112,7 @@ FUNCTION with ARGUMENTS repeats it. Acts that a fork repeats are not recorded. R
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.
-             (not (changing-phase-p (phase-here (simulation-timeline simulation)))))
+             (not (changing-phase-p (phase-in-this-thread (simulation-timeline simulation)))))
     (when (eq simulation *simulation*) (remember-dice simulation))
     (remember simulation function arguments))
   (values))
@@ -232,7 +232,7 @@ is busy, it is due again at the end of the next tick."
 (defconstant +looks-for-fork+ 100
   "How many times a thread that waits for a fork checks whether it was made, before it gives up.")
 
-(defun let-fork-be-kept (simulation)
+(defun await-postponed-fork (simulation)
   "If SIMULATION still has to keep a fork, because this thread was busy, wait until the next tick
 has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
@@ -273,7 +273,7 @@ world; NIL drops them all and stops keeping. Recent forks are closer together th
 them takes about a hundredth of the run's time; requests to the run are kept, too. Return nothing.
 Signals WRONG-ARGUMENT, and MISUSE if the run is over."
   (check-of-type 'keep-forks 'count count 'fork-count)
-  (let ((simulation (simulation-meant simulation 'keep-forks)))
+  (let ((simulation (resolve-simulation simulation 'keep-forks)))
     (check-not-over simulation 'keep-forks)
     (asking (simulation)
       (let ((past (simulation-past simulation))

@@ -23,7 +23,7 @@ first tick at which an act could not be repeated as it was, or NIL."
 
 (defun perform-act (act simulation)
   "Repeat ACT in SIMULATION, which is the current one."
-  (let ((operator (act-operator act)) (arguments (recalled (act-arguments act) simulation)))
+  (let ((operator (act-operator act)) (arguments (recall-arguments (act-arguments act) simulation)))
     (if (functionp operator)
         (apply operator arguments)
         (perform-operator operator arguments simulation (or (act-asker act) "the past")))))

@@ -149,12 +149,12 @@ use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the refere
         ((eq object (simulation-world *simulation*)) (make-named '(:the :world)))
         (t object)))
 
-(defun memorized (arguments)
-  "Return a copy of the list ARGUMENTS as they are now, for RECALLED."
+(defun memorize-arguments (arguments)
+  "Return a copy of the list ARGUMENTS as they are now, for RECALL-ARGUMENTS."
   (copy-values arguments #'name-object))
 
-(defun recalled (arguments simulation)
-  "Return a copy of ARGUMENTS, a value of MEMORIZED, with the objects of SIMULATION."
+(defun recall-arguments (arguments simulation)
+  "Return a copy of ARGUMENTS, a value of MEMORIZE-ARGUMENTS, with the objects of SIMULATION."
   (copy-values arguments (lambda (object)
                            (if (named-p object)
                                (internalize (named-reference object) simulation)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(call-with-replay replaying repeated-words journal-meant))
+(export '(call-with-replay replaying repeated-words resolve-journal))
 
 (addition different-definitions replay-anyway)
 (document-restarts
@@ -111,7 +111,7 @@ which is the current one."
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
-(defun journal-given (journal operator)
+(defun read-journal-if-file (journal operator)
   "Return JOURNAL, an argument of OPERATOR, or the journal in the file of that name."
   (if (journal-p journal) journal (read-journal journal operator)))
 
@@ -120,7 +120,7 @@ which is the current one."
   "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
 with the simulation after each repeated tick; BEGINNING when the entries before the first tick have
 been repeated."
-  (let* ((journal (journal-given journal 'with-replay))
+  (let* ((journal (read-journal-if-file journal 'with-replay))
          (journal (if (and until (not (eql until (journal-end journal))))
                       (truncated-journal journal until)
                       journal))
@@ -166,18 +166,18 @@ the definitions are not those of the recording, unless ANYWAY is true."
 of the recording."
   `(call-replaying (lambda () ,@body) ,anyway))
 
-(defun journal-meant (journal operator)
+(defun resolve-journal (journal operator)
   "Return the journal that JOURNAL, an argument of OPERATOR, means: a journal, the name of a file,
 or NIL for that of the current simulation up to now."
   (if journal
-      (journal-given journal operator)
+      (read-journal-if-file journal operator)
       (let ((simulation (current-simulation)))
         (asking (simulation) (journal-up-to-now simulation)))))
 
 (addition replay)
 (defun replay (journal &key until anyway)
   "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."
-  (with-replay ((journal-given journal 'replay) :until until :anyway anyway)
+  (with-replay ((read-journal-if-file journal 'replay) :until until :anyway anyway)
     (values (current-simulation) (state-digest))))
 
 (addition save-journal)

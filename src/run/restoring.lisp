@@ -204,7 +204,7 @@ NAMES."
         (setf (loaded-position loaded) 0
               (loaded-values loaded) '())))))
 
-(defun all-said-p (loaded)
+(defun all-objects-complete-p (loaded)
   "True if all objects of LOADED are complete."
   (= (loaded-next loaded) (length (loaded-objects loaded))))
 

@@ -16,7 +16,7 @@
 
 ;; The thread of a clock must not rewind other runs either: it would wait for their clocks, and
 ;; these perhaps for it.
-(defun run-paced-here (simulation)
+(defun run-paced-by-this-thread (simulation)
   "Return SIMULATION, or else the current one, if this is the thread of its clock; else NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
@@ -26,10 +26,11 @@
   (cond ((goes-on-in-forks-p)
          (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
                       look ahead instead."))
-        ((run-paced-here simulation)
+        ((run-paced-by-this-thread simulation)
          (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind ~A ~
                       at the prompt or the REPL, or from a thread of your own."
-                     (simulation-name (run-paced-here simulation)) (simulation-name simulation)))
+                     (simulation-name (run-paced-by-this-thread simulation))
+                     (simulation-name simulation)))
         ((and (owner-p simulation)
               (or (timeline-passing-p (simulation-timeline simulation))
                   (plusp (timeline-phase (simulation-timeline simulation)))))
@@ -241,7 +242,7 @@ since the last tick, to how many ticks have passed since SIMULATION began to kee
   digest is of its last state.
 Signals WRONG-ARGUMENT, with the largest possible number of ticks; MISUSE inside ticks and plans, in
 the thread of any clock, and if SIMULATION is over."
-  (let ((simulation (simulation-meant simulation 'rewind)))
+  (let ((simulation (resolve-simulation simulation 'rewind)))
     (check-argument rewind ticks (typep ticks 'unsigned-byte)
                     "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)

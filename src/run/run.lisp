@@ -159,7 +159,7 @@ each other, so all but the last can be garbage-collected."
                                        (setf (simulation-messages simulation) (residents-queue))
                                        (begin-journal simulation))))))))
 
-(defun simulation-meant (designator operator)
+(defun resolve-simulation (designator operator)
   "Return DESIGNATOR if it is a simulation, or the simulation of the robot DESIGNATOR. Signals
 WRONG-ARGUMENT by OPERATOR."
   (cond ((simulation-p designator) designator)
@@ -258,7 +258,7 @@ If a plan calls it, the mode applies from its next reaction on, mostly in the ne
 charged runs are the same on every machine. Without a clock :REAL is the same as :FREE. The journal
 records it. Signals WRONG-ARGUMENT."
   (check-thinking 'set-thinking mode)
-  (let ((simulation (simulation-meant simulation 'set-thinking)))
+  (let ((simulation (resolve-simulation simulation 'set-thinking)))
     (changing ((simulation-world simulation) set-thinking mode)
       (set-timeline-thinking (simulation-timeline simulation) mode)))
   mode)
@@ -307,7 +307,7 @@ state.
 - Plans count if PARTICIPANTS is true.
 - Functions, such as those given to SCHEDULE, count only as such, not by what they do.
 SIMULATION may be one of its robots. Signals WRONG-ARGUMENT."
-  (let ((simulation (simulation-meant simulation 'state-digest)))
+  (let ((simulation (resolve-simulation simulation 'state-digest)))
     (asking (simulation)
       (when (eq simulation *simulation*) (record-settings simulation))
       (let ((digest (make-digest)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(designator-status robot-meant))
+(export '(designator-status resolve-robot))
 
 ;;; The result is plain data: numbers, symbols, strings and lists of these. Things and places are
 ;;; strings, as they print. Property lists can get more entries in the future.
@@ -116,7 +116,7 @@ restored (reading 201)."
            :failed (last-failure robot)
            :designators (mapcar #'designator-status (live-designators robot))))))
 
-(defun robot-meant (robot operator)
+(defun resolve-robot (robot operator)
   "Return the robot that ROBOT, an argument of OPERATOR, means: a robot, the name of one, or, if it
 is NIL, the first of the current simulation."
   (if robot
@@ -140,7 +140,7 @@ of the current simulation, as a property list of plain data:
 - :FAILED, what LAST-FAILURE returns
 - :DESIGNATORS, a property list for each
 Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
-  (let ((robot (robot-meant robot 'status)))
+  (let ((robot (resolve-robot robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
 
 (defun under-way-facts (status)

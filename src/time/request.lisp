@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(request request-entry perform resource note-asked phase-number changing-phase-p
+(export '(request request-entry perform resource count-request phase-number changing-phase-p
           telling-phase-p))
 
 ;;; A request is the name of an operator and its arguments. It waits in a timeline (timeline.lisp)
@@ -45,7 +45,7 @@ a resource; these are faster, as they hold their pending event."
    (asked 0 atomic-count "how many requests for the resource were made: a program that issues a
 sequence of commands detects by it that others came between" :export)))
 
-(defun note-asked (resource)
+(defun count-request (resource)
   "Count a request for RESOURCE, if that is a RESOURCE structure."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
 

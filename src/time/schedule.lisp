@@ -162,7 +162,7 @@ tick, by the owner. A layer with background activities adds a method.")
 (defun grab-resource (resource &optional (simulation (current-simulation)))
   "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
 start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
-  (note-asked resource)
+  (count-request resource)
   (post (make-grab (list (copy-argument 'grab-resource "resource" resource))) simulation))
 
 (define-operator 'grab '(datum) #'grab-resource)

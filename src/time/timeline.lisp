@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.time)
 
-(export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-here begin-moment
-          check-not-over check-own-run check-not-secluded secluded wake-owner post post-again
+(export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-in-this-thread
+          begin-moment check-not-over check-own-run check-not-secluded with-seclusion
+          wake-owner post post-again
           take-requests asked-inside-p owner-p *repeated* untold-p notify-later
           deliver-notifications check-thinking thinking-modes-text thinking-mode-p
           timeline-thinking set-timeline-thinking give-threads thinking-charged-p thinking-budget))
@@ -18,7 +19,7 @@
 (defvar *seclusion* nil
   "A symbol that marks timelines made by secluded code, or NIL.")
 
-(defmacro secluded (&body body)
+(defmacro with-seclusion (&body body)
   "Run BODY so that it can change and command only runs that have begun in it."
   `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
 
@@ -107,7 +108,7 @@ started by SIMULATOR.")
   "True if this thread owns the world of OBJECT."
   (mine-p (timeline-custody (timeline-of object))))
 
-(defun phase-here (timeline)
+(defun phase-in-this-thread (timeline)
   "Return the number of the phase of a tick of TIMELINE in which this thread is, or 0."
   (if (owner-p timeline) (timeline-phase timeline) 0))
 
@@ -130,7 +131,7 @@ world has changed."
   "True if the continuation of a request made here to TIMELINE must not be called, because the
 requests of the continuation are repeated anyway."
   (and (eq timeline *repeated*)
-       (changing-phase-p (phase-here timeline))
+       (changing-phase-p (phase-in-this-thread timeline))
        (not (goes-on-in-forks-p))))
 
 ;;; Objects of a fork look like those of its original, and are easily confused with them.
@@ -165,7 +166,7 @@ before. Any thread may post. Return nothing. Signals MISUSE if the run is over (
     (check-own-run timeline)
     (check-not-over timeline)
     (setf (request-asker request) (note-of-asker)
-          (request-phase request) (phase-here timeline))
+          (request-phase request) (phase-in-this-thread timeline))
     (atomic-push request (timeline-inbox timeline))
     ;; The run may have ended just now, and the inbox may have been emptied for the last time.
     (when (and (timeline-over timeline) (withdraw-request request timeline))

@@ -214,7 +214,7 @@ ANYWAY accepts a run whose definitions are not the present ones, though it may h
 differently. FILE and the other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, what
 REPLAY does, and MISUSE without the program that PNG needs or if no journal is kept."
   (let* ((kind (picture-kind 'save-run-picture file))
-         (journal (journal-meant journal 'save-run-picture))
+         (journal (resolve-journal journal 'save-run-picture))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
     (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))

@@ -181,7 +181,7 @@ that lies right there, such as one released there, is inside the ring."
   (loop for distance in '(12 20 30 42 56)
         append (loop for turn below 12
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))
-                     collect (around x y angle (+ radius distance)))))
+                     collect (point-at-distance x y angle (+ radius distance)))))
 
 (defun free-place-p (place shown taken)
   "True if a number at PLACE, a point (x y), is within the box SHOWN and meets none of the boxes
@@ -213,7 +213,7 @@ and, if possible, clear of the boxes TAKEN and RATHER-NOT."
 (defun draw-spot (canvas x y radius place text)
   "Draw a ring of RADIUS around X, Y, its number TEXT at PLACE, and a line between them."
   (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
-         (edge (around x y angle radius)))
+         (edge (point-at-distance x y angle radius)))
     (with-halo (black*)
       (draw-circle canvas x y radius nil)
       (draw-segments canvas draw-gcontext* (append edge place)))

@@ -155,7 +155,7 @@ the place type that it sensed last. ANYWAY accepts a run whose definitions are n
 FILE may be new, empty, or another such table, which is replaced. Signals WRONG-ARGUMENT,
 UNKNOWN-NAME, and what REPLAY does; and MISUSE if there is no journal, or if FILE is something else
 or cannot be written, and then FILE is unchanged."
-  (let ((journal (journal-meant journal 'save-trajectory)) (robots (ensure-list robots)))
+  (let ((journal (resolve-journal journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (check-not-foreign file :trajectory "trajectory")
     (let ((text (with-output-to-string (out)

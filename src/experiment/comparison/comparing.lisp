@@ -165,7 +165,7 @@ directories AFTER and BEFORE; :UNKNOWN if they are not there."
   (let ((only (remove-if (lambda (line) (member line others :test #'string=)) lines)))
     (append (loop for line in only
                   repeat 5
-                  collect (format nil "~A: ~A" title (unbroken (cut line 88))))
+                  collect (format nil "~A: ~A" title (no-break-text (cut line 88))))
             (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
 
 (defun experiment-changes (after before)

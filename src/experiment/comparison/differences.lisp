@@ -106,11 +106,11 @@ smallest possible p does not depend on the draws."
       (make-difference measure kind 0 nil nil nil nil nil)
       (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))
              (scale (scale-of-numbers differences))
-             (numbers (mapcar (lambda (number) (scaled number scale)) differences))
+             (numbers (mapcar (lambda (number) (scale-number number scale)) differences))
              (rounding (rounding-of firsts seconds)))
         (multiple-value-bind (low high) (student-interval numbers)
           (make-difference measure kind (length firsts) (exact-mean firsts) (exact-mean seconds)
-                           (unscaled low scale) (unscaled high scale)
+                           (unscale-number low scale) (unscale-number high scale)
                            (if rounding 1d0 (p-of-mean numbers))
                            '() rounding)))))
 

@@ -36,7 +36,7 @@
       (reject-clause definition range
                      (format nil "~A; not ~A and ~A" expected (safe-text low) (safe-text high))))))
 
-(defun rounded-to (value power)
+(defun round-to-power-of-ten (value power)
   (let ((step (expt 10 power)))
     (float (* step (round (rational value) step)) 1d0)))
 
@@ -46,10 +46,10 @@
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
                  (value (exponential (+ start (* share (- (logarithm (float high 1d0)) start))))))
-            (rounded-to value (- (power-of-ten (rational value)) (1- +design-digits+)))))
+            (round-to-power-of-ten value (- (power-of-ten (rational value)) (1- +design-digits+)))))
     ((nil) (let ((width (- (rational high) (rational low))))
-             (rounded-to (+ (rational low) (* (rational share) width))
-                         (- (power-of-ten width) (1- +design-digits+)))))))
+             (round-to-power-of-ten (+ (rational low) (* (rational share) width))
+                                    (- (power-of-ten width) (1- +design-digits+)))))))
 
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists

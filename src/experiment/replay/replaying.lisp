@@ -3,7 +3,7 @@
 (in-package :ars-magna.experiment)
 
 (export '(run-again call-aside trial-words *trial-replayed* await-time row-of-trial
-          row-differences measured))
+          row-differences measure-values))
 
 ;;; Workers run trials in their own threads, without output. Here a trial runs in your thread: you
 ;;; see its output and can stop it between two ticks. It takes the same course, as variables have
@@ -195,14 +195,14 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
                                          (look-around))))))
         (values result stopped-p kept)))))
 
-(defun measured (experiment result)
+(defun measure-values (experiment result)
   "Return lists (name value) of the measures in RESULT, of EXPERIMENT."
   (loop with shared = (make-hash-table :test 'equal)
         for (name) in (experiment-measures experiment)
         for text in (result-measures result)
         collect (list name (value-in text shared))))
 
-(defun recorded (result)
+(defun recorded-series (result)
   "Return the series in RESULT: lists (tick value...)."
   (loop with shared = (make-hash-table :test 'equal)
         for (tick . texts) in (result-series result)
@@ -213,8 +213,8 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         :reason (if stopped-p "" (result-reason result))
         :ticks (result-ticks result)
         :digest (result-digest-text result)
-        :measures (measured experiment result)
-        :series (recorded result)
+        :measures (measure-values experiment result)
+        :series (recorded-series result)
         :error (if stopped-p "" (result-error result))
         :journal journal
         :differences differences))

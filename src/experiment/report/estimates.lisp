@@ -22,14 +22,14 @@
         1
         (expt 2 (- 48 (integer-length (ceiling (rational largest))))))))
 
-(defun scaled (number scale)
+(defun scale-number (number scale)
   "Return NUMBER times SCALE; 0 if that is too small for a float."
   (if (= 1 scale)
       number
       (let ((product (* (rational number) scale)))
         (if (< (abs product) #.(expt 2 -900)) 0 (double product)))))
 
-(defun unscaled (number scale)
+(defun unscale-number (number scale)
   "Return NUMBER divided by SCALE; NIL of NIL."
   (if (or (null number) (= 1 scale))
       number
@@ -113,9 +113,10 @@ Return KIND."
 
 (define-statistic :mean (numbers confidence) (:heading ", mean" :interval "Student's")
   (let* ((scale (scale-of-numbers numbers))
-         (sample (cl:map 'vector (lambda (number) (scaled number scale)) numbers)))
+         (sample (cl:map 'vector (lambda (number) (scale-number number scale)) numbers)))
     (multiple-value-bind (low high) (student-interval sample :confidence confidence)
-      (values (unscaled (mean sample) scale) (unscaled low scale) (unscaled high scale)))))
+      (values (unscale-number (mean sample) scale) (unscale-number low scale)
+              (unscale-number high scale)))))
 
 (define-statistic :median (numbers confidence) (:heading ", median" :interval "Rank")
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
@@ -181,7 +182,7 @@ Return KIND."
 
 (defun failed-p (outcome) (string= "failure" outcome))
 
-(defun look-after (trials)
+(defun interim-look-number (trials)
   "Return the number of the look after TRIALS trials of each condition, or NIL."
   (loop for look from 1
         for count = (count-at-look look)
@@ -189,7 +190,7 @@ Return KIND."
         when (= count trials) return look))
 
 (defun confidence-for (results sample)
-  (let ((look (and (results-until results) (look-after (length (sample-trials sample))))))
+  (let ((look (and (results-until results) (interim-look-number (length (sample-trials sample))))))
     (if look (confidence-at-look look) .95d0)))
 
 (defun summarize-sample (sample names kinds confidence)

@@ -56,7 +56,7 @@ a form that replays an example."
                                       (and several-p (where-text one)))
                               stream :first (format nil "  ~V@A  " width (occurrence-count one)))
                (write-wrapped (format nil "(replay-trial '~A ~A ~D)" (sample-experiment sample)
-                                      (unbroken (prin1-to-string (sample-condition sample)))
+                                      (no-break-text (prin1-to-string (sample-condition sample)))
                                       (occurrence-trial one))
                               stream :first (format nil "  ~VA  " width "")))
       (when (nthcdr +most-listed+ all)
@@ -120,7 +120,7 @@ a form that replays an example."
                  that one of them all errs is more likely~]. ~@(~{~A~^, ~}~)."
             (value-text width) (rest summaries) (length summaries)
             (loop for count in counts
-                  for look = (look-after count)
+                  for look = (interim-look-number count)
                   collect (format nil "after ~D trials intervals have a confidence of ~A %" count
                                   (if look
                                       (decimal-text (* 100 (confidence-at-look look)) 2)

@@ -16,7 +16,7 @@
 
 ;;; Lines.
 
-(defun unbroken (text)
+(defun no-break-text (text)
   "Return TEXT with no-break spaces, so that it is not wrapped unless it is longer than a line."
   (substitute #\No-break_space #\Space (coerce text '(simple-array character (*)))))
 
@@ -61,7 +61,7 @@ is true, TEXTS are not wrapped."
 
 ;;; Writing.
 
-(defun padded (text column)
+(defun pad-text (text column)
   (if (eq :end (text-column-anchor column))
       (format nil "~V@A" (text-column-width column) text)
       (format nil "~VA" (text-column-width column) text)))
@@ -72,8 +72,8 @@ is true, TEXTS are not wrapped."
                    (string-right-trim " " (format nil "~{  ~A~}"
                                                   (loop for cell in cells
                                                         for column in columns
-                                                        collect (padded (or (nth number cell) "")
-                                                                        column)))))))
+                                                        collect (pad-text (or (nth number cell) "")
+                                                                          column)))))))
 
 (defun write-block (columns stream)
   (write-cells (mapcar #'text-column-heading columns) columns stream)
@@ -96,7 +96,7 @@ with KEY."
 (defun tally-text (tally most)
   "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then others."
   (flet ((counted (text count)
-           (unbroken (format nil "~A (~D)" (cut text 60) count))))
+           (no-break-text (format nil "~A (~D)" (cut text 60) count))))
     (let ((rest (nthcdr most tally)))
       (format nil "~{~A~^, ~}"
               (append (loop for (text . count) in tally

@@ -76,7 +76,8 @@ a function; or NIL."
                           instead. ~;~*~]If trials change what ~A holds, give each its own: ~
                           (:run (let ((~:*~A ...)) ...))."
                      (find variable (condition-variables condition)
-                           :key (lambda (bound) (qualified (first bound))) :test #'string=)
+                           :key (lambda (bound) (qualified-symbol-name (first bound)))
+                           :test #'string=)
                      (without-package variable) (without-package variable)))
             (function
              (format nil "If trials replace ~A, or leave something in it for others, keep that in ~

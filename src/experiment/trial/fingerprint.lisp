@@ -92,13 +92,14 @@ way, as by a trial, or it is a closure."
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
                 (and (eq name own-name) (null values)))
-      (note-part :function (qualified name) (data-number values) reach))))
+      (note-part :function (qualified-symbol-name name) (data-number values) reach))))
 
 (defun note-weak (object symbol reach)
   "Note what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
   (when (and (weak-p object) (first-visit-p object reach))
     (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
-      (setf (gethash (list :variable (qualified symbol) number) (reach-weak-parts reach)) t))))
+      (setf (gethash (list :variable (qualified-symbol-name symbol) number)
+                     (reach-weak-parts reach)) t))))
 
 (defun visit-variable (symbol reach)
   "Visit the variable SYMBOL and its value, which is a part if it is data. NIL and an empty table
@@ -112,13 +113,15 @@ are not, since they often stand where a table or structure is filled later."
       (cond ((functionp value) (visit-function value symbol reach))
             ((no-data-p value) (note-weak value symbol reach))
             (t (let ((number (call-walking value #'visit-atom)))
-                 (when number (note-part :variable (qualified symbol) number reach))))))))
+                 (when number
+                   (note-part :variable (qualified-symbol-name symbol) number reach))))))))
 
 ;; Experiments are skipped: their factors and numbers of trials do not affect a trial.
 (defun visit-definition (entry reach)
   (let ((object (entry-object entry)))
     (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
-      (note-part (type-of object) (qualified (entry-name entry)) (or (entry-digest entry) 0) reach)
+      (note-part (type-of object) (qualified-symbol-name (entry-name entry))
+                 (or (entry-digest entry) 0) reach)
       (let ((file (source-file (entry-source entry))))
         (when file (note-file file nil reach)))
       (if (procedure-p object)
@@ -141,7 +144,7 @@ are not, since they often stand where a table or structure is filled later."
                (let ((value (slot-value element slot)))
                  (when (functionp value) (visit-function value nil reach)))))))))
 
-(defun qualified (symbol)
+(defun qualified-symbol-name (symbol)
   (format nil "~(~@[~A:~]~A~)" (and (symbol-package symbol) (package-name (symbol-package symbol)))
           (symbol-name symbol)))
 

@@ -47,7 +47,7 @@
         (t (values "failure"
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))
 
-(defun check-run-something (values)
+(defun check-ticks-passed (values)
   "Signal MISUSE if VALUES, of :run, are a plan or its name, and no tick has passed."
   (let* ((value (first values))
          (plan (and value

@@ -77,7 +77,7 @@ if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
       (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
         (signal-trouble *message-queue*)
-        (check-run-something values)
+        (check-ticks-passed values)
         (when (experiment-until experiment)
           (loop until (checked-truth :until (experiment-until experiment) condition)
                 do (run-ticks 1))
