@@ -17,9 +17,15 @@
 (defun drive-in-time (operation)
   "Drive for a tick, or for the time left to OPERATION if shorter. Return as DRIVE-TICK does."
   (let* ((robot (operation-resource operation))
-         (left (operation-left operation)))
-    (setf (operation-left operation) (lessen left (double tick-quantum*) 0d0))
-    (drive-tick robot (* left (the double-float (robot-speed-now robot))))))
+         (left (operation-left operation))
+         (quantum (double tick-quantum*)))
+    (declare (type double-float left quantum))
+    (setf (operation-left operation) (lessen left quantum 0d0))
+    ;; A computed limit is allocated, so there is one in the last tick only.
+    (cond ((< (abs left) quantum)
+           (drive-tick robot (* left (the double-float (robot-speed-now robot)))))
+          ((minusp left) (drive-tick robot (- +endless+)))
+          (t (drive-tick robot)))))
 
 (defun drive-what-is-left (operation)
   "Drive for a tick, or for the metres left to OPERATION if fewer. Return as DRIVE-TICK does."
