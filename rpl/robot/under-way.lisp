@@ -136,11 +136,11 @@ time, and is carried out first, or goes on in the background."
   "Report to plans that ACTION was interrupted, as soon as its task has reached its wait."
   (setf (action-told-p action) t)
   (notify-at-rest (action-task action)
-                (lambda ()
-                  (with-answer ((action-issue action) :interrupt)
-                    (apply-settings (plain-settings
-                                     (funcall (action-outcome action) (action-resource action)
-                                              :interrupt)))))))
+                  (lambda ()
+                    (with-answer ((action-issue action) :interrupt)
+                      (apply-settings (plain-settings
+                                       (funcall (action-outcome action) (action-resource action)
+                                                :interrupt)))))))
 
 (defun apply-answers-on (resource interface except)
   (dolist (answer (interface-answers interface))

@@ -203,13 +203,13 @@ functions (writer . initial) for slots that are as in a new object."
     (if (member way '(:share :ask))
         (make-copy-policy way #() '())
         (make-copy-policy way
-                     (coerce (loop for (index . name) in (reference-slots object)
-                                   unless (or (find name links :key #'kind-slot-name)
-                                              (shared-slot-p name object kind))
-                                     collect index)
-                             'simple-vector)
-                     (loop for slot in links
-                           collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
+                          (coerce (loop for (index . name) in (reference-slots object)
+                                        unless (or (find name links :key #'kind-slot-name)
+                                                   (shared-slot-p name object kind))
+                                          collect index)
+                                  'simple-vector)
+                          (loop for slot in links
+                                collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
 
 (defconstant +policies-cached+ 4096 "The number of policies remembered, a power of 2.")
 

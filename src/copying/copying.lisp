@@ -174,8 +174,8 @@ be incomplete until they have returned."
   (loop until (zerop (copier-fill copier))
         do (let ((fill (decf (copier-fill copier) 2)))
              (replace-references (setf (copier-holder copier) (svref (copier-work copier) fill))
-                        (svref (copier-work copier) (1+ fill))
-                        copier))))
+                                 (svref (copier-work copier) (1+ fill))
+                                 copier))))
 
 ;; A key must be complete before its hash value is known.
 (defun fill-tables (tables copier)

@@ -50,8 +50,8 @@ at most COLUMNS characters of a line and ROWS lines, NIL for any number."
           (multiple-value-bind (wide high)
               (least-block (- right left) (- bottom top) columns rows)
             (make-text-view :snapshot snapshot :left left :top top :wide wide :high high
-                       :columns (ceiling (- right left) wide)
-                       :rows (ceiling (- bottom top) high))))))))
+                            :columns (ceiling (- right left) wide)
+                            :rows (ceiling (- bottom top) high))))))))
 
 ;;; Blocks.
 

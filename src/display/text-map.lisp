@@ -58,7 +58,7 @@
   (let ((view (sheet-view sheet)))
     (append (when (< 1 (max (view-wide view) (view-high view)))
               (list (text-item (format nil "Each character is ~D x ~D cells."
-                                           (view-wide view) (view-high view)))))
+                                       (view-wide view) (view-high view)))))
             (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
 
 (defun movable-glyphs (sheet)

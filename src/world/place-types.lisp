@@ -275,7 +275,7 @@ CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cach
 (define-facts (place-type type)
   "Rank" (place-type-rank type)
   "Recognized by" (if (place-type-checker type)
-                "a checker"
-                (format nil "~R matcher~:P" (length (place-type-rules type))))
+                      "a checker"
+                      (format nil "~R matcher~:P" (length (place-type-rules type))))
   "Chance that a search finds it where it is not" (place-type-confusion type)
   "Can be designated" (if (place-type-invisible-p type) "no" "yes"))
