@@ -148,7 +148,7 @@
 (test prompt.says-what-is-a-plan-and-what-is-a-line
   (is-true (has-words-p (typed "fetch-thing") "FETCH-THING is a plan: PLAN FETCH-THING"))
   (is-true (has-words-p (typed "(fetch-thing 1)") "FETCH-THING is a plan: PLAN FETCH-THING"))
-  (is (null (search "in-package" (typed "(fetch-thing 1)"))))
+  (is (null (search "There is" (typed "(fetch-thing 1)"))) "the advice of the prompt alone")
   (is-true (has-words-p (typed "(turn 1)") "TURN is a command of this prompt"
                         "without parentheses: TURN angle"))
   (is-true (has-words-p (typed "go 3 4") "GO-TO x y drives to a place"))
