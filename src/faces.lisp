@@ -7,18 +7,12 @@
 
 (in-package :ars-magna.faces)
 
-(defparameter *addition-sentence* "An addition to the manual."
-  "What the documentation of names that the manual does not have ends with.")
-
 (defun tell-addition (symbol)
-  "Let each documentation of SYMBOL end with *ADDITION-SENTENCE*, on its own line, instead of
-the chapter that its form names."
+  "Let each documentation of SYMBOL say that it is an addition to the manual."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
-      (unless (or (null text) (search *addition-sentence* text))
-        (setf (documentation symbol kind)
-              (format nil "~A~%~A" (subseq text 0 (search " (Manual C.)" text))
-                      *addition-sentence*))))))
+      (when text
+        (setf (documentation symbol kind) (addition-text text))))))
 
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
 ;;; function can be set and is not marked as SETTABLE, a face has its own symbol for it.

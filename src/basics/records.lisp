@@ -3,7 +3,8 @@
 (in-package :ars-magna.basics)
 
 (export '(document-restarts all-restarts restart-documentation public addition settable
-          settable-p addition-p public-symbols *marking-p* define-record reader-text reader-marks))
+          settable-p addition-p addition-text public-symbols *marking-p* define-record reader-text
+          reader-marks))
 
 ;;; A mark precedes the definition of a name: PUBLIC if the name is the manual's, ADDITION if it is
 ;;; ours. The users' packages ARS and NISP collect marked names (see src/faces.lisp). Unmarked names
@@ -80,6 +81,14 @@ a run is changed by functions that the journal records."
   "True if SYMBOL is marked as an addition to the manual."
   (let ((mark (find-mark symbol)))
     (and mark (mark-addition-p mark))))
+
+(defun addition-text (text)
+  "Return TEXT, the documentation of an addition to the manual, without the chapter that its form
+names and with a last line that says that it is an addition."
+  (let ((sentence "An addition to the manual."))
+    (if (search sentence text)
+        text
+        (format nil "~A~%~A" (subseq text 0 (search " (Manual C.)" text)) sentence))))
 
 ;;; Lisp has no documentation for restarts, so it is kept here.
 

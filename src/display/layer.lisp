@@ -37,15 +37,15 @@
 
 (defun document-layers ()
   (setf (documentation '*picture-layers* 'variable)
-        (format nil "A list of the layers that pictures show besides walls, things and robots, ~
-                     unless :LAYERS is given: some of the following, by default those with a ~
-                     star.~2%~:{  ~S~:[~; *~]~@[ (~S in text maps)~] -- ~A: ~A~%~}~%~
-                     Rays and trails are recorded ~
-                     only after KEEP-HISTORY."
-                (loop for layer in *layers*
-                      collect (list (%layer-name layer) (%layer-default-p layer)
-                                    (%layer-text-name layer) (%layer-title layer)
-                                    (%layer-sentence layer))))))
+        (addition-text
+         (format nil "A list of the layers that pictures show besides walls, things and robots, ~
+                      unless :LAYERS is given: some of the following, by default those with a ~
+                      star.~2%~:{  ~S~:[~; *~]~@[ (~S in text maps)~] -- ~A: ~A~%~}~%~
+                      Rays and trails are recorded only after KEEP-HISTORY."
+                 (loop for layer in *layers*
+                       collect (list (%layer-name layer) (%layer-default-p layer)
+                                     (%layer-text-name layer) (%layer-title layer)
+                                     (%layer-sentence layer)))))))
 
 (defun add-layer (layer)
   "Add LAYER, in the place of one of the same name, or after all others. Return its name."
