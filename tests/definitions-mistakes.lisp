@@ -24,6 +24,8 @@
                ((world:defmap m (9 9) (obj box (1 1) ((:color gren)))) . "did you mean green?")
                ((world:defmap m (9 9) (obj box (1 1) ((:mood 'good)))) . "not quoted")
                ((world:defmap m (9 9) (wal (1 1) (3 1) bricks 2)) . "did you mean wall?")
+               ((world:defmap m (9 9) '(wall (1 1) (3 1) bricks 2)) . "a clause without a quote")
+               ((world:defmap m (9 9) (wall '(1 1) (3 1) bricks 2)) . "Write it without quotes")
                ((world:defmap m (9 9) . 7) . "a form that is a proper list")
                ((world:defsubstance marble)
                 . "defsubstance marble: nothing, or NIL, is where there should be a number as the ")

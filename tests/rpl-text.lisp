@@ -58,7 +58,8 @@
 (defparameter *slips*
   '(("(goign 1)" "there is no plan procedure or function goign. Did you mean going?")
     ("(going)" "going takes (place &key (speed 1)), not 0 arguments.")
-    ("(going 1 2)" "going takes (place &key (speed 1)), not a keyword without a value.")
+    ("(going 1 2)" "going takes (place &key (speed 1)), not 2 in place of a keyword.")
+    ("(going 1 :speed)" "going takes (place &key (speed 1)), not a keyword without a value.")
     ("(going 1 :sped 2)" "not :sped (did you mean :speed?).")
     ("(later 1 2)" "later takes (x), not 2 arguments.")
     ("(lisp-later)" "not 0 arguments.")

@@ -53,7 +53,7 @@ ends the present run."
 
 (defun robot-called (name)
   (or (find name (robot-names) :test #'same-name-p)
-      (reject-absent "robot" name (robot-names))))
+      (reject-absent "robot" name (robot-names) "ROBOT lists those of this world.")))
 
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))

@@ -64,7 +64,11 @@ WRONG-P is as for KEYWORD-SLIP."
     (cond ((not (<= (shape-least shape) count (shape-most shape)))
            (format nil "~D argument~:P" count))
           ((eq :none (shape-keys shape)) nil)
-          ((oddp (length rest)) "a keyword without a value")
+          ((oddp (length rest))
+           (loop for (key) on rest by #'cddr
+                 when (typep key '(or real string))
+                   return (format nil "~S in place of a keyword" key)
+                 finally (return "a keyword without a value")))
           (t (keyword-slip shape rest :wrong-p wrong-p)))))
 
 ;;;; Plan functions for commands

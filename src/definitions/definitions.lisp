@@ -5,7 +5,7 @@
 (export '(current-source *definition* definition-again make-defining reject-clause
           call-with-definition expand-definition forms-or-rejection title check-function-name
           other-definition-p in-file-p missing-name read-value clause-place current-form-digest
-          endless-p))
+          endless-p has-quote-p))
 
 ;;; A defining form is checked when it is expanded, and performed when its expansion is evaluated.
 ;;; During both, *DEFINITION* holds it, so that an error names file and line, and restarts can leave
@@ -159,11 +159,11 @@ form for it, also repeatedly: read again from its file, or with another clause."
 
 (defun reject-value (condition)
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of an author."
-  (reject-clause (definition-text *definition*)
-                 (or (missing-name condition)
-                     (append (head (defining-form *definition*)) (list +more+)))
-                 (format nil "forms that have values (~A)"
-                         (string-right-trim "." (text-of-condition condition)))))
+  (let ((name (missing-name condition)))
+    (reject-clause (definition-text *definition*)
+                   (or name (append (head (defining-form *definition*)) (list +more+)))
+                   (format nil "forms that have values~:[~;, with a quote before names~] (~A)"
+                           name (string-right-trim "." (text-of-condition condition))))))
 
 (defun call-blaming (function blame)
   "Call FUNCTION, and BLAME with each error that is not ours: a mistake in an author's form."
@@ -190,6 +190,10 @@ form for it, also repeatedly: read again from its file, or with another clause."
   "True if FORM has more conses than a written form can have, as circular lists do."
   (let ((left 10000000))
     (and (find-part (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
+
+(defun has-quote-p (form)
+  "True if a part of FORM is quoted, as a mistake where nothing is evaluated."
+  (and (find-part (lambda (part) (typep part '(cons (eql quote)))) form) t))
 
 (defun rejected-form (condition)
   "Return a form that signals CONDITION again when it is evaluated."

@@ -30,11 +30,13 @@ the form for the option"))
     (cond ((null kind)
            (let ((names (defined-names *map-clauses*)))
              (reject-clause (map-title map) clause
-                            (format nil "a clause: ~{~(~A~)~#[~; or ~:;, ~]~}~@[; did you mean ~
-                                         ~(~A~)?~]"
-                                    names
-                                    (and (typep clause '(cons symbol))
-                                         (nearest-name (first clause) names))))))
+                            (if (typep clause '(cons (eql quote)))
+                                "a clause without a quote, as it is not evaluated"
+                                (format nil "a clause: ~{~(~A~)~#[~; or ~:;, ~]~}~@[; did you mean ~
+                                             ~(~A~)?~]"
+                                        names
+                                        (and (typep clause '(cons symbol))
+                                             (nearest-name (first clause) names)))))))
           ((proper-list-p clause) kind)
           (t (reject-clause (map-title map) clause
                             "a clause without a dot before its last element")))))
@@ -43,7 +45,9 @@ the form for the option"))
   (unless (handler-case (clause-value :check map clause kind)
             (malformed-definition (condition) (error condition))
             (error () nil))
-    (reject-clause (map-title map) clause (clause-kind-usage kind))))
+    (reject-clause (map-title map) clause
+                   (format nil "~A~:[~;. Write it without quotes: it is not evaluated~]"
+                           (clause-kind-usage kind) (has-quote-p clause)))))
 
 ;;; Expansion. The parts of a map are walls, rects and circles, and recipes of things.
 

@@ -153,7 +153,11 @@ condition, its number, from 1, its name, or an unambiguous part of that. Signals
           ((= 1 (length named)) (first named))
           (t (reject-name "condition" (if (symbolp designator) designator
                                           (princ-to-string designator))
-                          (mapcar #'condition-name (or named conditions)))))))
+                          (loop for condition in conditions
+                                for number from 1
+                                when (or (null named) (member condition named))
+                                  collect (format nil "~D: ~A" number (condition-name condition)))
+                          (mapcar #'condition-name conditions))))))
 
 ;;; Trials.
 
