@@ -91,9 +91,11 @@
                              (run:run-ticks 1))))))
     (is-true (has-words-p (told 'crane (lambda (camera) (command:camera-turn camera 1))
                                 #'robot:robot-camera 0)
-                          "camera is of the crane outside" "Inside write (robot-camera crane 0)"))
+                          "camera belongs to the crane outside"
+                          "Inside WITH-SIMULATION, write (robot-camera crane 0)"))
     (is-true (has-words-p (told 'barrow (lambda (robot) (command:robot-turn robot 1)) #'identity)
-                          "robot is of the barrow outside" "Inside write barrow"))))
+                          "robot belongs to the barrow outside"
+                          "Inside WITH-SIMULATION, write barrow"))))
 
 (test schedule.says-where-the-delay-stands
   (loop for (form . words)
@@ -146,7 +148,7 @@
 (test continuations.that-are-called-at-once-are-warned-of
   (flet ((told (continuation)
            (warning-about `(lambda () (command:robot-turn rover 1 ,continuation)))))
-    (is-true (has-words-p (told '(arrived-here)) "(arrived-here) is done at once"
+    (is-true (has-words-p (told '(arrived-here)) "(arrived-here) is evaluated at once"
                           "(continuation (err &rest results) (arrived-here))"))
     (dolist (form '(#'arrived-here (rider-of) (next-one) (arrived-here 1) nil))
       (is (string= "" (told form))))))
@@ -182,7 +184,7 @@
                      (command:run-manipulation 'paint-over designator
                                                (robot:robot-hand rover 0) nil)))
                   (run:run-ticks 9)))
-              "paint-over failed: none of its methods is for"))))
+              "paint-over failed: no method fits"))))
 
 (test handlers.of-errors-are-told-to-take-no-fail
   (is-true (has-words-p (rover-writes ()

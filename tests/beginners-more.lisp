@@ -49,7 +49,7 @@
   (flet ((hurry (rover) (command:robot-turn rover 1 nil) (command:robot-go-forward rover 1 nil)))
     (let ((text (rover-writes () (hurry rover) (run:run-ticks 3) (hurry rover) (run:run-ticks 1))))
       (is (= 1 (length (lines-of text))) "~A" text)
-      (is-true (has-words-p text "robot-turn does nothing: robot-go-forward was asked for before"
+      (is-true (has-words-p text "robot-turn does nothing: robot-go-forward was issued before"
                             "(robot-turn ... (continuation (err robot angle) (robot-go-forward"
                             "(run-ticks N)")))
     (is-true (has-words-p (rover-writes ()

@@ -9,7 +9,7 @@
 (test commands.warn-of-what-is-done-where-a-continuation-is-wanted
   (flet ((told (form) (warning-about `(lambda (robot) (command:robot-turn robot 1 ,form)))))
     (dolist (form '((base:out "done") (setq done nil) (command:robot-go-forward robot 1 nil)))
-      (is-true (has-words-p (told form) "is done at once, not when the command has ended"
+      (is-true (has-words-p (told form) "is evaluated at once, not when the command has ended"
                             "(continuation (err &rest results) (")))
     (dolist (form '(nil 'later (nisp:continuation (err &rest results) (base:out "done"))
                     #'list (car (list 'list))))
@@ -71,7 +71,7 @@
                         do (let ((base:max-speed* 1/10)) (go-forward rover))
                            (run:run-ticks 2)))))
       (is (= 1 (length (lines-of text))) "~A" text)
-      (is-true (has-words-p text "robot-go-forward was asked for while max-speed* was 1/10"
+      (is-true (has-words-p text "robot-go-forward was issued while max-speed* was 1/10"
                             ":parameters '((max-speed* 1/10))")))
     (is (string= "" (rover-writes ()
                       (let ((base:max-speed* 1/10)) (go-forward rover) (run:run-ticks 2))
@@ -85,8 +85,8 @@
       (run:simulator 'rover :rate :free :display nil)
       (unwind-protect
            (progn (let ((base:max-speed* 1/10)) (command:robot-stop robot nil))
-                  (is-true (has-words-p (displayed) "robot-stop is done by the simulator"
-                                        "not 1/10, as LET has it here"
+                  (is-true (has-words-p (displayed) "robot-stop is carried out in the simulator"
+                                        "not 1/10 as in this LET"
                                         "(setf max-speed* 1/10)"))
                   (command:robot-turn robot 1 nil)
                   (is (not (search "LET" (displayed) :test #'char=))))

@@ -241,7 +241,7 @@
              (dolist (angle angles) (command:robot-turn rover angle))
              (run:run-ticks 20))))
     (is-true (has-words-p (told 1/2 1/2)
-                          "robot-turn does nothing: robot-turn was asked for before a tick"))
+                          "robot-turn does nothing: robot-turn was issued before a tick"))
     (is (string= "" (told 1/2 1/4)))
     (is (string= "" (told 1/2)))))
 

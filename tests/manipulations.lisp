@@ -198,9 +198,9 @@
                                   poke: PEN#4 by Hand 0: DONE~@
                                   *ERROR* -> poke failed~@
                                   *ERROR* -> poke failed~@
-                                  *ERROR* -> poke failed: Designator 3 is not local, as objects ~
-                                  of manipulations must be. Go there, as by robot-goto-designator, ~
-                                  and search again with the type :local~@
+                                  *ERROR* -> poke failed: Designator 3 is not local, but objects ~
+                                  of manipulations must be. Drive there, for example with ~
+                                  robot-goto-designator, and search again with the type :local~@
                                   *WARNING* -> Removing Designator 0~@
                                   *ERROR* -> poke failed~%")
                      (let ((texts (texts)))

@@ -194,7 +194,7 @@ the command that the function ISSUE gives. It must be said of the others that th
                                                    (format nil "::~A|" step) file)
                                (load-and-run file))
           if (eq :ran outcome) collect (symbol-name step)
-          else do (is-true (says-p "would go on with what it has not" outcome) "~A" step))))
+          else do (is-true (says-p "would continue with a step that does not fit it" outcome) "~A" step))))
 
 (test saved-forgery.of-steps-is-found
   "Each step that there is, in place of that of a command of each kind of resource."
@@ -225,7 +225,7 @@ the command that the function ISSUE gives. It must be said of the others that th
     (write-saved-ride file)
     (let* ((texts (saved-texts file))
            (command (position "CAMERA-TRACK\")" texts :test #'search)))
-      (is-true (says-when-forged-p "command under way makes no sense" file texts
+      (is-true (says-when-forged-p "command in progress is invalid" file texts
                                    (format nil " @~D (@" command) " @1 (@")))))
 
 (test saved-forgery.shows-nothing-before-it-is-whole

@@ -45,7 +45,7 @@
 
 (test command.of-a-users-that-fails-is-a-message
   (loop for (command says . expected) in '((probe-fail "The probe broke." :failed)
-                                           (probe-forget "neither ended nor went on" :failed)
+                                           (probe-forget "neither ended nor continued" :failed)
                                            (probe-misreport "invalid number of arguments" nil))
         do (with-diver (:journal t)
              (let ((answers '()) (viewed nil))

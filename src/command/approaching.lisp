@@ -11,7 +11,7 @@
 (define-constant +aim+ 1d-6
   :documentation "A robot that faces its goal to within this angle, in radians, starts to drive.")
 (defconstant +aiming-turns+ 3
-  "After so many turns towards its goal, a robot starts to drive wherever it faces.")
+  "The number of turns towards its goal after which a robot drives, whatever its heading.")
 
 (defun angle-to-goal (robot designator)
   "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
@@ -21,26 +21,28 @@
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
 (defun ready-p (operation robot designator)
-  "True if ROBOT, which faces DESIGNATOR roughly, has aimed at it well or often enough to drive."
+  "Count a turn of ROBOT towards DESIGNATOR. True if ROBOT faces DESIGNATOR exactly enough to drive,
+or has turned often enough."
   (when (or (>= (incf (operation-count operation)) +aiming-turns+)
             (<= (abs (angle-to-goal robot designator)) +aim+))
     (setf (operation-count operation) +aiming-turns+)))
 
 (defun drive-to-goal (robot designator)
-  "Drive ROBOT for a tick, at most to where DESIGNATOR was last seen. Return whether it has arrived,
-and what blocked it."
+  "Drive ROBOT for a tick, at most to where DESIGNATOR was last seen. Return whether the robot has
+arrived, and the obstacle that blocked it: :WALL, :THING or NIL."
   (let* ((distance (distance-to robot (designator-x designator) (designator-y designator)))
          (block (drive-tick robot distance)))
     (values (at-designator-p robot designator (<= distance (longest-step robot)) block)
             block)))
 
 (defun at-designator-p (robot designator &optional last-step block)
-  "True if ROBOT has arrived at what DESIGNATOR denotes or, if false, seems to; see REACHED-P."
+  "True if ROBOT has arrived at the position of DESIGNATOR; see DESIGNATOR-POSITION and REACHED-P."
   (multiple-value-bind (x y) (designator-position designator)
     (reached-p robot x y last-step block)))
 
 (defun arrive (operation camera designator)
-  "End OPERATION at DESIGNATOR, tracked by CAMERA, and the track (readings 108 and 110)."
+  "End OPERATION, whose robot has arrived at DESIGNATOR, and end the track of CAMERA (readings 108
+and 110)."
   (cond ((designator-denotation designator)
          (succeed operation camera designator)
          (end-on-arrival camera))
@@ -48,7 +50,8 @@ and what blocked it."
            (fail-with operation :not-tracking camera designator))))
 
 (defun approach-step (operation robot camera designator)
-  "Take ROBOT a tick nearer to DESIGNATOR, or end OPERATION if that is over (reading 111)."
+  "Move ROBOT towards DESIGNATOR for a tick, or end OPERATION if the approach is over (reading
+111)."
   (cond ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))
@@ -83,8 +86,8 @@ and what blocked it."
               (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report (camera designator) (format nil "Robot is at ~A" designator)))
-    "Drive ROBOT next to what CAMERA tracks, so that it is local. That ends the track, and the
-designator if no other camera tracks it."
+    "Drive ROBOT next to what CAMERA tracks. On arrival the track ends. The designator becomes
+invalid unless another camera tracks it."
   (let ((designator (and (eq (camera-robot camera) robot) (camera-tracks camera))))
     (cond ((null designator) (fail-with operation :not-tracking camera))
           ((eq (designator-type designator) :local)

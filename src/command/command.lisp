@@ -18,15 +18,16 @@
   (keyword nil keyword "the keyword that the continuation gets" :addition)
   (text "" (or string function)
         "the text of the message, a string or a function of the operation" :addition)
-  (explanation '() list "strings: what the code means, and what to try; () if elsewhere"))
+  (explanation '() list "strings that say what the code means and what to try; () if *MEANINGS* has
+them"))
 
 (addition command-p)
 (define-record command
   "A command as defined: its name, its arguments and results, and how it can fail."
   (name nil symbol "the symbol of the function that issues the command" :addition)
-  (prompt-name "" string "what the command is called at the prompt, in upper case" :addition)
+  (prompt-name "" string "the name of the command at the prompt, in upper case" :addition)
   (prefix "" string "the word that the command's messages begin with" :addition)
-  (origin "" string "what messages call the command's continuations")
+  (origin "" string "the name for the command's continuations in messages")
   (family nil symbol ":MOVING, :LOOKING, :HANDLING, :MANIPULATING or :THINKING" :addition)
   (section nil (or null string)
            "the section of the manual that describes the command, or NIL" :addition)
@@ -34,21 +35,22 @@
   (resource nil parameter-spec
             "the specification of the command's first argument, its resource" :addition)
   (occupies nil (or null symbol)
-            "a function of the resource that returns what is occupied instead of it, or NIL")
+            "a function of the resource that returns what the command occupies instead, or NIL")
   (parameters '() list
-              "the specifications of its arguments but resource and continuation" :addition)
-  (results '() list "the specifications of what its continuation gets besides" :addition)
+              "the specifications of the command's arguments, without resource and
+continuation" :addition)
+  (results '() list "the specifications of the further arguments of the continuation" :addition)
   (errors '() list "the command's own error codes; any can also end with :INTERRUPT" :addition)
   (expected '() list
-            "those of its error codes, keywords, that are no failure" :export)
-  (traits '() list "what it does, keywords of *COMMAND-TRAITS*")
+            "the error codes of the command, keywords, that do not count as failures" :export)
+  (traits '() list "the traits of the command, keywords of *COMMAND-TRAITS*")
   (echo '() list
-        "the names of the results that are also passed after an interruption")
+        "the names of the results that the continuation also gets after an interruption")
   (delay nil function)
   (instant-p nil boolean "the command has no delay: it is done in the tick after it was issued, even
-if another one follows it" :export)
+if another command follows" :export)
   (report nil (or null function))
-  (guarded-p nil boolean "a user has defined it: errors in it become messages")
+  (guarded-p nil boolean "a user has defined the command: errors in its code become messages")
   (body nil function))
 
 (defmethod reference ((command command))
@@ -69,14 +71,14 @@ if another one follows it" :export)
 
 ;; For other definitions in the same file, when that is compiled and the command does not exist.
 (defun command-shape (name)
-  "Return a list of the resource (variable type), the parameters (variable type text) and the
-sentence of the command NAME, as in its definition. Signals UNKNOWN-NAME."
+  "Return a list of three parts of the definition of the command NAME: its resource (variable type),
+a list of its parameters (variable type text), and its sentence. Signals UNKNOWN-NAME."
   (or (get name 'command-shape)
       (find-command name)))
 
 (declaim (inline command-of))
 (defun command-of (symbol)
-  "Return the command that the function called SYMBOL issues."
+  "Return the command that the function named SYMBOL issues."
   (get symbol 'command))
 
 (defun register-command (command)
@@ -97,20 +99,22 @@ sentence of the command NAME, as in its definition. Signals UNKNOWN-NAME."
 ;;; CALL-GUARDED calls.
 
 (defun note-step (step fits-p)
-  "Make the function STEP a step of all operations for which the function FITS-P is true; :GUARDED
-means those of users' commands."
+  "Make the function STEP a step of all operations for which the predicate FITS-P is true. If FITS-P
+is :GUARDED, make STEP a step of all users' commands."
   (setf (get step 'step) fits-p)
   step)
 
 (defmacro define-step (name (operation needs) documentation &body body)
-  "Define the function NAME, a step of OPERATION, which runs BODY. It relies on NEEDS, a form such
-as (robot-p (operation-resource operation)). An operation from a file is refused if that is false."
+  "Define the function NAME, a step of OPERATION, which runs BODY. The step relies on the form
+NEEDS, such as (robot-p (operation-resource operation)). An operation that was read from a file is
+refused if NEEDS is false."
   `(progn
      (note-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun use-step (step)
-  "Return STEP, an argument of GO-ON. Signals an error if our own code has no DEFINE-STEP for it."
+  "Return STEP, an argument of GO-ON. Signals an error if code of the simulator passes a STEP that
+DEFINE-STEP has not defined."
   (cond ((get step 'step) step)
         (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (note-step step :guarded))))
@@ -119,7 +123,8 @@ as (robot-p (operation-resource operation)). An operation from a file is refused
   (and (get name 'step) (fboundp name) t))
 
 (defun using-step (form)
-  "Return FORM, a call with a step as its second argument, in which USE-STEP checks a quoted step."
+  "Return FORM, a call with a step as its second argument. If the step is quoted, let USE-STEP check
+it."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (use-step ,step)) ,@more)
@@ -144,7 +149,7 @@ as (robot-p (operation-resource operation)). An operation from a file is refused
   "What it does" (command-documentation command)
   "Given to" (specification-text (command-resource command))
   "Arguments" (specifications-text (command-parameters command))
-  "Its continuation gets, after an error code or NIL"
+  "Results for its continuation, after an error code or NIL"
   (specifications-text (cons (command-resource command) (command-results command)))
   "Error codes" (format nil "~{~S~^, ~}" (append (mapcar #'error-code-keyword
                                                          (command-errors command))

@@ -9,8 +9,8 @@
     (concatenate 'string replacement (subseq string (length prefix)))))
 
 (defun default-prompt-name (name)
-  "Return what the prompt calls the command NAME: without robot-, cam- for camera-, bin- for
-storage-bin- (manual E; the rule is inferred; reading 194)."
+  "Return the prompt's name for the command NAME: ROBOT- is left out, CAMERA- becomes CAM-, and
+STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
   (let ((name (symbol-name name)))
     (or (replace-start "ROBOT-" "" name)
         (replace-start "CAMERA-" "CAM-" name)
@@ -52,8 +52,8 @@ storage-bin- (manual E; the rule is inferred; reading 194)."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
 (defun doubt-uncallable (name forms)
-  "Warn of FORMS, arguments in a call of the command NAME, that cannot be called, such as data
-without a quote, or (90 deg)."
+  "Warn of each form in FORMS, the arguments in a call of the command NAME, that is no valid call,
+such as an unquoted list of data, or (90 deg)."
   (dolist (form forms)
     (typecase form
       ((cons (or keyword (cons (not (eql lambda)))))
@@ -66,13 +66,15 @@ without a quote, or (90 deg)."
                          name (abridged form))))))
 
 (defun doubt-count (name parameters forms)
-  "Warn if the number of FORMS, the arguments in a call of NAME, does not fit PARAMETERS."
+  "Warn if FORMS, the arguments in a call of the command NAME, are too few or too many for
+PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
     (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
                       name parameters (length forms))))
 
 (defun returns-nothing-p (form)
-  "True if FORM is known for its effect, such as output, and returns nothing that can be called."
+  "True if FORM calls an operator that is used for its effect, such as output, and returns no
+function."
   (typecase form
     ((cons (member setf setq)) (constantp (first (last form))))
     ((cons symbol) (or (member (first form) '(out terpri fresh-line format error-set warning-set
@@ -80,8 +82,9 @@ without a quote, or (90 deg)."
                        (get (first form) 'command-shape)))))
 
 (defun called-early-p (form count)
-  "True if FORM calls, without arguments, a user's function that could itself be the continuation,
-with COUNT arguments, and that is not known to return one."
+  "True if FORM calls a user's function without arguments, although the function takes COUNT
+arguments and could itself be the continuation. False if the function is known to return a
+function."
   (and (typep form '(cons symbol null))
        (users-symbol-p (first form))
        (fboundp (first form))
@@ -91,11 +94,12 @@ with COUNT arguments, and that is not known to return one."
                                                               (first form)))))))))
 
 (defun doubt-result (name form count)
-  "Warn if FORM, the continuation in a call of NAME, is evaluated at once instead of at the end."
+  "Warn if FORM, the continuation in a call of the command NAME, runs at once instead of when the
+command ends."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
-      (doubt-definition "~(~A~): ~S is done at once, not when the command has ended, and returns ~
-                         no continuation. Write (continuation (err &rest results) ~:*~S)."
+      (doubt-definition "~(~A~): ~S is evaluated at once, not when the command has ended, and ~
+                         returns no continuation. Write (continuation (err &rest results) ~:*~S)."
                         name (abridged form)))))
 
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
@@ -109,10 +113,10 @@ with COUNT arguments, and that is not known to return one."
     (check (and (proper-list-p resource) (= 2 (length resource))) resource "(variable type)")
     (dolist (parameter parameters)
       (check (and (proper-list-p parameter) (<= 2 (length parameter) 3)) parameter
-             "(variable type \"what it is\")"))
+             "(variable type \"description\")"))
     (dolist (result results)
       (check (and (proper-list-p result) (= 2 (length result)) (stringp (second result))) result
-             "(name \"what it is\")"))
+             "(name \"description\")"))
     (loop with keys = '(:family :section :delay :errors :expected :report :echo :prompt :prefix
                         :occupies :traits)
           for option in options
@@ -122,7 +126,7 @@ with COUNT arguments, and that is not known to return one."
       (check (member trait *command-traits*) trait
              (format nil "traits of ~{~(~S~)~^, ~}" *command-traits*)))
     (dolist (code (option :expected options))
-      (check (assoc code (option :errors options)) code "expected codes of those in (:errors ...)"))
+      (check (assoc code (option :errors options)) code "an error code that (:errors ...) lists"))
     (let ((family (assoc :family options)))
       (check (and family (member (second family) *command-families*)) (or family options)
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
@@ -131,35 +135,36 @@ with COUNT arguments, and that is not known to return one."
   (dolist (type types)
     (unless (find-argument-type type nil)
       (reject-clause (title "define-command" name) type
-                     "an argument type, as DEFINE-ARGUMENT-TYPE defines"))))
+                     "the name of an argument type that DEFINE-ARGUMENT-TYPE has defined"))))
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
                           (&rest options) sentence &body body)
   "Define the function NAME, which issues a command, and all data about that command.
 
-OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS
-(variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS (name text). OPTIONS:
-  (:family keyword) (:section string)  where it belongs; the section is the manual's, if any
+OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each of PARAMETERS is
+(variable type text) with a type of DEFINE-ARGUMENT-TYPE, each of RESULTS is (name text). OPTIONS:
+  (:family keyword) (:section string)  the command's family, and its section in the manual, if any
   (:delay form)                        ticks until BODY runs, evaluated when the command begins;
-                                       without it the command is done in the next tick
-  (:errors (keyword text [meaning remedy])...)  its error codes; TEXT, a form, gives a string or a
-                                       function of the operation, for the error message; strings
-                                       say what a new code means and what to try
-  (:expected keyword...)               those of its error codes that are no failure: plans need not
-                                       check them
-  (:report lambda-list form)           the message of success, from the results; the resource is
-                                       (operation-resource OPERATION) there
-  (:echo name...)                      those of RESULTS that the continuation gets after an
-                                       interruption, too: parameters of the same names, or else
-                                       the operation's subject, once it has begun
-  (:prompt name) (:prefix string)      if not by the rule of DEFAULT-PROMPT-NAME
+                                       without :delay, BODY runs in the next tick
+  (:errors (keyword text [meaning remedy])...)  the command's error codes; the form TEXT returns the
+                                       error message, a string or a function of the operation;
+                                       strings say what a new code means and what to try
+  (:expected keyword...)               the error codes that do not count as failures, so that plans
+                                       need not check them
+  (:report lambda-list form)           a form for the message of success, with the results as
+                                       arguments; (operation-resource OPERATION) is the resource
+  (:echo name...)                      the RESULTS that the continuation also gets after an
+                                       interruption: the parameters of the same names, or else
+                                       the operation's subject, once BODY has begun
+  (:prompt name) (:prefix string)      the name at the prompt, by default DEFAULT-PROMPT-NAME, and
+                                       the beginning of messages, by default the command's name
   (:occupies function)                 the name of a function of the resource that returns what the
-                                       command occupies instead of it, such as the robot's mind
-  (:traits keyword...)                 for warnings and plans: it :DRIVES, so even one tick has an
-                                       effect; it :TURNS from where its resource faces; it :STOPS
-                                       what its resource does; it :ASKS, so it is useless until its
-                                       answer arrives; it :BEGINS something, and its continuation is
-                                       called again at the end of that
+                                       command occupies instead, such as the robot's mind
+  (:traits keyword...)                 properties for warnings and plans: :DRIVES if the command
+                                       moves the robot even in one tick; :TURNS if it turns its
+                                       resource by a relative angle; :STOPS if it stops its
+                                       resource; :ASKS if only its answer is useful; :BEGINS if
+                                       its continuation is called at the beginning and at the end
 BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later (reading 149)."
   (check-command-form name resource parameters results options)
   (let ((errors (option :errors options))

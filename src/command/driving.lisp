@@ -9,13 +9,14 @@
 
 (declaim (inline lessen drive-in-time drive-what-is-left drive-time-over-p))
 (defun lessen (number amount least)
-  "Return NUMBER brought nearer to 0 by AMOUNT; 0 if no more than LEAST would remain."
+  "Return NUMBER moved towards 0 by AMOUNT, or 0 if at most LEAST would remain."
   (declare (type double-float number amount least))
   (let ((rest (- (abs number) amount)))
     (if (<= rest least) 0d0 (float-sign number rest))))
 
 (defun drive-in-time (operation)
-  "Drive for a tick, or for the time left to OPERATION if shorter. Return as DRIVE-TICK does."
+  "Drive the robot of OPERATION for a tick, or for the remaining time of OPERATION if shorter.
+Return the value of DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation))
          (quantum (double tick-quantum*)))
@@ -28,7 +29,8 @@
           (t (drive-tick robot)))))
 
 (defun drive-what-is-left (operation)
-  "Drive for a tick, or for the metres left to OPERATION if fewer. Return as DRIVE-TICK does."
+  "Drive the robot of OPERATION for a tick, at most the remaining metres of OPERATION. Return the
+value of DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     ;; What rounding leaves is not driven.
@@ -36,13 +38,13 @@
     (drive-tick robot left)))
 
 (defun drive-time-over-p (operation)
-  "True if nothing is left to drive for OPERATION."
+  "True if OPERATION has no time or distance left to drive."
   (zerop (operation-left operation)))
 
 (defmacro drive-on ((block operation &optional drive) &body body)
-  "Drive the robot of OPERATION for a tick, by calling DRIVE with OPERATION if given. Run BODY with
-BLOCK bound to what blocks it, :WALL, :THING or NIL. Continue in the next tick unless BODY has ended
-OPERATION. Fails with :NOT-MOVING if the speed is 0."
+  "Drive the robot of OPERATION for a tick: call DRIVE with OPERATION or, without DRIVE, call
+DRIVE-TICK. Run BODY with BLOCK bound to the robot's obstacle, :WALL, :THING or NIL. Continue in the
+next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
      (if (standing-p robot)
@@ -52,20 +54,21 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
            (unless (operation-finished-p ,operation) (repeat-step ,operation))))))
 
 (define-step drive-a-while (operation (robot-p (operation-resource operation)))
-  "Drive for a tick, and end OPERATION when its time is over."
+  "Drive the robot for a tick, and end OPERATION when its time is over."
   (drive-on (block operation drive-in-time)
     (cond (block (fail-with operation :robot-blocked))
           ((drive-time-over-p operation) (succeed operation)))))
 
 (define-step drive-to-wall (operation (robot-p (operation-resource operation)))
-  "Drive for a tick, and end OPERATION at a wall."
+  "Drive the robot for a tick, and end OPERATION at a wall."
   (drive-on (block operation)
     (case block
       (:wall (succeed operation))
       (:thing (fail-with operation :robot-blocked)))))
 
 (define-step coast (operation (robot-p (operation-resource operation)))
-  "Drive for a tick. OPERATION succeeds after its last tick, at an obstacle, or if the speed is 0."
+  "Drive the robot for a tick. OPERATION succeeds after its last tick, at an obstacle, or if the
+speed is 0."
   (if (standing-p (operation-resource operation))
       (succeed operation)
       (drive-on (block operation drive-in-time)
@@ -80,7 +83,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
-    "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less it succeeds at once."
+    "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less, the command succeeds at once."
   (setf (operation-left operation) (double (ceiling time)))
   (cond ((plusp (operation-left operation))
          (begin-movement robot)
@@ -95,7 +98,7 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
   "a number of metres, more than 0, at most a million")
 
 (define-step drive-the-rest (operation (robot-p (operation-resource operation)))
-  "Drive for a tick, and end OPERATION when no metres are left."
+  "Drive the robot for a tick, and end OPERATION when no metres are left."
   (drive-on (block operation drive-what-is-left)
     (cond (block (fail-with operation :robot-blocked))
           ((drive-time-over-p operation) (succeed operation)))))
@@ -108,8 +111,8 @@ OPERATION. Fails with :NOT-MOVING if the speed is 0."
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
-    "Drive ROBOT straight ahead for METRES, at its speed. ROBOT-GO-FORWARD drives for a number of
-ticks."
+    "Drive ROBOT straight ahead for METRES, at its current speed. ROBOT-GO-FORWARD drives for a
+number of ticks."
   (setf (operation-left operation) (double metres))
   (begin-movement robot)
   (go-on-now operation 'drive-the-rest))
@@ -140,7 +143,7 @@ ticks."
            (setf (operation-left operation) (- (double braking*)))))))
 
 (defun driving-p (robot)
-  "True if ROBOT drove in the last tick, or in this."
+  "True if ROBOT has driven in the previous or the current tick."
   (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))
 
 ;; See reading 95.
@@ -148,8 +151,8 @@ ticks."
     ()
     ((:family :moving) (:section "3.5") (:delay 1) (:traits :stops)
      (:report () "Robot stopped"))
-    "Stop ROBOT: if that interrupts its driving, let it coast for BRAKING* ticks first. Another
-ROBOT-STOP meanwhile does not prolong that."
+    "Stop ROBOT. A driving robot coasts for BRAKING* ticks first. Another ROBOT-STOP does not
+prolong the coasting."
   (when (zerop (operation-left operation))
     (setf (operation-left operation) (double braking*)))
   (cond ((and (operation-subject operation) (driving-p robot) (plusp braking*))
@@ -166,17 +169,20 @@ ROBOT-STOP meanwhile does not prolong that."
   (mod (round (/ angle (/ pi 2))) 4))
 
 (defun neighbour-wall-p (robot quarter)
-  "True if the cell next to ROBOT's, QUARTER turns from the x axis, is a wall."
+  "True if a wall fills the cell next to ROBOT's cell in the direction QUARTER, in quarter turns
+from the x axis."
   (destructuring-bind (dx . dy) (svref #((1 . 0) (0 . 1) (-1 . 0) (0 . -1)) (mod quarter 4))
     (wall-at-p (world-map (robot-world robot)) (+ (robot-x robot) dx) (+ (robot-y robot) dy))))
 
 (defun distance-to-side (robot quarter)
-  "Return how far ROBOT is from the side of its cell that is QUARTER turns from the x axis."
+  "Return the distance of ROBOT from the side of its cell in the direction QUARTER, in quarter turns
+from the x axis."
   (let ((x (mod (robot-x robot) 1d0)) (y (mod (robot-y robot) 1d0)))
     (ecase (mod quarter 4) (0 (- 1 x)) (1 (- 1 y)) (2 x) (3 y))))
 
 (defun wall-to-follow (robot)
-  "Return the side of ROBOT where a wall is and the heading along it, in quarter turns; or NIL."
+  "Return the direction of a wall next to ROBOT and the heading along this wall, both in quarter
+turns; or NIL if there is no wall."
   (let* ((heading (axis (robot-angle robot)))
          (sides (remove-if-not (lambda (quarter) (neighbour-wall-p robot quarter))
                                (list (1+ heading) (1- heading))))
@@ -196,7 +202,8 @@ ROBOT-STOP meanwhile does not prolong that."
 (define-step follow-on (operation (and (robot-p (operation-resource operation))
                                        (typep (operation-subject operation)
                                               '(cons integer (cons integer null)))))
-  "Follow the wall of OPERATION, whose subject is its side and the heading along it, for a tick."
+  "Follow a wall for a tick. The subject of OPERATION lists the direction of the wall and the
+heading along it, in quarter turns."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (side heading) (operation-subject operation)
       (cond ((not (turn-towards robot
@@ -214,7 +221,7 @@ ROBOT-STOP meanwhile does not prolong that."
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at the end of the wall"))
     "Drive ROBOT along the nearest wall next to it until the wall ends or a corner is reached.
-Without a wall next to it, it succeeds at once."
+Without a wall next to ROBOT, the command succeeds at once."
   (begin-movement robot)
   (let ((way (multiple-value-list (wall-to-follow robot))))
     (setf (operation-subject operation) way)

@@ -10,7 +10,7 @@
                                  interrupter))
                             (:copier nil))
   "COMMAND, issued by ASKER after the tick ASKED, ended in TICK with the error CODE and the message
-TEXT. INTERRUPTER is a list (name asker) of what interrupted it, if known."
+TEXT. INTERRUPTER is a list (name asker) for the command that interrupted COMMAND, if known."
   (tick 0 :type fixnum :read-only t)
   (asked 0 :type fixnum :read-only t)
   (command nil :type symbol :read-only t)
@@ -22,8 +22,8 @@ TEXT. INTERRUPTER is a list (name asker) of what interrupted it, if known."
   (interrupter '() :type list :read-only t))
 
 (defun interruption-of (request tick)
-  "Return the record of an interruption of REQUEST in TICK, or NIL. Where requests are performed,
-the tick that begins has not been counted yet."
+  "Return the record of an interruption of REQUEST in TICK, or NIL. The interruption may have the
+number of the next tick, because a tick is counted after its requests are performed."
   (let ((interruption (resource-interruption (event-resource request))))
     (and interruption
          (<= tick (interruption-tick interruption) (1+ tick))
@@ -53,7 +53,8 @@ the tick that begins has not been counted yet."
   (and (robot-p resource) (robot-mind resource)))
 
 (defun occupant (resource)
-  "Return the request that RESOURCE, a robot or part, carries out, or NIL; a track counts last."
+  "Return the request that RESOURCE, a robot or part, carries out, or NIL. A track counts only if
+the camera carries out nothing else."
   (let ((event (resource-event resource))
         (track (and (camera-p resource) (camera-tracking resource))))
     (cond ((typep event 'request) event)
@@ -61,7 +62,7 @@ the tick that begins has not been counted yet."
           ((mind-of resource) (occupant (mind-of resource))))))
 
 (defun newest-interruption (resource)
-  "Return the last interruption on RESOURCE or, for a robot, its mind; or NIL."
+  "Return the last interruption of a command of RESOURCE or, for a robot, of its mind; or NIL."
   (first (stable-sort (loop for each in (list resource (mind-of resource))
                             when (and each (resource-interruption each)) collect it)
                       #'> :key #'interruption-tick)))
@@ -74,8 +75,9 @@ the tick that begins has not been counted yet."
 (defun under-way (resource)
   "Return the name of the command that RESOURCE, a robot or part of one, executes or is about to
 begin, and who issued it: a string such as \"the prompt\", \"the plan fetch\", \"the continuation of
-robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes CAMERA-TRACK, a robot
-that only thinks THINK. NIL if there is none. A newer command always interrupts an older one."
+robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes CAMERA-TRACK, and a robot
+that only thinks executes THINK. Return NIL if RESOURCE executes no command. A newer command always
+interrupts an older command."
   (check-resource 'under-way resource)
   (let ((occupant (occupant resource)))
     (when occupant
@@ -83,9 +85,10 @@ that only thinks THINK. NIL if there is none. A newer command always interrupts 
 
 (addition last-interruption)
 (defun last-interruption (resource)
-  "Return the last interruption on RESOURCE, a robot or part of one, by a newer request: a list
-(what asker by-what by-asker tick) of the names of both, strings that say who issued them, and the
-tick. THINK counts as a command of the robot. NIL if there was none."
+  "Return the last interruption of a command of RESOURCE, a robot or a part, as a list (what asker
+by-what by-asker tick): the names of the interrupted and the interrupting command, each with a
+string that says who issued it, and the tick. THINK counts as a command of the robot. Return NIL if
+no command was interrupted."
   (check-resource 'last-interruption resource)
   (let ((interruption (newest-interruption resource)))
     (when interruption
@@ -96,12 +99,14 @@ tick. THINK counts as a command of the robot. NIL if there was none."
             (interruption-tick interruption)))))
 
 (defun under-way-text (resource)
-  "Return a text on what RESOURCE is doing, and for whom; NIL if nothing."
+  "Return a text on the command that RESOURCE executes, and who issued it; NIL if there is no
+command."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (format nil "~(~A~), for ~A" name asker))))
 
 (defun interruption-text (resource)
-  "Return a text on the last interruption on RESOURCE; NIL if there was none."
+  "Return a text on the last interruption of a command of RESOURCE; NIL if no command was
+interrupted."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (format nil "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"
@@ -127,13 +132,13 @@ tick. THINK counts as a command of the robot. NIL if there was none."
 
 (addition last-failure)
 (defun last-failure (resource)
-  "Return the last failure or interruption of a command to RESOURCE, a robot or part of one, or to
-another part of that robot, as a property list:
-- :COMMAND, the name; :CALL, the call, a string
-- :FOR, who issued it; :ASKED, the tick after which that was
-- :TICK, the one in which it ended; :ERROR, the code; :TEXT, the message
-- :BY, what interrupted it, if known; :BY-FOR, who issued that
-NIL if none has failed. See WHY."
+  "Return the last failure or interruption of a command to RESOURCE, a robot or part, or to another
+part of the same robot, as a property list:
+- :COMMAND, the command's name; :CALL, the call, a string
+- :FOR, who issued the command; :ASKED, the tick after which it was issued
+- :TICK, the tick in which the command ended; :ERROR, the error code; :TEXT, the message
+- :BY, the name of the interrupting command, if known; :BY-FOR, who issued the interrupting command
+Return NIL if no command has failed. See WHY."
   (check-resource 'last-failure resource)
   (let ((failure (robot-failure (resource-robot resource))))
     (when failure
@@ -154,6 +159,7 @@ result, what that means and what to try."
         (remove nil
                 (list (format nil "~A, issued by ~A after tick ~D, ended at tick ~D with ~S: ~A."
                               call for asked tick error text)
-                      (and by (format nil "It was interrupted by ~(~A~), issued by ~A." by by-for))
+                      (and by (format nil "The command was interrupted by ~(~A~), issued by ~
+                                           ~A." by by-for))
                       (error-code-meaning error)
                       (error-code-remedy error))))))

@@ -15,7 +15,8 @@
   (world-dice (robot-world (part-robot part)) :handling))
 
 (defun destination-name (destination)
-  "Return the name of DESTINATION, a bin, or of the container that it denotes."
+  "Return the name of DESTINATION if it is a storage bin, or of the container that the designator
+DESTINATION denotes."
   (cond ((storage-bin-p destination) (location-name destination))
         ((designator-denotation destination) (location-name (designator-denotation destination)))
         (t (princ-to-string destination))))
@@ -27,17 +28,18 @@
 ;;; Designators.
 
 (defun own-designator-p (resource designator)
-  "True if DESIGNATOR is valid and belongs to the robot that is RESOURCE or has it as a part."
+  "True if DESIGNATOR is valid and belongs to the robot of RESOURCE, a robot or part."
   (and (designator-valid-p designator)
        (eq (designator-robot designator) (resource-robot resource))))
 
 (defun designator-thing (designator)
-  "Return the thing that DESIGNATOR denotes, or NIL if it is false or on a place."
+  "Return the thing that DESIGNATOR denotes, or NIL if DESIGNATOR is false or denotes a place."
   (let ((denotation (designator-denotation designator)))
     (and (thing-p denotation) denotation)))
 
 (defun perhaps-lose-designators (designator probability dice &key silently)
-  "Drop each designator of what DESIGNATOR denotes (or a false one itself) with PROBABILITY."
+  "Drop each designator of the thing that DESIGNATOR denotes with PROBABILITY. If DESIGNATOR denotes
+no thing, drop only DESIGNATOR, with PROBABILITY."
   (let ((thing (designator-thing designator)))
     (dolist (other (if thing
                        (designators-on (designator-robot designator) thing)
@@ -58,7 +60,8 @@
       (part-reaches-p part container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER can hold things, and SIZE more but for rounding (readings 153 and 237)."
+  "True if CONTAINER can hold things and has room for SIZE more, apart from rounding (readings 153
+and 237)."
   (and (plusp (if (storage-bin-p container)
                   (storage-bin-capacity container)
                   (thing-capacity container)))
@@ -70,7 +73,8 @@
 ;;; Grasping.
 
 (defun grasp-obstacle (hand camera designator)
-  "Return the error code of what prevents HAND from grasping, or NIL (reading 164)."
+  "Return the error code for what prevents HAND from grasping, or NIL if nothing does (reading
+164)."
   (cond ((hand-holding hand) :hand-grasping)
         ((not (and (eq (hand-robot hand) (camera-robot camera))
                    (eq (hand-location hand) (camera-location camera))))
@@ -80,7 +84,8 @@
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Make HAND grasp THING; NIL is a false sighting. Return NIL or a code (readings 151, 231)."
+  "Make HAND grasp THING, or NIL for a false sighting. Return an error code, or NIL after success
+(readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
         (t (move-thing thing hand)
@@ -110,8 +115,8 @@
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))
-    "Grasp what a local designator denotes with HAND. Hit or miss, the hand may bump it, which makes
-designators invalid silently."
+    "Grasp with HAND what a local designator denotes. Whether or not the hand misses, it may bump
+the thing, which silently makes designators of the thing invalid."
   (let ((obstacle (grasp-obstacle hand camera designator)))
     (finish operation
             (or obstacle (try-grasp hand designator (handling-dice hand)))
@@ -134,7 +139,7 @@ designators invalid silently."
 ;;; Feeling.
 
 (defun end-with-answer (operation code)
-  "End OPERATION with CODE, which is an answer and no failure."
+  "End OPERATION with the error code CODE, which is an answer and does not count as a failure."
   (queue-operation-message operation (error-text operation code))
   (setf (operation-finished-p operation) t)
   (notify operation code '()))
@@ -145,14 +150,15 @@ designators invalid silently."
     ((:family :handling) (:section "3.6") (:traits :asks)
      (:errors (:grasping (text-of "~A is holding something"))
               (:not-grasping (text-of "~A is not holding anything"))))
-    "Feel whether HAND holds something. One of the two error codes is the answer."
+    "Feel whether HAND holds something. The answer is the error code :GRASPING or :NOT-GRASPING."
   (end-with-answer operation (if (hand-holding hand) :grasping :not-grasping)))
 
 (defconstant +watch-period+ 1000
-  "How long the event of a watch waits, in ticks, before it is queued again.")
+  "The number of ticks after which the event that watches a grip is queued again.")
 
 (define-step watch-grip (operation (hand-p (operation-resource operation)))
-  "Occupy the hand of OPERATION until it no longer holds its subject (reading 162)."
+  "Occupy the hand of OPERATION until the hand no longer holds the subject of OPERATION, a thing
+(reading 162)."
   (let ((hand (operation-resource operation)))
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
@@ -166,7 +172,7 @@ designators invalid silently."
     ((:family :handling) (:section "3.6") (:delay 1)
      (:errors (:grasp-lost (text-of "~A lost its grip"))
               (:not-grasping (text-of "~A is not holding anything"))))
-    "Watch the grip of HAND until it is lost, or another command to HAND interrupts this one."
+    "Watch the grip of HAND until the hand loses it, or until another command to HAND interrupts."
   (setf (operation-subject operation) (hand-holding hand))
   (if (hand-holding hand)
       (watch-grip operation)
@@ -179,7 +185,7 @@ designators invalid silently."
          (eq 'watch-grip (operation-step operation)))))
 
 (defun check-grips (world)
-  "Check all watched grips in WORLD; end the watches of those that are lost."
+  "Check all watched grips in WORLD, and end the HAND-TRACK of each hand that has lost its grip."
   (declare #.*hot*)                     ; in each tick
   (dolist (robot (world-robots world))
     (loop for hand across (robot-hands robot)

@@ -10,7 +10,8 @@
           (destination-name destination)))
 
 (defun inserting-text (control)
-  "Return a function that makes an error's text of CONTROL, the part and the destination."
+  "Return a function of an operation that formats CONTROL, an error text, with the part and the name
+of the destination."
   (lambda (operation)
     (format nil control (operation-resource operation)
             (destination-name (first (operation-arguments operation))))))
@@ -18,13 +19,14 @@
 ;;; Hands.
 
 (defun held-inside-p (hand container)
-  "True if CONTAINER is what HAND holds, or in it."
+  "True if HAND holds CONTAINER, or something that CONTAINER is in."
   (loop for outer = container then (thing-location outer)
         while (thing-p outer)
         thereis (eq outer (hand-holding hand))))
 
 (defun try-hand-insertion (hand container)
-  "Move HAND into CONTAINER, or NIL for none. Return an error code or NIL (reading 155)."
+  "Move HAND into CONTAINER, which is NIL if the designator is false. Return an error code or NIL
+(reading 155)."
   (cond ((null container) :hand-bump)
         ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
@@ -36,7 +38,7 @@
            nil)))
 
 (defun insert-hand (operation hand destination)
-  "Insert HAND into DESTINATION, a designator that is valid and local or a bin (reading 157)."
+  "Insert HAND into DESTINATION, a valid local designator or a storage bin (reading 157)."
   (let ((code (try-hand-insertion hand (destination-container destination))))
     (when (and (eq code :hand-bump) (designator-p destination))
       (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
@@ -100,19 +102,21 @@
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
      (:errors (:not-inside (text-of "~A is not inside anything"))))
-    "Take CAMERA out of the container that it is inside of, one level. It loses its track."
+    "Take CAMERA out of its innermost container. The camera loses its track."
   (take-part-out operation camera))
 
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if CAMERA bumps CONTAINER, of DESTINATION, which it can reach, or DESTINATION is false."
+  "True if CAMERA bumps CONTAINER by chance, within its reach, or if DESTINATION is a false local
+designator."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))
 
 (defun try-camera-insertion (camera destination container)
-  "Move CAMERA into CONTAINER, that of DESTINATION. Return an error code or NIL (reading 159)."
+  "Move CAMERA into CONTAINER, the container that DESTINATION stands for. Return an error code or
+NIL (reading 159)."
   (cond ((and container (location-closed-p container)) :bin-closed)
         ((and (designator-p destination) (null (camera-tracks camera))) :not-tracking)
         ((and (designator-p destination) (not (tracking-p camera destination)))
@@ -171,7 +175,7 @@
                                (let ((bin (operation-resource operation)))
                                  (format nil "~A still in ~A" (part-inside bin) bin))))
               (:bin-jammed (text-of "~A is jammed"))))
-    "Close STORAGE-BIN, so that nothing can kick itself out of it."
+    "Close STORAGE-BIN, so that kickers cannot move things out of the bin."
   (cond ((storage-bin-closed-p storage-bin) (fail-with operation :bin-closed))
         ((part-inside storage-bin)
          (fail-with operation :robot-in-bin (part-inside storage-bin)))

@@ -19,9 +19,9 @@
              (other (cond (robot (robot-world robot))
                           ((thing-p argument) (thing-world argument)))))
         (unless (or (null other) (eq other world))
-          (reject-use "~(~A~): ~A is of another run than ~A. ~:[Robots' names and FIND-THING lead ~
-                       to those of a run~;A robot's designators come from searches of its cameras~
-                       ~]; of a fork, (counterpart OBJECT FORK) is what one is there."
+          (reject-use "~(~A~): ~A belongs to another run than ~A. ~:[A robot's name and FIND-THING ~
+                       return the object of this run~;Use a designator from a search of this ~
+                       robot's cameras~]; (counterpart OBJECT FORK) returns the object of a fork."
                       (command-name command) argument resource (designator-p argument)))))))
 
 ;;; Warnings given once for each name.
@@ -31,7 +31,8 @@
          (mapcar #'spec-name (command-results command))))
 
 (defun misplaced-parameter-p (continuation told)
-  "True if CONTINUATION calls a parameter by the name of an argument in another position of TOLD."
+  "True if a parameter of CONTINUATION has the name of an argument that is passed in another
+position. TOLD lists the names of the arguments."
   (multiple-value-bind (list unknown-p) (lambda-list-of continuation)
     (unless unknown-p
       (loop for name in list
@@ -42,7 +43,8 @@
 
 (defun doubt-continuation (command world continuation
                            &optional (told (continuation-arguments command)))
-  "Warn once if CONTINUATION cannot be called with TOLD, the names of what COMMAND passes to it."
+  "Warn once if CONTINUATION cannot be called with the arguments that COMMAND passes. TOLD lists the
+names of the arguments."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
@@ -58,7 +60,8 @@
 ;;; One simulation inside another.
 
 (defun asked-elsewhere (world)
-  "Return the key for requests to WORLD in this tick from a simulation of another world."
+  "Return the key under which requests to WORLD from a simulation of another world are recorded in
+this tick."
   (list :asked-elsewhere (world-tick world)))
 
 (defun asked-elsewhere-p (world)
@@ -67,7 +70,8 @@ last tick of WORLD."
   (said-p (asked-elsewhere world) world))
 
 (defun note-asked-elsewhere (world)
-  "Record that a program issues a request to WORLD, idle, inside a simulation of another world."
+  "If a program issues a request to an idle WORLD inside a simulation of another world, record
+this."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
                (by-program-p)
@@ -79,16 +83,17 @@ last tick of WORLD."
 ;;; Two commands without a tick between them.
 
 (defun takes-time-p (command)
-  "True if COMMAND takes time and does not just stop the robot, so a newer one interrupts it."
+  "True if COMMAND takes time, so that a newer command interrupts it. Commands that only stop
+something do not count."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun by-program-p ()
-  "True if a program issues the command (a continuation too), not a plan, the prompt or a journal."
+  "True if a program or a continuation issues the command, not a plan, the prompt or a journal."
   (or (null *asker*)
       (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
 
 (defun not-begun (resource timeline)
-  "Return the last request for a lasting command on RESOURCE that has not begun, or NIL."
+  "Return the last request on RESOURCE that has not begun and whose command takes time, or NIL."
   (find-if (lambda (request)
              (and (operation-p request)
                   (eq resource (operation-resource request))
@@ -96,7 +101,8 @@ last tick of WORLD."
            (timeline-inbox timeline)))
 
 (defun just-begun (resource timeline)
-  "Return the lasting command that RESOURCE, in a live run, has begun in the last tick, or NIL."
+  "Return the operation that RESOURCE has begun in the last tick of a live run, if its command takes
+time, or NIL."
   (let ((event (resource-event resource)))
     (and (live-p timeline)
          (operation-p event)
@@ -105,8 +111,9 @@ last tick of WORLD."
          event)))
 
 (defun may-replace-p (command resource arguments before)
-  "True if COMMAND may be meant to replace BEFORE, the same command: RESOURCE is a part, ARGUMENTS
-are none or others, or BEFORE may be from an earlier time, as in a map's resident world."
+  "True if COMMAND may be meant to replace BEFORE, an operation of the same command: RESOURCE is a
+part, ARGUMENTS are empty or differ from those of BEFORE, or the world is a resident world, where
+BEFORE may be left over from earlier work."
   (and (eq command (operation-command before))
        (not (and (robot-p resource)
                  arguments
@@ -115,8 +122,9 @@ are none or others, or BEFORE may be from an earlier time, as in a map's residen
                    (not (eq world (map-resident (world-map world)))))))))
 
 (defun doubt-interrupting (command resource arguments timeline)
-  "Warn once for a pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts one
-that the same program issued in this tick (live: or the last), without a continuation."
+  "Warn once for each pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts a
+command without a continuation that the same program issued in this tick or, in a live run, in the
+last tick."
   (when (and (by-program-p) (takes-time-p command))
     (let ((before (or (not-begun resource timeline) (just-begun resource timeline))))
       (when (and before
@@ -129,17 +137,18 @@ that the same program issued in this tick (live: or the last), without a continu
   (let ((*print-pretty* nil))
     (warn-once (list :hurry (command-name before) (command-name command))
                (robot-world (resource-robot resource))
-               (format nil "~(~A~) does nothing: ~(~A~) was asked for before a tick has passed, ~
-                            and ~A carries out one command at a time. Ask for that in the ~
-                            continuation, (~(~A~) ... (continuation ~(~A~) (~(~A~) ...))), or ~
-                            let ticks pass before it: ~:[(run-ticks N)~;(await-idle)~]."
+               (format nil "~(~A~) does nothing: ~(~A~) was issued before a tick had passed, and ~
+                            ~A carries out one command at a time. Issue the second command in the ~
+                            continuation of the first, (~(~A~) ... (continuation ~(~A~) (~(~A~) ~
+                            ...))), or let ticks pass in between: ~:[(run-ticks N)~;(await-idle)~]."
                        (command-name before) (command-name command) resource
                        (command-name before) (continuation-arguments before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
 (defun doubt-repeating (command resource arguments timeline)
-  "Warn once if COMMAND starts over in a headless run: a relative turn of RESOURCE by ARGUMENTS that
-the same program issues again while it is in progress without a continuation."
+  "Warn once if a program in a headless run issues COMMAND, a relative turn of RESOURCE by
+ARGUMENTS, again while the same turn is in progress without a continuation. The turn then starts
+over."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
@@ -156,9 +165,9 @@ the same program issues again while it is in progress without a continuation."
   (let ((*print-pretty* nil))
     (warn-once (list :again (command-name command))
                (robot-world (resource-robot resource))
-               (format nil "~(~A~) was issued again after ~D tick~:P, when it had not ended: it ~
-                            was interrupted, and began anew. Let it end by (run-ticks N) with more ~
-                            ticks, or issue it again in its (continuation ~(~A~) ...)."
+               (format nil "~(~A~) was issued again after ~D tick~:P, before it had ended: it was ~
+                            interrupted and started over. Run more ticks with (run-ticks N), or ~
+                            issue the command again in its (continuation ~(~A~) ...)."
                        (command-name command) ticks (continuation-arguments command)))))
 
 ;; Manipulations, and commands that users define, may be for two robots.
@@ -184,43 +193,44 @@ the same program issues again while it is in progress without a continuation."
                                          (trait-p :drives command))))))))
 
 (defvar *asked-with* '()
-  "Lists (command world (parameter . value)...): the commands that programs have issued in headless
-runs since the last tick, while parameters had other values than those of the run.")
+  "A list (command world (parameter . value)...) for each command that a program has issued in a
+headless run since the last tick, while parameters had other values than in the run.")
 
 (defgeneric parameters-bound (timeline world)
-  (:documentation "Return a list (symbol . value) of the parameters that have another value here
-than in the run of TIMELINE in WORLD.")
+  (:documentation "Return a list of pairs (symbol . value) for the parameters whose value here
+differs from that in the run of TIMELINE in WORLD.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
 
 (defun doubt-bindings (command world bindings)
-  "Warn once for COMMAND if it runs with other parameters than it was issued with."
+  "Warn once for COMMAND if it runs with other parameter values than it was issued with."
   (loop for (symbol . value) in bindings
         unless (eql value (symbol-value symbol))
           do (warn-once (list :bound (command-name command)) world
-                        (format nil "~(~A~) was asked for while ~(~A~) was ~A, and is done while ~
-                                     it is ~A: parameters count when ticks pass. Let them pass ~
-                                     inside of the LET, by (run-ticks N), or write ~
-                                     (with-simulation (ROBOT :parameters '((~3:*~(~A~) ~A))) ~
-                                     ...)."
+                        (format nil "~(~A~) was issued while ~(~A~) was ~A, but is carried out ~
+                                     while it is ~A: parameters count when ticks pass. Call ~
+                                     (run-ticks N) inside the LET, or write (with-simulation ~
+                                     (ROBOT :parameters '((~3:*~(~A~) ~A))) ...)."
                                 (command-name command) symbol value (symbol-value symbol)))))
 
 (defun doubt-asked-with (world)
-  "Warn once for each command that runs with other parameters than it was issued with, now that
-ticks of WORLD pass. Then forget the recorded parameters."
+  "When ticks of WORLD pass, warn once for each command that runs with other parameter values than
+it was issued with. Then forget the recorded parameters."
   (loop for (command asked . bindings) in (reverse *asked-with*)
         when (eq asked world) do (doubt-bindings command world bindings))
   (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
 
 (defun doubt-bindings-here (command world bindings)
-  "Warn once for COMMAND, issued in WORLD, which runs live, that BINDINGS are of this thread."
+  "Warn once that COMMAND, issued in the live run of WORLD, does not see BINDINGS, which hold in
+this thread only."
   (loop for (symbol . value) in bindings
         do (warn-once (list :bound (command-name command)) world
-                      (format nil "~(~A~) is done by the simulator, in whose thread ~(~A~) is ~A, ~
-                                   not ~A, as LET has it here. Write (setf ~1@*~(~A~) ~3@*~A)."
+                      (format nil "~(~A~) is carried out in the simulator's thread, where ~(~A~) ~
+                                   is ~A, not ~A as in this LET. Write (setf ~1@*~(~A~) ~3@*~A)."
                               (command-name command) symbol (global-value symbol) value))))
 
 (defun note-bindings (command world)
-  "Record parameters bound around COMMAND, issued in WORLD between ticks. In a live run, warn."
+  "Record the parameters that are bound around COMMAND, issued in WORLD between ticks. In a live
+run, warn at once."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (parameters-bound timeline world)))
@@ -248,32 +258,34 @@ continue."
       (part `(robot-part ,name ,(make-keyword (type-of resource)) ,index)))))
 
 (defun how-to-run-text (resource)
-  "Return in sentences how to have RESOURCE in a run."
+  "Return a text that says how to use RESOURCE in a run."
   (let* ((robot (resource-robot resource)) (name (robot-name robot)) (world (robot-world robot)))
     (cond ((or (null *world*)
                (eq *world* world)
                (not (eq (world-map world) (world-map *world*))))
-           (format nil "(simulator '~(~A~)) begins one and carries it out; (run-ticks N) does so ~
-                         without." name))
+           (format nil "(simulator '~(~A~)) starts a live run, which carries out the command; ~
+                        (run-ticks N) carries it out without a live run." name))
           ((find name (world-robots *world*) :key #'robot-name)
-           (format nil "This ~(~A is of the ~A~) outside of this WITH-SIMULATION, which has a ~
-                        ~(~A~) of its own. Inside write ~(~A~)."
+           (format nil "This ~(~A belongs to the ~A~) outside of this WITH-SIMULATION, which has a ~
+                        separate ~(~A~). Inside WITH-SIMULATION, write ~(~A~)."
                    (type-of resource) name name (safe-text (resource-form resource))))
-          (t (format nil "A robot is in the run of WITH-SIMULATION if it is named there, as ~(~A~) ~
-                          is in (with-simulation ((ROBOT ~:*~(~A~))) ...)." name)))))
+          (t (format nil "A robot is in the run of WITH-SIMULATION if WITH-SIMULATION names the ~
+                          robot, as in (with-simulation ((ROBOT ~(~A~))) ...)." name)))))
 
 (defvar *ticks-follow-p* nil
-  "True if the caller lets ticks pass for its commands, or reports that none do.")
+  "True if the caller lets ticks pass for its commands, or itself reports that no ticks pass.")
 
 (defun warn-if-kept (command resource robot)
-  "Warn once for ROBOT, that of RESOURCE, if COMMAND is kept for a later run, and once for each
-WITH-SIMULATION in another thread that binds its name. Not of plans: running one passes ticks."
+  "Warn once for ROBOT, the robot of RESOURCE, if COMMAND is kept for a later run, and once for each
+WITH-SIMULATION in another thread that binds the name of ROBOT. Do not warn of commands from plans,
+because running a plan passes ticks."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *ticks-follow-p*))
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
-                 (format nil "~(~A~) is kept for a later run, as none of ~A is under way. ~A"
+                 (format nil "~(~A~) is kept for a later run, because no run of ~A is in progress. ~
+                              ~A"
                          (command-name command) robot (or elsewhere (how-to-run-text resource)))))))
 
 ;;; Issuing.
@@ -283,9 +295,9 @@ WITH-SIMULATION in another thread that binds its name. Not of plans: running one
     (if reader (funcall reader resource) resource)))
 
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked; lists are copied. CONTINUATION
-may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE if the robot's
-run is over, or an argument is of another run."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy the lists in ARGUMENTS.
+CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
+if the robot's run is over, or if an argument belongs to another run."
   (check-in-run resource (command-name command))
   (check-of-this-run command resource arguments)
   (let* ((robot (resource-robot resource))

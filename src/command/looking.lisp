@@ -25,7 +25,7 @@
 
 (define-argument-type 'specification #'specification-p
   "a descriptor specification: a list such as ((:color (red blue)) (:size (3 5) .5)), with values
-that the attributes can have, and of a range the lower end first"
+that the attributes can have; a range begins with its lower end"
   #'specification-trouble)
 
 (define-argument-type 'place-type
@@ -36,7 +36,8 @@ that the attributes can have, and of a range the lower end first"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
-  "Return designators for those of SIGHTINGS that CAMERA still has, as many as a robot keeps."
+  "Return designators for the SIGHTINGS of CAMERA that are still true, at most as many as a robot
+keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
@@ -49,7 +50,7 @@ that the attributes can have, and of a range the lower end first"
 (define-step designate-found (operation (and (camera-p (operation-resource operation))
                                              (proper-list-of-p #'sighting-p
                                                                (operation-subject operation))))
-  "End OPERATION with designators for all sightings that are its subject."
+  "End OPERATION with designators for all sightings in its subject, a list."
   (let ((designators (designate-sightings (operation-resource operation)
                                           (operation-subject operation))))
     (if designators
@@ -57,7 +58,8 @@ that the attributes can have, and of a range the lower end first"
         (fail-with operation :designator-not-found))))
 
 (defun designate-all (operation sightings)
-  "End OPERATION with designators for SIGHTINGS, a tick later for each more (reading 134)."
+  "End OPERATION with designators for SIGHTINGS, a tick later for each sighting after the first
+(reading 134)."
   (setf (operation-subject operation) sightings)
   (if (rest sightings)
       (go-on operation 'designate-found (length (rest sightings)))
@@ -66,7 +68,8 @@ that the attributes can have, and of a range the lower end first"
 ;;; Places.
 
 (defun place-search-obstacle (camera type)
-  "Return the code that keeps CAMERA from looking for the place type TYPE, or NIL (reading 69)."
+  "Return the error code for what keeps CAMERA from searching for the place type TYPE, or NIL if
+nothing does (reading 69)."
   (cond ((camera-tracking camera) :already-tracking)
         ((null type) :invalid-place-type)
         ((place-type-invisible-p type) :invisible-place-type)
@@ -95,8 +98,8 @@ that the attributes can have, and of a range the lower end first"
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for a place of a type; of several, find any one. :DESIGNATOR-NOT-FOUND means
-that it found none, and is no fault of the robot."
+    "Look with CAMERA for a place of a type. Of several places, one is chosen at random. The error
+code :DESIGNATOR-NOT-FOUND means that the camera found no place; the robot has no fault."
   (search-for-places operation camera place-type nil))
 
 (define-command camera-get-all-place-designators (operation (camera camera)
@@ -111,8 +114,8 @@ that it found none, and is no fault of the robot."
               (:camera-enclosed (text-of "~A is inside a container"))
               (:designator-not-found (text-of "~A found no ~A")))
      (:report (designators) (found-text operation designators)))
-    "Look with CAMERA for all places of a type. Takes a tick more for each after the first.
-:DESIGNATOR-NOT-FOUND means that it found none."
+    "Look with CAMERA for all places of a type. Each place after the first takes a tick more. The
+error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
   (search-for-places operation camera place-type t))
 
 ;;; Things.
@@ -131,7 +134,7 @@ that it found none, and is no fault of the robot."
 
 (define-command camera-get-object-designator
     (operation (camera camera)
-               (type designator-type "whether next to the robot")
+               (type designator-type ":local for an object next to the robot, else :non-local")
                (specification specification "what the object is like"))
     ((designator "a designator of such an object"))
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
@@ -139,13 +142,14 @@ that it found none, and is no fault of the robot."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designator) (found-text operation (list designator))))
-    "Look with CAMERA for an object that fits a description; of several, find any one.
-:DESIGNATOR-NOT-FOUND means that it found none, and is no fault of the robot."
+    "Look with CAMERA for an object that fits a description. Of several objects, one is chosen at
+random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; the robot has no
+fault."
   (search-for-things operation camera type specification nil))
 
 (define-command camera-get-all-object-designators
     (operation (camera camera)
-               (type designator-type "whether next to the robot")
+               (type designator-type ":local for objects next to the robot, else :non-local")
                (specification specification "what the objects are like"))
     ((designators "a list of designators of such objects"))
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
@@ -153,15 +157,15 @@ that it found none, and is no fault of the robot."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (text-of "~A found no such object")))
      (:report (designators) (found-text operation designators)))
-    "Look with CAMERA for all objects that fit a description. Takes a tick more for each after the
-first. :DESIGNATOR-NOT-FOUND means that it found none."
+    "Look with CAMERA for all objects that fit a description. Each object after the first takes a
+tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object."
   (search-for-things operation camera type specification t))
 
 ;;; CAMERA-TRACK calls its continuation twice: with NIL when the track begins, and with a code when
 ;;; it ends; only once if it cannot begin.
 
 (defun track-obstacle (camera designator)
-  "Return the error code that keeps CAMERA from tracking DESIGNATOR, or NIL."
+  "Return the error code for what keeps CAMERA from tracking DESIGNATOR, or NIL if nothing does."
   (let ((local (eq (designator-type designator) :local)))
     (cond ((camera-tracking camera) :already-tracking)
           ((and local (not (local-to-camera-p camera designator))) :local-not-local)
@@ -171,7 +175,8 @@ first. :DESIGNATOR-NOT-FOUND means that it found none."
            :lost-track))))
 
 (defun local-to-camera-p (camera designator)
-  "True if what DESIGNATOR denotes is next to the robot, and where CAMERA is (reading 140)."
+  "True if what DESIGNATOR denotes is next to the robot, and was seen from where CAMERA is, in the
+same container or in the open (reading 140)."
   (and (own-designator-p camera designator)
        (eq (designator-location designator) (camera-location camera))
        (designator-local-p* designator)))
@@ -209,8 +214,8 @@ first. :DESIGNATOR-NOT-FOUND means that it found none."
               (:lost-track (text-of "~A lost track of ~A")))
      (:report (designator)
               (format nil "~A tracking ~A" (operation-resource operation) designator)))
-    "Turn CAMERA to what DESIGNATOR denotes and keep it so. The continuation is called when the
-track begins, with NIL, and again when it ends, with the error code that says how."
+    "Turn CAMERA to what DESIGNATOR denotes and keep CAMERA pointed there. The continuation is
+called with NIL when the track begins, and with an error code when the track ends."
   (let ((obstacle (track-obstacle camera designator)))
     (if obstacle
         (fail-with operation obstacle designator)
@@ -232,14 +237,16 @@ track begins, with NIL, and again when it ends, with the error code that says ho
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
 (defun turn-camera (operation camera angle)
-  "Turn CAMERA by ANGLE, in radians, for OPERATION; return an estimate of that (reading 144)."
+  "Turn CAMERA by ANGLE, in radians, for OPERATION; return an estimate of the angle turned (reading
+144)."
   (let ((world (robot-world (camera-robot camera))))
     (interrupt-track operation camera)
     (incf (camera-angle camera) (double angle))
     (+ (double angle) (angle-error (world-dice world :looking)))))
 
 (defun turn-camera-to (operation camera direction)
-  "Turn CAMERA to DIRECTION, relative to the robot, the short way; return an estimate."
+  "Turn CAMERA the shorter way to DIRECTION, relative to the robot; return an estimate of the angle
+turned."
   (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
 (defun camera-turned-text (operation angle)

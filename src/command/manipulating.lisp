@@ -8,7 +8,7 @@
 ;;; designates nothing.
 
 (defun designated-thing (designator resource)
-  "Return the local thing that DESIGNATOR, of RESOURCE's robot, denotes, or NIL (reading 175)."
+  "Return the local thing that DESIGNATOR denotes for the robot of RESOURCE, or NIL (reading 175)."
   (and (own-designator-p resource designator)
        (eq (designator-type designator) :local)
        (designator-local-p* designator)
@@ -31,7 +31,8 @@
                always (or (null known) (argument-of-type-p value type))))))
 
 (defun methods-for (manipulation arguments)
-  "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if none does."
+  "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if no method
+does."
   (or (remove-if-not (lambda (method) (method-takes-p method arguments))
                      (manipulation-methods manipulation))
       (reject-argument (manipulation-name manipulation) "argument list" arguments
@@ -47,7 +48,8 @@
 ;;; Methods for given things.
 
 (defun method-things (method arguments)
-  "Return the things that ARGUMENTS designate for METHOD, NIL for each that designates none."
+  "Return a list of the things that the designators in ARGUMENTS of METHOD denote, NIL for each
+designator that denotes no local thing."
   (loop with resource = (method-resource method arguments)
         for nil in (parameter-list-objects (method-parameters method))
         for designator in arguments
@@ -59,7 +61,8 @@
          (patterns-fit-p (parameter-list-patterns (method-parameters method)) things))))
 
 (defun applicable-method (manipulation arguments resource)
-  "Return the first method of MANIPULATION that is for ARGUMENTS, with RESOURCE, now, or NIL."
+  "Return the first method of MANIPULATION that takes ARGUMENTS with RESOURCE and fits the
+designated things now, or NIL."
   (find-if (lambda (method)
              (and (method-takes-p method arguments)
                   (eq resource (method-resource method arguments))
@@ -75,10 +78,12 @@
       (warn-once (list :code name) (operation-world operation)
                  (format nil "manipulation ~A: its body returned ~(~A~) as its first value, which ~
                               is the error code, a keyword, or NIL for success. To return a ~
-                              result write (values nil result)." name (cut text 60))))))
+                              result, write (values nil result)."
+                         name (cut text 60))))))
 
 (defun run-body (operation method)
-  "Run the body of METHOD; end OPERATION with the code and value it returns, or with :FAILED."
+  "Run the body of METHOD; end OPERATION with the error code and the value that the body returns, or
+with :FAILED if the body fails."
   (let* ((arguments (operation-arguments operation)) (things (method-things method arguments))
          (results '(:failed)) (*world* (operation-world operation)))
     (in-any-case
@@ -93,7 +98,8 @@
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
                                        (method-takes-p (operation-subject operation)
                                                        (operation-arguments operation))))
-  "Run the method that is the subject of OPERATION, if it still applies and by chance succeeds."
+  "Run the method that is the subject of OPERATION. Fail if the method no longer applies, or by
+chance."
   (let ((method (operation-subject operation))
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
@@ -102,8 +108,8 @@
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
-  "Choose the method for ARGUMENTS, and carry it out when its delay has passed. Fail if there is
-none, as after UNDEFINE."
+  "Choose the method for ARGUMENTS, and run the method when its delay has passed. Fail if there is
+no method, as after UNDEFINE."
   (let* ((manipulation (find-manipulation (command-name (operation-command operation)) nil))
          (method (and manipulation (applicable-method manipulation arguments resource))))
     (setf (operation-subject operation) method)
@@ -117,23 +123,26 @@ none, as after UNDEFINE."
   (remove-if-not #'designator-p (operation-arguments operation)))
 
 (defun outcome-text (operation value)
-  "Return a text of the objects and the resource of OPERATION, and its VALUE if any (manual E)."
+  "Return a text with the objects and the resource of OPERATION, and with its VALUE unless NIL
+(manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
           (mapcar #'destination-name (designator-arguments operation))
           (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
 (defun designated-things (operation)
-  "Return the things that OPERATION's designators designate; NIL if one designates nothing."
+  "Return a list of the things that the designators of OPERATION denote; NIL if a designator denotes
+no local thing."
   (let ((things (loop for designator in (designator-arguments operation)
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
 (defun failed-text (operation)
-  "Return a text that the manipulation OPERATION failed, and why, if known."
-  (format nil "~A failed~@[: ~A is not local, as objects of manipulations must be. Go there, as by ~
-               robot-goto-designator, and search again with the type :local~]~@[: none of its ~
-               methods is for ~{~A~^, ~}; their patterns ask for something else~]"
+  "Return a text that says that the manipulation OPERATION failed and, if known, why."
+  (format nil "~A failed~@[: ~A is not local, but objects of manipulations must be. Drive there, ~
+               for example with robot-goto-designator, and search again with the type :local~]~@[: ~
+               no method fits ~{~A~^, ~}, because the patterns of the methods require other ~
+               attributes~]"
           (command-prefix (operation-command operation))
           (find :local (designator-arguments operation) :key #'designator-type :test-not #'eq)
           (and (null (operation-subject operation)) (designated-things operation))))
@@ -151,7 +160,7 @@ none, as after UNDEFINE."
      :origin (format nil "the continuation of manipulation ~A" prefix)
      :family :manipulating :section "5.5"
      :documentation (format nil "Carry out the manipulation ~A." name)
-     :resource (make-spec 'by t "the robot or part that does it")
+     :resource (make-spec 'by t "the robot or part that carries out the manipulation")
      :results (list (make-spec 'value t "what the manipulation returns"))
      :errors (list (make-error-code :failed #'failed-text))
      :delay (constantly 1)
@@ -159,19 +168,19 @@ none, as after UNDEFINE."
      :body #'begin-manipulation)))
 
 (defun command-for (manipulation)
-  "Return the command by which MANIPULATION is carried out, made if there is none yet."
+  "Return the command by which MANIPULATION is carried out. Make the command if there is none yet."
   (or (manipulation-command manipulation)
       (setf (manipulation-command manipulation)
             (make-manipulation-command (manipulation-name manipulation)))))
 
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
-  "Carry out the manipulation NAME, a symbol, with ARGUMENTS, of which the last is the continuation
-(NIL for none) and the others are as one of its methods wants them: designators for the objects,
-then its resource, a robot or part, and the rest (manual 5.5.2). Returns nothing; takes effect in
+  "Carry out the manipulation NAME, a symbol, with ARGUMENTS (manual 5.5.2). ARGUMENTS are the
+arguments of one of its methods: designators for the objects, the resource, which is a robot or
+part, and the other arguments; and last the continuation or NIL. Returns nothing; takes effect in
 the next tick. The continuation gets an error code or NIL, and a value.
-Error codes: :FAILED if no method is for the things designated, or by chance; :INTERRUPT; the
-manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method takes ARGUMENTS."
+Error codes: :FAILED if no method fits the designated things, or by chance; :INTERRUPT; the error
+codes of the manipulation. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method takes ARGUMENTS."
   (let* ((manipulation (find-manipulation name))
          (continuation (first (last arguments)))
          (arguments (butlast arguments))
@@ -186,8 +195,8 @@ manipulation's own. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method take
 
 (public manipulate)
 (define-user-macro manipulate (name &rest arguments)
-  "Do as RUN-MANIPULATION does with the manipulation NAME, which is not evaluated, such as
-(manipulate lock box-designator key-designator hand continuation) (manual 5.5.2)."
+  "Call RUN-MANIPULATION with the manipulation NAME, which is not evaluated, as in (manipulate lock
+box-designator key-designator hand continuation) (manual 5.5.2)."
   (when (typep name '(cons (eql quote)))
     (reject-clause "manipulate" name
                    (format nil "the name without the quote: (manipulate ~(~A~) ...)"

@@ -15,8 +15,8 @@
 ;;; attributes, unless no thing could fit both.
 
 (define-record (parameter-list (:constructor make-parameter-list (objects patterns typed)))
-  "The parameters of a method: variables and patterns of its objects, and then its resource and
-others, each a list (variable type), with NIL for no type."
+  "The parameters of a method: the variables and the patterns of its objects, and a list (variable
+type) for its resource and for each other parameter. The type may be NIL."
   (objects '() list)
   (patterns '() list)
   (typed '() list))
@@ -25,7 +25,7 @@ others, each a list (variable type), with NIL for no type."
   "One way to carry out a manipulation."
   (form '() list)
   (source '() list "the source of the method's definition; see SOURCE-HERE" :export)
-  (digest nil (or null integer) "a number for the form of the method's definition, or NIL" :export)
+  (digest nil (or null integer) "a digest of the form of the method's definition, or NIL" :export)
   (parameters nil parameter-list)
   (success 1d0 double-float)
   (delay 0 tick-count)
@@ -36,10 +36,10 @@ others, each a list (variable type), with NIL for no type."
 
 (define-record (manipulation (:constructor make-manipulation (name)))
   "A named action on things."
-  (name nil symbol "the symbol that the manipulation is called" :writable :addition)
+  (name nil symbol "the symbol that names the manipulation" :writable :addition)
   (methods '() list "a list of the methods of the manipulation, the newest first" :writable :export)
   (command nil (or null command)
-           "the command that carries it out, once it was needed; or NIL" :writable))
+           "the command that carries out the manipulation, or NIL before its first use" :writable))
 
 (define-registry manipulation "manipulation" :object-p manipulation-p)
 
@@ -57,7 +57,7 @@ others, each a list (variable type), with NIL for no type."
        (not (member object lambda-list-keywords))))
 
 (defun parse-objects (definition list)
-  "Return the variables and patterns in LIST, the parameters before :BY."
+  "Return, as two values, the variables and the patterns in LIST, the parameters before :BY."
   (loop for (variable hyphen specification) on list by #'cdddr
         for rest = list then (cdddr rest)
         unless (and (variable-p variable) (hyphen-p hyphen) (cddr rest))
@@ -68,7 +68,8 @@ others, each a list (variable type), with NIL for no type."
         finally (return (values variables patterns))))
 
 (defun parse-typed (definition list)
-  "Return a list (variable type) for each variable in LIST, where - and a type may follow it."
+  "Return a list of (variable type) for the variables in LIST. A hyphen and a type may follow each
+variable."
   (loop while list
         collect (let ((variable (pop list)))
                   (unless (variable-p variable)
@@ -112,7 +113,8 @@ type) for its resource, and such lists for the others. The type is NIL where non
        "the list of options comes after the parameters, () for none"))
 
 (defun outdated-p (name method source)
-  "True if METHOD of NAME is from an earlier version of the file of SOURCE, now without it."
+  "True if METHOD of NAME comes from an earlier version of the file of SOURCE, and the file no
+longer contains METHOD."
   (let ((old (method-source method)))
     (and source
          (equal (source-file old) (source-file source))
@@ -121,7 +123,8 @@ type) for its resource, and such lists for the others. The type is NIL where non
                               (method-form method))))))
 
 (defun retyped-p (old method)
-  "True if OLD and METHOD were both typed, not read from files, and METHOD is OLD edited."
+  "True if OLD and METHOD were both typed, not read from files, and METHOD looks like an edited
+OLD."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
     (and (null (method-source old)) (null (method-source method))
          (equal (parameter-variables parameters) (parameter-variables others))
@@ -130,7 +133,8 @@ type) for its resource, and such lists for the others. The type is NIL where non
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
 (defun with-method (name methods method)
-  "Return METHODS of NAME with METHOD in front, without those that it replaces (reading 174)."
+  "Return METHODS of NAME with METHOD in front, without the methods that METHOD replaces (reading
+174)."
   (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
                   (find-if (lambda (old) (retyped-p old method)) current))))
@@ -142,13 +146,13 @@ type) for its resource, and such lists for the others. The type is NIL where non
          (others (remove nil files)))
     (when (and others (not (member file files :test #'equal)))
       (warn-of-definition "The manipulation ~(~A~) has methods from ~{~A~^, ~} too: they are used ~
-                           where none defined later fits. (undefine 'manipulation '~(~A~)) ~
-                           forgets them all."
+                           where no newer method fits. (undefine 'manipulation '~(~A~)) forgets ~
+                           them all."
                           name (remove-duplicates others :test #'equal) name))))
 
 (defun define-manipulation (name form body &key (success 1) (delay 0))
-  "Define a method of the manipulation NAME, as DEFMANIPULATION does. FORM is its parameter list,
-BODY a function of as many arguments. Return NAME."
+  "Define a method of the manipulation NAME, as DEFMANIPULATION does. FORM is the method's parameter
+list, BODY a function of these parameters. Return NAME."
   (let* ((definition (title "defmanipulation" name))
          (manipulation (or (find-manipulation name nil) (make-manipulation name)))
          (method (make-manipulation-method
@@ -166,11 +170,12 @@ BODY a function of as many arguments. Return NAME."
     name))
 
 (defun doubt-type (definition type)
-  "Warn if TYPE, of a parameter, is unknown to commands and Lisp, but similar to a known one."
+  "Warn if TYPE, the type of a parameter, is neither an argument type nor a class, but resembles an
+argument type."
   (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
     (let ((like (argument-type-like type)))
       (when like
-        (doubt-definition "~A: no type is called ~(~A~), so anything fits. Did you mean ~(~A~)?"
+        (doubt-definition "~A: no type is called ~(~A~), so any value fits. Did you mean ~(~A~)?"
                           definition type like)))))
 
 (defun manipulation-forms (definition name parameters options body)
@@ -194,12 +199,12 @@ BODY a function of as many arguments. Return NAME."
   (variable - descriptor ... :by resource other ...)
 Each variable of an object is bound to a thing that fits the descriptor ((attribute value
 [threshold]) ...) exactly. A value may be a matchvar ?x, which has the same value wherever it
-occurs. A hyphen and a type may follow the resource and each of the others. The resource is the
+occurs. A hyphen and a type may follow the resource and each other parameter. The resource is the
 robot or part that the command occupies. OPTIONS is ([:success probability] [:delay ticks]), by
-default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value.
-Of several methods that fit, the one defined last is used. A method replaces one with the same
-parameter list. Loading a file again removes the methods that its earlier version defined. Signals
-MALFORMED-DEFINITION. Return NAME."
+default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value. Of several
+methods that fit, the newest is used. A method replaces one with the same parameter list. Loading a
+changed file again removes the methods that it no longer contains. Signals MALFORMED-DEFINITION.
+Return NAME."
   (let ((definition (title "defmanipulation" name)))
     (expand-definition form environment
                        (lambda ()

@@ -18,21 +18,21 @@
                                        &aux (function #'run-operation)
                                          (interrupt #'interrupt-operation)
                                          (asked (timeline-tick timeline)))))
-    "A command in progress. It is the event that is pending on its resource."
+    "A command in progress: the event that is pending on its resource."
   (:fixed
    (timeline nil (or null timeline) "the timeline of the operation"))
   (:state
    (step nil symbol "the name of the function that continues the operation")
    (finished-p nil boolean "the operation has ended")
-   (count 0 fixnum "a count of the command, such as of turns")
-   (left 0d0 double-float "what is left: radians to turn, or ticks or metres to drive")
-   (reading 0d0 double-float "what the odometry has read so far, in radians")
-   (subject nil t "data of the command, such as what it has found; before its body runs, the name of
+   (count 0 fixnum "a counter of the command, such as of turns")
+   (left 0d0 double-float "the rest of the movement: radians to turn, or ticks or metres to drive")
+   (reading 0d0 double-float "the odometry's reading of the turn so far, in radians")
+   (subject nil t "data of the command, such as the things found; before its body runs, the name of
 the command that it has interrupted, or NIL"))
   (:memory
-   (asked 0 fixnum "the tick after which it was issued"))
+   (asked 0 fixnum "the tick after which the command was issued"))
   (:link
-   (continuation nil t "what to call when it ends, or NIL")))
+   (continuation nil t "the function to call when the command ends, or NIL")))
 
 ;; The continuation belongs to a program. A fork only copies it if it copies the program, too.
 (defmethod copy-plan-value ((operation operation) fork)
@@ -94,7 +94,8 @@ the command that it has interrupted, or NIL"))
       (function (funcall text operation)))))
 
 (defun text-of (control)
-  "Return a function that makes a message of CONTROL, the resource and the arguments."
+  "Return a function of an operation that formats CONTROL with the operation's resource and
+arguments."
   (lambda (operation)
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
 
@@ -114,7 +115,7 @@ the command that it has interrupted, or NIL"))
   (note-failure operation code text))
 
 (defun report (operation code results)
-  "Queue the message for the end of OPERATION with CODE and RESULTS (reading 229)."
+  "Queue the message that OPERATION has ended with CODE and RESULTS (reading 229)."
   (let* ((*told-of* (request-asker operation))
          (*robot-told-of* (operation-robot-name operation))
          (command (operation-command operation))
@@ -142,7 +143,7 @@ the command that it has interrupted, or NIL"))
     (notify-later (operation-timeline operation) 'tell-end operation code results)))
 
 (defun finish (operation code &rest results)
-  "End OPERATION: with the error CODE, or successfully if that is NIL. Its continuation gets CODE,
+  "End OPERATION with the error CODE, or successfully if CODE is NIL. The continuation gets CODE,
 the resource and RESULTS. Does nothing if OPERATION has ended already."
   (unless (operation-finished-p operation)
     (setf (operation-finished-p operation) t)
@@ -163,7 +164,7 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
 (note-step 'succeed (constantly t))
 
 (defun fail-with (operation code &rest results)
-  "End OPERATION with the error CODE; its continuation gets that, the resource and RESULTS."
+  "End OPERATION with the error CODE; its continuation gets CODE, the resource and RESULTS."
   (apply #'finish operation code results))
 
 (defun begun-p (operation)
@@ -171,7 +172,8 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun results-if-interrupted (operation)
-  "Return the results of OPERATION if it is interrupted: what :ECHO names, NIL for all others."
+  "Return the results that OPERATION has after an interruption: those that :ECHO names, and NIL for
+all others."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
@@ -186,8 +188,8 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
 ;;; Beginning and continuing.
 
 (defun call-guarded (operation step)
-  "Call STEP, of a user's command. If it fails, or neither ends nor continues OPERATION, queue a
-message and end OPERATION with :FAILED."
+  "Call STEP, a step of a user's command. If STEP fails, or neither ends nor continues OPERATION,
+queue a message and end OPERATION with :FAILED."
   (let ((origin (list "command " (command-prefix (operation-command operation))))
         (returned nil))
     (in-any-case
@@ -197,7 +199,7 @@ message and end OPERATION with :FAILED."
                       origin)
       (unless (or (operation-finished-p operation)
                   (and returned (event-pending-p operation)))
-        (when returned (apply #'error-set (append origin '(" neither ended nor went on"))))
+        (when returned (apply #'error-set (append origin '("neither ended nor continued"))))
         (finish operation :failed)))))
 
 (declaim (inline call-step))
@@ -207,7 +209,7 @@ message and end OPERATION with :FAILED."
       (funcall (the symbol step) operation)))
 
 (defun run-operation (operation)
-  "Call the step of OPERATION for this tick. A non-local exit from it interrupts OPERATION."
+  "Call the step of OPERATION for this tick. A non-local exit from the step interrupts OPERATION."
   (unless (operation-finished-p operation)
     (let ((returned nil))
       (unwind-protect
@@ -218,16 +220,17 @@ message and end OPERATION with :FAILED."
 
 (declaim (inline repeat-step))
 (defun repeat-step (operation)
-  "Call the step of OPERATION again in the next tick. Called by that step."
+  "Call the step of OPERATION again in the next tick. Only the step itself calls REPEAT-STEP."
   (queue-again (operation-agenda operation) operation 1))
 
 (defun go-on (operation step &optional (delay 1))
-  "Continue OPERATION with STEP, the name of a function of it, DELAY ticks from now."
+  "Continue OPERATION with STEP, the name of a function of an operation, DELAY ticks from now."
   (setf (operation-step operation) step)
   (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
-  "Continue OPERATION with STEP, the name of a function of it, in this tick and the next ones."
+  "Continue OPERATION with STEP, the name of a function of an operation, in this tick and later
+ticks."
   (setf (operation-step operation) step)
   (funcall step operation))
 
@@ -238,8 +241,8 @@ message and end OPERATION with :FAILED."
          operation (named-resource operation) (operation-arguments operation)))
 
 (defun free-resource (operation agenda rival)
-  "Free the resource of RIVAL, the event pending on it, for OPERATION. Interrupt RIVAL, or execute
-it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD (reading 77)."
+  "Free the resource of OPERATION, on which the event RIVAL is pending. Interrupt RIVAL, or execute
+RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD (reading 77)."
   (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
          (cancel-event agenda rival)
          (call-step rival 'start-body))
@@ -247,14 +250,15 @@ it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWAR
            (interrupt-event agenda rival))))
 
 (defgeneric note-cut-short (name operation rival)
-  (:documentation "Note in OPERATION, of the command NAME, which operation, RIVAL, it interrupts.")
+  (:documentation "Record in OPERATION, an operation of the command NAME, that it interrupts the
+operation RIVAL.")
   (:method (name operation rival)
     (declare (ignore name))
     (when (begun-p rival)
       (setf (operation-subject operation) (command-name (operation-command rival))))))
 
 (defun begin (operation)
-  "Take over the resource of OPERATION, and continue after its command's delay."
+  "Let OPERATION take over its resource, and continue OPERATION after the delay of its command."
   (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
@@ -272,7 +276,7 @@ it first if it takes no time, as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWAR
       (begin operation)))
 
 (defun resource-robot (resource)
-  "Return RESOURCE if it is a robot, else the robot that has it as a part or mind."
+  "Return RESOURCE if it is a robot, else the robot whose part or mind RESOURCE is."
   (cond ((robot-p resource) resource)
         ((mind-p resource) (mind-robot resource))
         (t (part-robot resource))))

@@ -24,7 +24,7 @@
          (value (second clause)))
     (when (and value (symbolp value) (starts-with-subseq "?" (symbol-name value)))
       (reject-clause definition clause
-                     "a value; after (in-readtable :nisp), which goes before it, ?x is a matchvar"))
+                     "a value; write (in-readtable :nisp) before this form to make ?x a matchvar"))
     (when (and (asks-range-p attribute value) (not (range-p value)))
       (reject-clause definition clause "a range with the lower end first"))
     (cond ((null attribute))
@@ -53,13 +53,14 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return VALUE of the attribute KEY, or the parameter or type of a substance if WANTED is one."
+  "Return VALUE of the attribute KEY. For a substance, return its parameter if WANTED is a number or
+range, else its type."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))
 
 (defun value-fits-p (key wanted threshold value)
-  "True if VALUE, which a thing has for KEY, fits WANTED."
+  "True if VALUE, a thing's value of the attribute KEY, fits WANTED, a value in a pattern."
   (cond ((or (null wanted) (null value)) (and (listp wanted) (member value (or wanted '(nil)))))
         ((and (realp wanted) (realp value)) (within-p value wanted wanted threshold))
         ((atom wanted) (value-equal wanted value))
@@ -70,7 +71,8 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
 ;;; Matchvars.
 
 (defun bind-matchvar (matchvar key value bindings)
-  "True if MATCHVAR, for KEY, can have VALUE; the second value is BINDINGS, extended by it."
+  "True if MATCHVAR can have VALUE, a value of the attribute KEY. Return as a second value BINDINGS
+with that binding added."
   (let ((binding (assoc matchvar bindings)))
     (cond ((not (or value (can-be-false-p (attribute-of key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))
@@ -86,14 +88,15 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
                   bindings)))))
 
 (defun pattern-fits (pattern thing bindings)
-  "True if THING fits PATTERN with BINDINGS. The second value is the bindings after it."
+  "True if THING fits PATTERN with BINDINGS. Return the bindings after the match as a second value."
   (dolist (clause pattern (values t bindings))
     (multiple-value-bind (fits after) (clause-fits clause thing bindings)
       (unless fits (return (values nil bindings)))
       (setf bindings after))))
 
 (defun patterns-fit-p (patterns things)
-  "True if each of THINGS fits that of PATTERNS at its place. They share matchvars."
+  "True if each of THINGS fits the pattern at the same position in PATTERNS. The patterns share
+matchvars."
   (loop with bindings = '()
         for pattern in patterns
         for thing in things
@@ -114,6 +117,6 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
                                    :test #'value-equal)))))))
 
 (defun similar-patterns-p (pattern other)
-  "True if PATTERN and OTHER have the same attributes, and a thing can fit both."
+  "True if PATTERN and OTHER have the same attributes, and a thing can fit both patterns."
   (and (equal (mapcar #'first pattern) (mapcar #'first other))
        (notany #'exclusive-p (mapcar #'second pattern) (mapcar #'second other))))

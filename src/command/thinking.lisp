@@ -10,8 +10,9 @@
     ()
     ((:family :thinking) (:section "1.2") (:delay 1) (:prefix "think") (:occupies robot-mind)
      (:report () "Robot has thought"))
-    "Make ROBOT think. Where thinking is charged for, this takes TICKS, at least 1; elsewhere it
-ends with the next tick. Body and parts continue meanwhile. A newer THINK interrupts an older one."
+    "Make ROBOT think. If the run charges for thinking, THINK takes TICKS, at least 1; otherwise it
+ends with the next tick. The robot's body and parts continue meanwhile. A newer THINK interrupts an
+older one."
   (if (and (> ticks 1) (thinking-charged-p (operation-timeline operation)))
       (go-on operation 'succeed (1- ticks))
       (succeed operation)))

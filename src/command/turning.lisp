@@ -6,13 +6,15 @@
 ;;; as the turn angle goes into the angle.
 
 (defun limit-value (value low high)
-  "Return VALUE within LOW and HIGH, and whether it was too :LOW or :HIGH (reading 91)."
+  "Return VALUE limited to the range from LOW to HIGH, and :LOW or :HIGH if VALUE was outside the
+range, else NIL (reading 91)."
   (cond ((< value low) (values (double low) :low))
         ((> value high) (values (double high) :high))
         (t (values (double value) nil))))
 
 (defun limit-text (control parameter)
-  "Return a function that makes an error's text of CONTROL and the value of PARAMETER."
+  "Return a function of an operation that formats CONTROL, an error text, with the value of
+PARAMETER."
   (lambda (operation)
     (declare (ignore operation))
     (format nil control (symbol-value parameter))))
@@ -25,7 +27,7 @@
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")
               (:too-high-speed (limit-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
      (:report (speed) (phrase "Speed set to ~,2F" speed)))
-    "Set the speed at which ROBOT drives, cut off at 0 and MAX-SPEED*."
+    "Set the speed at which ROBOT drives, limited to the range from 0 to MAX-SPEED*."
   (multiple-value-bind (speed outside) (limit-value speed 0 max-speed*)
     (setf (robot-speed robot) speed)
     (finish operation (ecase outside ((nil) nil) (:low :negative-speed) (:high :too-high-speed))
@@ -41,7 +43,8 @@
               (:too-high-turn-angle
                (limit-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
-    "Set how far ROBOT turns in a tick, cut off at MIN-TURN-ANGLE* and MAX-TURN-ANGLE*."
+    "Set how far ROBOT turns in a tick, limited to the range from MIN-TURN-ANGLE* to
+MAX-TURN-ANGLE*."
   (multiple-value-bind (angle outside) (limit-value angle min-turn-angle* max-turn-angle*)
     (setf (robot-turn-angle robot) angle)
     (finish operation
@@ -52,10 +55,12 @@
 ;;; Turning.
 
 (define-constant +facing+ 1d-12
-  :documentation "Angles below this, in radians, are rounding errors and count as turned.")
+  :documentation "Remaining angles below this limit, in radians, are rounding errors and count as
+0.")
 
 (defun turn-step (robot left)
-  "Turn ROBOT for a tick, by LEFT at most. Return the rest, and the step as read (reading 99)."
+  "Turn ROBOT for a tick, by LEFT at most. Return the remaining angle, and the odometry's reading of
+the step (reading 99)."
   (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
          (step (clamp left (- most) most)))
     (turn-tick robot step)
@@ -63,12 +68,13 @@
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
 (defun turn-towards (robot angle close)
-  "Turn ROBOT for a tick by ANGLE, if not less than CLOSE. True if nothing is left to turn."
+  "Turn ROBOT by ANGLE, as far as possible in a tick, unless ANGLE is less than CLOSE. Return true
+if nothing is left to turn."
   (or (< (abs angle) close)
       (< (abs (turn-step robot angle)) +facing+)))
 
 (define-step turn-on (operation (robot-p (operation-resource operation)))
-  "Turn for a tick, and end OPERATION when nothing is left to turn."
+  "Turn the robot of OPERATION for a tick, and end OPERATION when nothing is left to turn."
   (multiple-value-bind (left read)
       (turn-step (operation-resource operation) (operation-left operation))
     (setf (operation-left operation) left)
@@ -128,7 +134,8 @@
   (turn-by operation robot (angle-difference direction (robot-angle robot))))
 
 (defun place-type-accepted-p (robot type)
-  "True if TYPE, which ROBOT has sensed, is right or by mistake taken for right (reading 103)."
+  "True if TYPE, the place type that ROBOT has sensed, is the true type, or if ROBOT by chance does
+not notice the mistake (reading 103)."
   (let ((place (robot-place-here robot)))
     (or (and place (eq type (place-type place)))
         (chance robot-align-error-prob* (world-dice (robot-world robot) :place)))))
@@ -150,9 +157,10 @@
           (t (fail-with operation :incorrect-place-type)))))
 
 (defun corner-direction (robot type directions)
-  "Return the heading in which ROBOT, coming along one wall of a corner, follows the other. At a
-convex corner it comes along one of DIRECTIONS and turns against the other; at a concave one it is
-the reverse. If it looks away from the corner already, it turns to the other wall (reading 105)."
+  "Return the heading for ROBOT to turn a corner: ROBOT comes along one wall and leaves along the
+other. At a convex corner it comes in one of DIRECTIONS and leaves opposite to the other direction;
+at a concave corner it is the reverse. If ROBOT already faces away from the corner, it turns to the
+other wall (reading 105)."
   (let* ((opposite (mapcar (lambda (d) (+ d pi)) directions))
          (convex (same-name-p (place-type-name type) 'convex))
          (ways (if convex directions opposite))
@@ -167,7 +175,7 @@ the reverse. If it looks away from the corner already, it turns to the other wal
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
      (:errors (:no-corner "Robot is not at a corner"))
      (:report (angle) (turned-text angle)))
-    "Turn ROBOT about the corner, convex or concave, where it is."
+    "Turn ROBOT round the convex or concave corner where ROBOT is."
   (let ((type (sense-place-type robot)))
     (if (and type (member (place-type-name type) '(convex concave) :test #'same-name-p))
         (turn-to-face operation robot

@@ -11,7 +11,8 @@
 (define-kind (withdrawal :include request
                          :constructor (make-withdrawal (continuation arguments
                                                         &aux (operator 'withdraw-command))))
-    "A request to interrupt a command on a resource, the first argument, if it is in progress."
+    "A request to interrupt a command if it is still in progress. The first argument is the
+command's resource."
   (:fixed
    (continuation nil t "the command's continuation; NIL if the second argument says where the
 command is: :COMMAND, :TRACK or NIL" :export)))
@@ -25,7 +26,8 @@ command is: :COMMAND, :TRACK or NIL" :export)))
        (eq continuation (operation-continuation operation))))
 
 (defun withdrawn-place (withdrawal)
-  "Return where the command of WITHDRAWAL is: :COMMAND, on its resource, :TRACK, or NIL."
+  "Return :COMMAND if the command of WITHDRAWAL occupies its resource, :TRACK if it is a track of a
+camera, or NIL if it is not in progress."
   (destructuring-bind (resource &optional place) (request-arguments withdrawal)
     (let ((continuation (withdrawal-continuation withdrawal)))
       (cond ((null continuation) place)
@@ -51,8 +53,8 @@ command is: :COMMAND, :TRACK or NIL" :export)))
       ((nil)))))
 
 (defun withdraw-command (resource continuation)
-  "Interrupt the command on RESOURCE that has CONTINUATION, also if it runs in the background, at
-the start of the next tick, if it is in progress by then. Returns nothing."
+  "At the start of the next tick, interrupt the command on RESOURCE that has CONTINUATION, if the
+command is in progress then, also as a track in the background. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
 ;; The result of a withdrawal, in a replayed run.

@@ -12,7 +12,8 @@
                 :resolution (second specification)))
 
 (defun amount-parser (kind initarg)
-  "Return a function like PARSE-CAMERA for parts of KIND with an amount for INITARG."
+  "Return a function that parses the specification of a part of KIND, an amount, as the value of
+INITARG. PARSE-CAMERA is such a function for cameras."
   (lambda (amount reject)
     (unless (amount-p amount)
       (funcall reject amount (argument-type-text 'amount)))
@@ -43,7 +44,8 @@
       map)))
 
 (defun settable-slots (kind)
-  "Return those slots of KIND, a kind of part, that DEFROBOT may set: its own fixed ones."
+  "Return the slots of KIND, a kind of part, that DEFROBOT may set: the fixed slots except ROBOT and
+INDEX."
   (remove-if-not (lambda (slot)
                    (and (eq :fixed (kind-slot-role slot))
                         (not (member (kind-slot-name slot) '(robot index)))))
@@ -54,7 +56,8 @@
           (kind-slot-type slot) (kind-slot-text slot)))
 
 (defun parse-initarg (kind initarg value)
-  "Return INITARG and VALUE, for a part of KIND, as a list; NIL if they make no sense."
+  "Return a list of INITARG and VALUE, converted for a part of KIND; NIL if KIND has no such slot or
+VALUE has the wrong type."
   (let ((slot (and (keywordp initarg)
                    (find initarg (settable-slots kind)
                          :key #'kind-slot-name :test #'same-name-p))))
@@ -70,12 +73,14 @@
   (loop for (initarg value) on (rest specification) by #'cddr
         append (or (parse-initarg kind initarg value)
                    (funcall reject specification
-                            (format nil "of a ~(~A~) only ~:[its name~;~:*~{~A~^; ~}~]"
+                            (format nil "for a ~(~A~), ~:[only its name~;its name and initargs ~
+                                         from: ~:*~{~A~^; ~}~]"
                                     (kind-name kind)
                                     (mapcar #'slot-value-text (settable-slots kind)))))))
 
 (defun parse-part (specification reject)
-  "Return SPECIFICATION, (kind initarg value ...), with values of the types that are wanted."
+  "Return SPECIFICATION, (kind initarg value ...), with values converted to the types of their
+slots."
   (let ((kind (and (proper-list-p specification)
                    (find (first specification) (all-kinds 'part) :key #'kind-name))))
     (unless (and kind
@@ -116,15 +121,15 @@
               "a list of capacities after :bins: (20) is one bin of capacity 20")
         (list :parts #'part-form #'parse-part
               "a list of lists after :parts, (kind initarg value ...)"))
-  "The options of DEFROBOT for parts, in the order of ROBOT-PARTS. Each is followed by:
-- a function of the text of a part, the whole option, and a function of a form and its context that
-  returns a form for its value; it returns a form for the part
-- a function of the value of that form, and of one that rejects; it returns a list (kind initarg
-  value ...)
-- what should follow the option, for FORMAT")
+  "The options of DEFROBOT for parts, in the order of ROBOT-PARTS. Each entry lists the option and:
+- a function that returns a form for a part; its arguments are the part as written, the value of the
+  option, and a function that returns a form for the value of a form and its context
+- a function that returns a list (kind initarg value ...) for a part; its arguments are the value of
+  the part's form, and a function that rejects a value
+- a format string that says what should follow the option")
 
 (defun read-blueprint (name environment position angle lists)
-  "Return a blueprint; LISTS is a property list of *PART-OPTIONS* and their values."
+  "Return a blueprint. LISTS is a property list of options in *PART-OPTIONS* and their values."
   (flet ((reject (clause expected)
            (reject-clause (title "defrobot" name) clause expected)))
     (let ((map (parse-place environment position angle #'reject)))
@@ -138,9 +143,9 @@
 
 (addition define-robot)
 (defun define-robot (name environment position angle &key cameras hands bins parts)
-  "Do as DEFROBOT does, with values: ENVIRONMENT is a map or its name, POSITION a list (x y),
-CAMERAS a list of lists (fov resolution), PARTS one of lists (kind initarg value ...). Return the
-robot."
+  "Define a robot as DEFROBOT does, but with evaluated arguments. ENVIRONMENT is a map or its name,
+POSITION a list (x y), CAMERAS a list of lists (fov resolution), and PARTS a list of lists (kind
+initarg value ...). Return the robot."
   (check-robot-name (title "defrobot" name) name)
   (check-robot-variable name)
   (let* ((blueprint (read-blueprint name environment position angle
@@ -152,17 +157,17 @@ robot."
 
 (defun check-robot-name (definition name)
   (unless (and name (symbolp name) (symbol-package name))
-    (reject-clause definition name "a symbol of a package as the robot's name"))
+    (reject-clause definition name "a symbol with a home package as the robot's name"))
   (let ((trouble (variable-name-trouble name)))
     (when trouble
       (reject-clause definition name
-                     (format nil "a symbol that can be a special variable, as a robot is the value ~
-                                  of one, and ~A ~A. Call it my-~(~A~), or shadow the symbol in ~
-                                  your package: (:shadow #:~(~A~))"
+                     (format nil "a symbol that can be a special variable, because the variable ~
+                                  holds the robot, but ~A ~A. Name the robot my-~(~A~), or shadow ~
+                                  the symbol in your package: (:shadow #:~(~A~))"
                              name trouble name name)))))
 
 (defun check-robot-variable (name)
-  "Signal MALFORMED-DEFINITION if the variable NAME is in use for something else than robots."
+  "Signal MALFORMED-DEFINITION if the variable NAME has a value that is not a robot."
   (when (and (null (definition-to-replace name *robots*))
              (variable-in-use-p name))
     (reject-clause (title "defrobot" name) name
@@ -183,7 +188,8 @@ robot."
                (reject (list option (getf options option)) (format nil words))))))
 
 (defun value-form (definition form clause expected)
-  "Return a form for the value of FORM, in CLAUSE of DEFINITION; without one it signals an error."
+  "Return a form that evaluates FORM, which is in CLAUSE of DEFINITION, and signals
+MALFORMED-DEFINITION if FORM has no value."
   (if (constantp form)
       form
       `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))
@@ -211,11 +217,11 @@ robot."
   :cameras ((FOV RESOLUTION) ...)
   :hands (STRENGTH ...)
   :bins (CAPACITY ...)
-  :parts ((KIND INITARG VALUE ...) ...) -- ours: parts of your own kinds, see DEFINE-KIND
+  :parts ((KIND INITARG VALUE ...) ...) -- an addition: parts of your own kinds, see DEFINE-KIND
   :documentation TEXT
 NAME becomes a special variable bound to the robot. The robot stands in the resident world of the
 map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
-evaluated. An earlier robot called NAME takes no more commands. Signals MALFORMED-DEFINITION (manual
+evaluated. An earlier robot named NAME takes no more commands. Signals MALFORMED-DEFINITION (manual
 5.2). See reading 9."
   (let ((definition (title "defrobot" name)))
     (expand-definition form environment

@@ -18,7 +18,8 @@
     "A handle for a thing or place that a camera has seen, or seems to have seen (manual 3.4.1)."
   (:fixed
    (robot nil (or null robot) "the robot that the designator is a handle for" :addition)
-   (number 0 fixnum "the designator's number; after it was dropped, another may have it" :addition)
+   (number 0 fixnum "the designator's number, which another designator may get after this one was
+dropped" :addition)
    (serial 0 fixnum "the serial number: how many designators the robot had before" :export))
   (:state
    (type :non-local (member :local :non-local) ":LOCAL or :NON-LOCAL (manual 3.4.1)" :addition)
@@ -27,25 +28,27 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (data '() list "what was seen: a list of lists (attribute value), or of the name of a place type
 (manual 3.4.1)" :shared :addition)
    (denotation nil (or null thing place)
-               "the THING or PLACE that the designator denotes; NIL: it is false" :addition)
+               "the THING or PLACE that the designator denotes, or NIL if the designator is
+false" :addition)
    (distance 0d0 double-float
              "the distance at which the denotation was last seen, in metres" :addition)
    (valid-p t boolean "the designator has not been dropped" :addition)
    (x 0d0 double-float "the x coordinate where the denotation was last seen, in metres" :addition)
    (y 0d0 double-float "the y coordinate where the denotation was last seen, in metres" :addition)
    (location nil t "the container or bin where the denotation was seen, or NIL" :addition)
-   (bearing 0d0 double-float "the true direction in which it was last seen, in radians")
-   (bearing-p nil boolean "it was seen from far enough to have a direction")
-   (relative-bearing 0d0 double-float "that direction relative to the robot's heading, in radians")
+   (bearing 0d0 double-float "the true direction in which the denotation was last seen, in radians")
+   (bearing-p nil boolean "the denotation was seen from far enough to have a direction")
+   (relative-bearing 0d0 double-float "the true direction relative to the robot's heading, in
+radians")
    (swing 0d0 double-float "by how much the direction changed in the tick REFRESHED, in radians")
-   (refreshed -1 fixnum "the tick in which it was last brought up to date")))
+   (refreshed -1 fixnum "the tick in which the designator was last updated")))
 
 (setf (documentation 'make-designator 'function)
-      "Return a new designator, not yet numbered by a robot.")
+      "Return a new designator, which has no number of a robot yet.")
 
 (define-argument-type 'designator #'designator-p "a designator"
-  (constantly (format nil "searches of cameras give them to their continuations, such as ~
-                           (camera-get-object-designator CAMERA :non-local '((:color red)) ~
+  (constantly (format nil "cameras' searches pass designators to their continuations, as in
+(camera-get-object-designator CAMERA :non-local '((:color red)) ~
                            (continuation (err camera designator) ...)); in plans, (vref ~
                            camera-designators* 0) has a list of them")))
 
@@ -55,7 +58,8 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
 ;;; A robot's designators by number.
 
 (defparameter *designator-limit* 1000
-  "How many designators a robot keeps; past that, the oldest that no camera tracks is removed.")
+  "The number of designators that a robot keeps. Then the oldest designator that no camera tracks is
+removed for a new one.")
 
 (addition find-designator)
 (defun find-designator (robot number)
@@ -69,12 +73,12 @@ robot."
 
 ;; The prompt sets it: its lines command one of the robots.
 (defvar *robot-meant* (lambda () (and *world* (first (world-robots *world*))))
-  "A function that returns the robot to use if none is given.")
+  "A function that returns the robot to use if no robot is given.")
 
 (defun designator (number &optional (robot (funcall *robot-meant*)))
-  "Return the designator of ROBOT with NUMBER. ROBOT is by default the one that the prompt commands,
-or else the first of the world. An addition to manual 3.4.1, for use at the prompt and REPL. Signals
-WRONG-ARGUMENT if there is none."
+  "Return the designator of ROBOT with NUMBER. By default ROBOT is the robot that the prompt
+commands, or else the first robot of the world. An addition to manual 3.4.1, for use at the prompt
+and REPL. Signals WRONG-ARGUMENT if there is no such designator."
   (or (find-designator robot number)
       (reject-argument 'designator "number" number
                        (format nil "~:[the number of a designator; ~A has none~;one of ~
@@ -93,7 +97,8 @@ WRONG-ARGUMENT if there is none."
           collect designator))
 
 (defun take-number (robot designator)
-  "Give DESIGNATOR the smallest free number of ROBOT, and a serial number (reading 198)."
+  "Give DESIGNATOR the smallest number that no designator of ROBOT has, and a serial number (reading
+198)."
   (unsettle robot)
   (let* ((designators (robot-designators robot))
          (number (or (position nil designators)
@@ -115,8 +120,8 @@ WRONG-ARGUMENT if there is none."
 ;;; Where things are, as a robot sees it.
 
 (defun thing-space (thing)
-  "Return the container or storage bin that THING is in, :NOWHERE, or NIL for the open. A thing in
-a hand is where the hand is."
+  "Return the container or storage bin that THING is in, NIL if THING is in the open, or :NOWHERE. A
+thing in a hand is where the hand is."
   (let ((location (thing-location thing)))
     (cond ((eq location :floor) nil)
           ((null location) :nowhere)
@@ -124,7 +129,8 @@ a hand is where the hand is."
           (t location))))
 
 (defun denotation-space (designator)
-  "Return the THING-SPACE of what DESIGNATOR denotes, or another robot's hand that holds it."
+  "Return the THING-SPACE of the thing that DESIGNATOR denotes. If another robot's hand holds the
+thing, return this hand."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))
@@ -133,8 +139,9 @@ a hand is where the hand is."
 
 (addition designator-position)
 (defun designator-position (designator)
-  "Return, as two values, where what DESIGNATOR denotes really is, or seems to be, in metres; NIL
-and NIL if it is nowhere (reading 54)."
+  "Return, as two values, the true position of what DESIGNATOR denotes, in metres; for a false
+designator, the position where the robot seems to have seen something. Return NIL and NIL for a
+thing that is nowhere (reading 54)."
   (let ((denotation (designator-denotation designator)))
     (etypecase denotation
       (thing (thing-position denotation))
@@ -179,9 +186,9 @@ bin or the open space where it was seen. False for places."
 
 (defun add-designator (robot &key (type :non-local) (angle 0d0) (distance 0d0) data denotation
                                   x y location)
-  "Return a new designator of ROBOT: of TYPE, for DENOTATION (a THING, a PLACE, or NIL for a false
-one at X, Y), seen at DISTANCE metres and at ANGLE to the heading, described by DATA, in LOCATION
-(NIL: in the open)."
+  "Add a new designator to ROBOT and return it. DENOTATION is a THING or a PLACE, or NIL for a false
+designator at X, Y. The denotation was seen at DISTANCE metres and at ANGLE to the heading, with
+DATA as its description, in LOCATION, a container or NIL for the open."
   (when (>= (length (robot-designators robot)) *designator-limit*) (forget-oldest robot))
   (let ((designator (make-designator :type type :robot robot :data data :location location
                                      :denotation denotation

@@ -21,13 +21,13 @@
   (eq (thing-location thing) location))
 
 (defun outer-location (location)
-  "Return what LOCATION, a thing or part, is directly in, or NIL for the open."
+  "Return what LOCATION, a thing or part, is directly in, or NIL if LOCATION is in the open."
   (etypecase location
     (thing (let ((outer (thing-location location))) (if (eq outer :floor) nil outer)))
     (part (part-location location))))
 
 (defun outer-locations (part)
-  "Return a list of all that PART is in, directly or not, innermost first."
+  "Return a list of all locations that PART is in, directly or not, innermost first."
   (loop for outer = (part-location part) then (outer-location outer)
         while outer collect outer))
 
@@ -39,13 +39,15 @@
           (find-if #'there-p (robot-hands robot))))))
 
 (defun part-reaches-p (part thing)
-  "True if PART can get at THING: it is where the part is, and within the robot's reach."
+  "True if PART can reach THING: both are in the same container or in the open, and THING is within
+the robot's reach."
   (and (eq (thing-space thing) (part-location part))
        (multiple-value-bind (x y) (thing-position thing)
          (and x (within-reach-p (part-robot part) x y)))))
 
 (defun part-reaches-bin-p (part bin)
-  "True if PART, in the open, can get at the storage BIN, one of its robot (reading 230)."
+  "True if PART can reach the storage BIN: PART is in the open, and BIN belongs to the same robot
+(reading 230)."
   (and (eq (part-robot part) (storage-bin-robot bin))
        (null (part-location part))))
 
@@ -71,8 +73,8 @@ robot stands (reading 152)."
 ;;; Parts into and out of containers.
 
 (defun move-part (part location)
-  "Move PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What it
-holds moves along; its track is lost. Warnings are queued."
+  "Move PART, a camera or hand, into LOCATION: a thing, a storage bin, or NIL for the open. What
+PART holds moves along, and a track of PART is lost. Warnings are queued."
   (let ((old (part-location part)))
     (when (thing-p location)
       (pushnew #'watch-container (world-move-watchers (location-world part))))
@@ -91,7 +93,8 @@ holds moves along; its track is lost. Warnings are queued."
   (move-part part nil))
 
 (defun must-pull-out-p (part)
-  "True if PART is inside a thing out of its robot's reach, or in a closed or another robot's bin."
+  "True if PART is inside a thing that is out of the robot's reach, in a closed bin or in another
+robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)
@@ -115,7 +118,7 @@ holds moves along; its track is lost. Warnings are queued."
         do (when (camera-location camera) (settle-part camera))))
 
 (defun break-circle (thing location)
-  "If THING, now in LOCATION, is inside itself by way of a hand, pull out that hand."
+  "If THING, now in LOCATION, is inside itself because a hand in THING holds it, pull the hand out."
   (let ((hand nil))
     (loop for outer = (if (eq location :floor) nil location) then (outer-location outer)
           until (or (null outer) (eq outer thing))
@@ -124,7 +127,7 @@ holds moves along; its track is lost. Warnings are queued."
           finally (when outer (pull-out hand)))))
 
 (defun watch-container (thing old-location new-location)
-  "Pull parts out of THING if need be, now that it has moved. A world's move watcher."
+  "Pull parts of robots out of THING if THING has moved out of reach. A move watcher of a world."
   (declare (ignore old-location))
   (break-circle thing new-location)
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
@@ -133,6 +136,7 @@ holds moves along; its track is lost. Warnings are queued."
 (note-lasting 'watch-container)
 
 (defun settle-robots (world)
-  "Enforce the rules on containment in WORLD: pull out robots' parts that are beyond their reach."
+  "Enforce the rules of containment in WORLD: pull robots' parts out of things that are out of
+reach."
   (dolist (robot (world-robots world))
     (settle-parts robot)))

@@ -19,15 +19,15 @@ resident world of its map."
 
 (addition all-robots)
 (defun all-robots ()
-  "Return a list of all robots, those that the variables of their names hold, in order of
-definition."
+  "Return a list of all robots in order of definition. The robots are those that the variables of
+their names hold."
   (remove nil (mapcar #'blueprint-robot (all-blueprints))))
 
 (addition find-robot)
 (defun find-robot (name &optional (errorp t))
-  "Return the robot called NAME, a symbol or string: the one that the variable of that name holds;
-a robot is returned as it is. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is
-NIL."
+  "Return the robot named NAME, a symbol or string: the robot that the variable of this name holds.
+If NAME is a robot, return it. If there is no such robot, signal UNKNOWN-NAME, or return NIL if
+ERRORP is NIL."
   (if (robot-p name)
       name
       (let ((blueprint (find-blueprint name errorp)))
@@ -51,7 +51,7 @@ NIL."
         (reject-use "No ~(~A~) can be made: there is no function make-~(~:*~A~)." kind))))
 
 (defun start-trouble (map x y)
-  "Return a text on why a robot cannot start at (X,Y) in MAP, or NIL."
+  "Return a text that says why a robot cannot start at (X,Y) in MAP, or NIL if a robot can."
   (cond ((not (map-index map x y))
          (format nil "~A is outside the map, which is ~D by ~D metres"
                  (point-in-text x y) (map-width map) (map-height map)))
@@ -64,7 +64,8 @@ NIL."
                   (blueprint-name blueprint) (map-name map) trouble))))
 
 (defun make-robot (blueprint world)
-  "Return a robot made by BLUEPRINT, in WORLD. MISUSE if its start is in a wall (reading 215)."
+  "Make a robot from BLUEPRINT in WORLD and return it. Signals MISUSE if its start is in a wall or
+outside the map (reading 215)."
   (check-start blueprint (world-map world))
   (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
     (ensure-timeline world)
@@ -94,11 +95,11 @@ NIL."
   (setf (robot-retired robot) reason))
 
 (defun close-robot (robot)
-  "Call the functions registered for the end of the run of ROBOT."
+  "Call the functions that were registered for the end of the run of ROBOT."
   (call-each #'funcall (shiftf (robot-enders robot) '())))
 
 (defun check-in-run (resource operator)
-  "Signal MISUSE if the robot that is RESOURCE, or has it as a part, is retired."
+  "Signal MISUSE if the robot of RESOURCE, a robot or part, is retired."
   (let* ((robot (if (robot-p resource) resource (part-robot resource)))
          (newest (and (robot-retired robot) (find-robot (robot-name robot) nil))))
     (when (robot-retired robot)
@@ -117,7 +118,7 @@ NIL."
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
 (defun remove-robots-called (name reason)
-  "Take all robots called NAME out of the worlds that top-level code works in."
+  "Remove all robots named NAME from the resident worlds of all maps."
   (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
       (asking ((ensure-timeline world)) (remove-robot robot reason)))))
@@ -128,7 +129,8 @@ NIL."
            (world-robots world)))
 
 (defun ensure-robot-in (world blueprint)
-  "Return the robot in WORLD made by BLUEPRINT, the only one of its name; this thread owns WORLD."
+  "Return the robot in WORLD that was made from BLUEPRINT, or make it. Remove other robots of the
+same name. The calling thread must own WORLD."
   (or (find-robot-of blueprint world)
       (progn
         (dolist (robot (world-robots world))
@@ -137,7 +139,7 @@ NIL."
         (make-robot blueprint world))))
 
 (defun resident-p (world)
-  "True if WORLD is the one that top-level code works in, of a map that no other has replaced."
+  "True if WORLD is the resident world of its map, and no other map has replaced this map."
   (let ((map (world-map world)))
     (and (eq world (map-resident map))
          (eq map (find-map (map-name map) nil)))))
@@ -145,8 +147,8 @@ NIL."
 ;; Another thread may do the same meanwhile: the thread that owns the world decides. If the world
 ;; has been replaced, repeat this for the new one.
 (defun settle-robot (blueprint)
-  "Put a robot made by BLUEPRINT into the resident world of its map, in place of any from an earlier
-definition of its name. Return it, or the one that is already there."
+  "Put a robot made from BLUEPRINT into the resident world of its map, instead of robots from
+earlier definitions of the same name. Return the robot, or the robot that is already there."
   (loop
     (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
       (check-start blueprint (world-map world))

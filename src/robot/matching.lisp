@@ -33,8 +33,9 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
 (defun own-symbol (value package)
-  "Return VALUE; for a symbol, the one of the same name in PACKAGE, the name of a package. So a
-misread value is a symbol of the package that the world was written in. NIL: any package will do."
+  "Return VALUE or, if VALUE is a symbol, the symbol of the same name in PACKAGE, the name of a
+package. So a misread value is a symbol of the package that the map was written in. If PACKAGE is
+NIL, return VALUE."
   (let ((package (and package (find-package package))))
     (if (and value (symbolp value) (not (keywordp value)) (not (eq value t))
              package
@@ -49,7 +50,8 @@ misread value is a symbol of the package that the world was written in. NIL: any
       (own-symbol (roll-element domain dice) package)))
 
 (defun noisy-substance (attribute value distance package dice)
-  "Return a reading of VALUE of the :substance ATTRIBUTE: a number, a type, or a list of both."
+  "Return a noisy reading of VALUE, a value of the :substance ATTRIBUTE: a number, a type, or a list
+of type and number."
   (flet ((read-type (type)
            (noisy-choice attribute type (mapcar #'substance-name (all-substances))
                          distance package dice)))
@@ -59,9 +61,9 @@ misread value is a symbol of the package that the world was written in. NIL: any
                    (noisy-number attribute (second value) distance dice))))))
 
 (defun read-attribute (attribute value distance dice &optional package)
-  "Return a reading of VALUE, which a thing has for ATTRIBUTE (NIL: an undefined one), from DISTANCE
-metres away, its error drawn from DICE. A symbol that is misread is one of PACKAGE, if that is given
-by name."
+  "Return a noisy reading of VALUE, a thing's value of ATTRIBUTE, from DISTANCE metres away, with an
+error drawn from DICE. ATTRIBUTE is NIL for an undeclared attribute. A misread symbol comes from
+PACKAGE, the name of a package, if given."
   (cond ((or no-sensor-error* (null attribute)) value)
         ((eq (attribute-kind attribute) :discrete)
          (noisy-choice attribute value (attribute-domain attribute) distance package dice))
@@ -71,11 +73,11 @@ by name."
         (t value)))
 
 (defun sensing-chance (probability)
-  "Return PROBABILITY of a sensing error, or 0 while there is none (reading 118)."
+  "Return PROBABILITY, that of a sensing error, or 0 while NO-SENSOR-ERROR* is true (reading 118)."
   (if no-sensor-error* 0d0 (double probability)))
 
 (defun angle-error (dice)
-  "Return the error, in radians, of an estimate of an angle (manual, chapter 4)."
+  "Return a random error, in radians, for an estimate of an angle (manual, chapter 4)."
   (if no-sensor-error* 0d0 (roll-within (double camera-angle-max-error*) dice)))
 
 ;;; A descriptor specification is a list of (attribute value) or (attribute value threshold). A
@@ -84,8 +86,8 @@ by name."
 ;;; match. Undeclared attributes are treated by the shape of the value.
 
 (defstruct (demand (:copier nil))
-  "One attribute specification: a reading fits if it is a number from LOW to HIGH or, when these
-are NIL, one of CHOICES."
+  "One demand of a descriptor specification: a reading fits if it is a number from LOW to HIGH or,
+when LOW is NIL, one of CHOICES."
   (key nil :type symbol :read-only t)
   (attribute nil :type (or null attribute) :read-only t)
   (low nil :type (or null real) :read-only t)
@@ -113,14 +115,16 @@ are NIL, one of CHOICES."
 ;;; What can be a specification.
 
 (defun possible-value-p (attribute value)
-  "True if VALUE, an atom, can be a value of ATTRIBUTE (NIL: an undefined one)."
+  "True if VALUE, an atom, can be a value of ATTRIBUTE. ATTRIBUTE is NIL for an undeclared
+attribute."
   (cond ((null attribute) t)
         ((discrete-p attribute) (in-domain-p attribute value))
         ((eq (attribute-name attribute) :substance) (or (realp value) (symbolp value)))
         (t (realp value))))
 
 (defun takes-range-p (attribute value)
-  "True if VALUE, a list, must be a range for ATTRIBUTE (NIL: an undefined one)."
+  "True if VALUE, a list in a specification of ATTRIBUTE, must be a range. ATTRIBUTE is NIL for an
+undeclared attribute."
   (or (asks-range-p attribute value)
       (not (or (null attribute)
                (discrete-p attribute)
@@ -142,7 +146,8 @@ are NIL, one of CHOICES."
        (every #'demand-form-p object)))
 
 (defun specification-trouble (object)
-  "Return a text on what makes OBJECT unusable as a descriptor specification, or NIL."
+  "Return a text that says why OBJECT is no valid descriptor specification, or NIL if no part of it
+is invalid."
   (let* ((form (and (proper-list-p object)
                     (find-if-not #'demand-form-p object)))
          (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
@@ -151,7 +156,7 @@ are NIL, one of CHOICES."
                      (find-if-not (lambda (value) (in-domain-p attribute value))
                                   (ensure-list (second form))))))
     (when form
-      (format nil "not ~(~S~)~@[, as the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
+      (format nil "not ~(~S~)~@[, because the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
               (abridged form) domain (and value (value-like value domain))))))
 
 ;;; Fitting.
@@ -173,7 +178,8 @@ are NIL, one of CHOICES."
   (world-map (thing-world thing)))
 
 (defun as-asked (demand reading thing)
-  "Return READING of THING, which fits DEMAND, with the symbols of DEMAND or the map's author."
+  "Return READING of THING, which fits DEMAND, with the same symbols as DEMAND, or else with symbols
+of the package of the map."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
                (own-symbol value (and (thing-world thing) (map-package (thing-map thing)))))))
@@ -187,8 +193,8 @@ are NIL, one of CHOICES."
   (second (assoc key (thing-attributes thing) :test #'eq)))
 
 (defun match-thing (thing demands distance dice)
-  "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and those readings
-as an object descriptor (reading 127)."
+  "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and these readings,
+an object descriptor, as a second value (reading 127)."
   (let ((readings '()))
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
@@ -203,22 +209,24 @@ as an object descriptor (reading 127)."
 
 (defun notice-probability (attribute keys)
   "Return the probability that ATTRIBUTE is sensed unasked when the attributes KEYS were asked for:
-1 - (1-p)^(n+1), n of them being its supporters (manual 3.4.2; reading 224)."
+1 - (1-p)^(n+1), where p is the base probability and n the number of its supporters among KEYS
+(manual 3.4.2; reading 224)."
   (let* ((supporters (attribute-supporters attribute))
          (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
-  "True if a thing of MAP that has VALUE for ATTRIBUTE can be noticed for it. A missing boolean is
-false, but for a user's attribute only if some thing of MAP starts with it."
+  "True if a robot can notice ATTRIBUTE of a thing of MAP that has VALUE. A missing boolean
+attribute is noticed as false, but a user's attribute only if some thing of MAP starts with it."
   (or value
       (and (can-be-false-p attribute)
            (or (built-in-attribute-p attribute)
                (member (attribute-name attribute) (map-attribute-names map) :test #'eq)))))
 
 (defun notice-attributes (map keys value-of distance dice)
-  "Return readings of attributes not among KEYS that happen to be noticed in MAP. VALUE-OF, a
-function of an attribute, returns its value, and whether there is a thing to have one."
+  "Return readings of attributes not among KEYS that are noticed by chance in MAP. VALUE-OF, a
+function of an attribute, returns the attribute's value, and whether there is a thing with
+attributes at all."
   (loop for attribute in (all-attributes)
         for key = (attribute-name attribute)
         unless (member key keys :test #'eq)

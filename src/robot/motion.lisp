@@ -13,7 +13,8 @@
 
 (declaim (inline what-blocks))
 (defun what-blocks (flag)
-  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL (reading 101)."
+  "Return the obstacle, :WALL, :THING or NIL, that keeps a robot out of a cell with FLAG (reading
+101)."
   (declare (type (unsigned-byte 8) flag))
   (cond ((logtest flag +wall+) :wall)
         ((logtest flag +obsmove+) :thing)))
@@ -22,9 +23,9 @@
 ;; behind it when moving right or down, and to the cell before it when moving left or up.
 (declaim (inline free-distance))
 (defun free-distance (world x y dx dy distance)
-  "Return how far the way is free from (X,Y), in the map, in direction (DX,DY), at most DISTANCE;
-column and row of the cell at its end; the obstacle: :WALL, :THING or NIL; and whether that is in
-another column."
+  "Return the length of the free way from (X,Y), a point of the map, in direction (DX,DY), at most
+DISTANCE; the column and the row of the cell at its end; the obstacle, :WALL, :THING or NIL; and
+whether the obstacle is in another column."
   (declare (type world world) (type double-float x y dx dy distance))
   (let* ((map (world-map world)) (flags (world-flags world))
          (cell-x (cell-number x)) (cell-y (cell-number y))
@@ -53,7 +54,8 @@ another column."
                         (abs (- (+ y (* dy at)) (if back-y 0 (map-height map))))))))))
 
 (defun pass-corner (robot x y column row)
-  "Move ROBOT, in the cell at COLUMN and ROW, past a corner if only that blocks it. True if moved."
+  "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past
+the corner. Return true if ROBOT moved."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (beyond-corner world +blocking+ x y column row)
       (unless (or (null beyond-x)
@@ -62,12 +64,13 @@ another column."
               (robot-y robot) beyond-y)))))
 
 (defun only-touches-p (direction left)
-  "True if a robot that moves LEFT metres comes no farther than the contact gap in DIRECTION."
+  "True if a robot that moves LEFT metres moves at most by the contact gap along an axis, where
+DIRECTION is the component of its heading."
   (<= (* left (abs direction)) +contact-gap+))
 
 (defun may-cross-border-p (position cell direction left)
   "True if a robot at POSITION on an axis, in the column or row CELL, with LEFT metres to go, may be
-moved over the nearest border: it moves towards it or along it."
+moved over the nearest border of cells, because the robot moves towards or along this border."
   (cond ((zerop direction) (/= position (fround position)))
         ((only-touches-p direction left) t)
         ((= cell (round position)) (minusp direction))
@@ -81,8 +84,8 @@ moved over the nearest border: it moves towards it or along it."
         (robot-moved robot) moved))
 
 (defun move-through-cells (robot world dx dy distance)
-  "Move ROBOT, in the map of WORLD, by DISTANCE in direction (DX,DY), or to what blocks it. Leave
-the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
+  "Move ROBOT, in the map of WORLD, by DISTANCE in direction (DX,DY), or to an obstacle. Store the
+metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL."
   (declare (type robot robot) (type world world) (type double-float dx dy distance))
   (multiple-value-bind (moved cell-x cell-y block sideways)
       (free-distance world (robot-x robot) (robot-y robot) dx dy distance)
@@ -93,8 +96,9 @@ the metres in ROBOT-MOVED; return :WALL, :THING or NIL."
              nil))))
 
 (defun meet-obstacle (robot block dx dy moved left cell-x cell-y sideways)
-  "Stop ROBOT before BLOCK, in the next column if SIDEWAYS, else in the next row, after MOVED metres
-with LEFT to go; continue if BLOCK only touches its way. Return what blocks it, or NIL."
+  "Stop ROBOT before the obstacle BLOCK, which is in the next column if SIDEWAYS, else in the next
+row, after MOVED metres with LEFT to go. If ROBOT only touches the obstacle, continue. Return the
+obstacle that stops ROBOT, or NIL."
   (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
     (cond ((only-touches-p (if sideways dx dy) left)
            (move-within-cell robot dx dy moved cell-x cell-y)
@@ -110,14 +114,15 @@ with LEFT to go; continue if BLOCK only touches its way. Return what blocks it, 
              block))))
 
 (defun move-on (robot dx dy distance moved)
-  "Do as MOVE-THROUGH-CELLS does, for a ROBOT that has moved MOVED metres already."
+  "Call MOVE-THROUGH-CELLS for a ROBOT that has already moved MOVED metres, and add these to
+ROBOT-MOVED."
   (prog1 (move-through-cells robot (robot-world robot) dx dy distance)
     (incf (robot-moved robot) moved)))
 
 (defun leave-cell (robot)
-  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, backwards if those are
-negative, or to what blocks it. Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL. From
-outside the map there is no way."
+  "Move ROBOT out of its cell along its heading by ROBOT-MOVED metres, backwards if negative, or to
+an obstacle. Store the metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL. A
+robot outside the map does not move."
   (declare #.*hot* (type robot robot))
   (let ((world (robot-world robot)) (dx (robot-cos robot)) (dy (robot-sin robot))
         (distance (robot-moved robot)))
@@ -132,8 +137,8 @@ outside the map there is no way."
 
 (declaim (inline sweep))
 (defun sweep (robot distance)
-  "Move ROBOT along its heading by DISTANCE, backwards if that is negative, or to what blocks it.
-Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
+  "Move ROBOT along its heading by DISTANCE, backwards if negative, or to an obstacle. Store the
+metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL (reading 100)."
   (declare #.*hot* (type robot robot) (type double-float distance))
   (let* ((x (robot-x robot)) (y (robot-y robot))
          (cell-x (whole-part x)) (cell-y (whole-part y))
@@ -150,8 +155,8 @@ Leave the metres in ROBOT-MOVED; return :WALL, :THING or NIL (reading 100)."
 
 (declaim (inline component))
 (defun component (number)
-  "Return NUMBER, a component of a heading, or 0 if it is so small that it comes from rounding. So a
-robot can drive along the border of two cells and stay in one of them."
+  "Return NUMBER, a component of a heading, or 0 if NUMBER is as small as a rounding error. So a
+robot can drive along the border of two cells and stay in one cell."
   (declare (type double-float number))
   (if (< (abs number) 1d-12) 0d0 number))
 
@@ -181,52 +186,53 @@ robot can drive along the border of two cells and stay in one of them."
   (set-robot-angle robot angle))
 
 (defun robot-cell-index (robot)
-  "Return the index of the cell that ROBOT is in, or NIL if it has been put outside the map."
+  "Return the index of the cell that ROBOT is in, or NIL if ROBOT is outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
 (declaim (inline robot-speed-now step-now standing-p))
 (defun robot-speed-now (robot)
-  "Return the speed of ROBOT within MAX-SPEED* as it is now, in metres per tick (reading 93)."
+  "Return the speed of ROBOT, at most the current MAX-SPEED*, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
 
 (defun step-now (robot)
-  "Return how far ROBOT drives in a tick at its speed, in metres, without noise."
+  "Return the distance, in metres, that ROBOT drives in a tick at its speed, without noise."
   (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
 
 (defun standing-p (robot)
-  "True if ROBOT cannot drive because its speed is 0, or next to it."
+  "True if ROBOT cannot drive because its speed is 0 or almost 0."
   ;; Speeds this low are lost in the rounding of positions.
   (< (the double-float (robot-speed-now robot)) 1d-12))
 
 (defun longest-step (robot)
-  "Return how far ROBOT can get in a tick at most, in metres."
+  "Return the greatest distance, in metres, that ROBOT can drive in a tick."
   (* (step-now robot) (+ 1d0 (double motion-noise*))))
 
 (defun robot-turn-angle-now (robot)
-  "Return the turn angle of ROBOT within its limits as they are now, in radians per tick."
+  "Return the turn angle of ROBOT, within the current limits MIN-TURN-ANGLE* and MAX-TURN-ANGLE*, in
+radians per tick."
   (max (double min-turn-angle*) (min (robot-turn-angle robot) (double max-turn-angle*))))
 
 ;;; Driving and turning.
 
 (defun begin-movement (robot)
-  "Start a new movement of ROBOT here."
+  "Record that a new movement of ROBOT starts here."
   (setf (robot-start-x robot) (robot-x robot)
         (robot-start-y robot) (robot-y robot)
         (robot-estimate-x robot) 0d0
         (robot-estimate-y robot) 0d0))
 
 (defun robot-last-move (robot)
-  "Return how far the last movement has taken ROBOT, in x and in y, in metres (reading 200)."
+  "Return the distances in x and in y, in metres, of the last movement of ROBOT (reading 200)."
   (values (- (robot-x robot) (robot-start-x robot))
           (- (robot-y robot) (robot-start-y robot))))
 
 (defun robot-last-move-estimate (robot)
-  "Return the robot's estimate of its last movement, in x and in y."
+  "Return the robot's estimate of the distances of its last movement, in x and in y, in metres."
   (values (robot-estimate-x robot) (robot-estimate-y robot)))
 
 (declaim (inline count-distance))
 (defun count-distance (robot low high)
-  "Add LOW to HIGH metres, negative if backwards, to the odometers of ROBOT."
+  "Add a distance from LOW to HIGH metres, negative if backwards, to the odometers of ROBOT."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
     (odometer-drive odometer low high))
@@ -235,9 +241,10 @@ robot can drive along the border of two cells and stay in one of them."
     (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
 
 (defun drive-tick (robot &optional (limit +endless+))
-  "Drive ROBOT for one tick at its speed, but not much more than LIMIT metres; backwards if LIMIT is
-negative. Return :WALL or :THING if that blocked it, else NIL. The distance is uniform within
-MOTION-NOISE* of the speed; the odometers read an interval that contains it (reading 96)."
+  "Drive ROBOT for one tick at its speed, but not by more than LIMIT metres apart from noise;
+backwards if LIMIT is negative. Return the obstacle, :WALL or :THING, if ROBOT was blocked, else
+NIL. The distance is uniformly distributed within MOTION-NOISE* of the speed; the odometers read an
+interval that contains the distance (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
          (step (step-now robot))
@@ -259,8 +266,9 @@ MOTION-NOISE* of the speed; the odometers read an interval that contains it (rea
     block))
 
 (defun turn-tick (robot angle)
-  "Turn ROBOT for one tick by about ANGLE, in radians: uniform within ROBOT-TURN-MAX-ERROR* of
-it. The interval that the odometers read is left in ROBOT-TURNED-LOW and -HIGH."
+  "Turn ROBOT for one tick by about ANGLE, in radians; the true angle is uniformly distributed
+within ROBOT-TURN-MAX-ERROR* of ANGLE. Store the bounds of the interval that the odometers read in
+ROBOT-TURNED-LOW and ROBOT-TURNED-HIGH."
   (let* ((world (robot-world robot))
          (size (abs (double angle)))
          (noise (noise-of-step robot-turn-max-error* size (robot-turn-angle-now robot)))

@@ -43,8 +43,9 @@
         (string (odometer-name odometer))))
 
 (defun odometer-estimate (odometer)
-  "Return the robot's position on the map by ODOMETER, the middle of its interval: x and y in
-metres, and the heading in radians. For displays, as programs of the robot cannot know it."
+  "Return the robot's position on the map according to ODOMETER, the middle of its interval: x and y
+in metres, and the heading in radians. Only displays use this position: a robot's program cannot
+know it."
   (let* ((x (* 0.5d0 (+ (odometer-x-min odometer) (odometer-x-max odometer))))
          (y (* 0.5d0 (+ (odometer-y-min odometer) (odometer-y-max odometer))))
          (axis (odometer-origin-angle odometer))
@@ -82,18 +83,20 @@ metres, and the heading in radians. For displays, as programs of the robot canno
 
 (declaim (inline rounding odometer-drive))
 (defun rounding (value)
-  "Return more than the rounding error of a sum that gave VALUE."
+  "Return an upper bound of the rounding error of a sum with the result VALUE."
   (declare (type double-float value))
   (+ 1d-14 (* 1d-15 (abs value))))
 
 (defmacro widen (low-place low high-place high)
-  "Add the interval from LOW to HIGH to that in the places, rounding outwards."
+  "Add the interval from LOW to HIGH to the interval whose bounds are in LOW-PLACE and HIGH-PLACE,
+rounding outwards."
   `(progn
      (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding sum))))
      (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding sum))))))
 
 (defun odometer-drive (odometer low high)
-  "Count LOW to HIGH metres along the heading, both negative if backwards (reading 97)."
+  "Add a drive of LOW to HIGH metres along the heading to ODOMETER. Both are negative if backwards
+(reading 97)."
   (declare (type odometer odometer) (type double-float low high))
   (labels ((least (factor) (* factor (if (minusp factor) high low)))
            (most (factor) (* factor (if (minusp factor) low high)))
@@ -135,9 +138,9 @@ metres, and the heading in radians. For displays, as programs of the robot canno
 
 (public get-odometer-pos)
 (defun get-odometer-pos (odometer &optional interval)
-  "Return a PT-INTERVAL that contains the position, in metres, relative to where ODOMETER was
-last reset; its x axis is the heading then. INTERVAL, a PT-INTERVAL, is modified and returned if
-given (manual 3.2.2)."
+  "Return a PT-INTERVAL that contains the robot's position, in metres, relative to the point where
+ODOMETER was last reset. The x axis is the robot's heading at that reset. INTERVAL, a PT-INTERVAL,
+is modified and returned if given (manual 3.2.2)."
   (check-odometer odometer 'get-odometer-pos)
   (check-argument get-odometer-pos interval (typep interval '(or null pt-interval))
                   "a PT-INTERVAL to modify")
@@ -173,14 +176,14 @@ INTERVAL, if given, is modified and returned (manual 3.2.2)."
 
 (public robot-odometer)
 (defun robot-odometer (robot name)
-  "Return the odometer of ROBOT called NAME, or NIL (manual 3.2.2). Signals WRONG-ARGUMENT unless
+  "Return the odometer of ROBOT named NAME, or NIL (manual 3.2.2). Signals WRONG-ARGUMENT unless
 NAME is a symbol or a string."
   (check-argument robot-odometer name (typep name '(or symbol string)) "an odometer's name")
   (find name (robot-odometers robot) :key #'odometer-name :test #'same-name-p))
 
 (public robot-main-odometer)
 (defun robot-main-odometer (robot)
-  "Return the odometer that ROBOT started with; it is called MAIN (manual 3.2.2; reading 232)."
+  "Return the odometer that ROBOT started with, which is named MAIN (manual 3.2.2; reading 232)."
   (robot-odometer robot 'main))
 
 ;;; The place that a robot senses (manual 3.4.3, 3.5).
@@ -190,9 +193,9 @@ NAME is a symbol or a string."
   (cell-type (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot))))
 
 (defun sense-place-type (robot)
-  "Return the place type that ROBOT senses where it is, or NIL. A true one is missed with the
-probability TYPE-FALSE-NEG*. Where there is none, a random one is sensed with TYPE-FALSE-POS*
-(reading 221)."
+  "Return the place type that ROBOT senses where it is, or NIL. The true type is missed with the
+probability TYPE-FALSE-NEG*. Where there is no place, a random type is sensed with the probability
+TYPE-FALSE-POS* (reading 221)."
   (let ((place (robot-place-here robot))
         (dice (world-dice (robot-world robot) :place)))
     (cond (no-sensor-error* (and place (place-type place)))
@@ -203,7 +206,7 @@ probability TYPE-FALSE-NEG*. Where there is none, a random one is sensed with TY
 
 (defun canonical-directions (robot type)
   "Return a list of the two canonical directions, in radians, that TYPE gives the cell in which
-ROBOT is. A cell without a place has none; the heading stands for both (reading 223)."
+ROBOT is. In a cell without a place, both directions are the robot's heading (reading 223)."
   (let ((place (robot-place-here robot)))
     (if place
         (multiple-value-list
@@ -211,6 +214,7 @@ ROBOT is. A cell without a place has none; the heading stands for both (reading 
         (list (robot-angle robot) (robot-angle robot)))))
 
 (defun nearest-direction (directions heading)
-  "Return the one of DIRECTIONS, a list of angles, that differs least from HEADING (reading 73)."
+  "Return the direction in DIRECTIONS, a list of angles, that differs least from HEADING (reading
+73)."
   (flet ((turn-to (direction) (abs (angle-difference direction heading))))
     (first (stable-sort (copy-list directions) #'< :key #'turn-to))))

@@ -9,8 +9,8 @@
 ;;; it.
 
 (defstruct (planned-way (:constructor make-planned-way (points interruption)) (:copier nil))
-  "POINTS, a list of lists (x y), and INTERRUPTION, the robot's last interruption when they were
-published. The way is void after another interruption."
+  "A way that a program has published: POINTS, a list of lists (x y), and INTERRUPTION, the robot's
+last interruption at that time. After another interruption the way is no longer valid."
   (points '() :type list :read-only t)
   (interruption nil :read-only t))
 
@@ -25,8 +25,8 @@ published. The way is void after another interruption."
 (addition publish-way)
 (defun publish-way (robot points)
   "Show the way of ROBOT through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of
-PTs or lists (x y), as FIND-WAY returns it; () removes the way. It is shown until you publish
-another or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your
+PTs or lists (x y), as FIND-WAY returns it; () removes the way. The way is shown until you publish
+another way or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your
 programs can. ROBOT does not move, and digests and journals do not change. Return ROBOT. Signals
 WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
@@ -39,8 +39,8 @@ WRONG-ARGUMENT."
 
 (addition robot-planned-way)
 (defun robot-planned-way (robot)
-  "Return the points, lists (x y), of the way that PUBLISH-WAY has set for ROBOT; () if there is
-none, or a command of ROBOT has been interrupted since."
+  "Return the points, lists (x y), of the way that PUBLISH-WAY has set for ROBOT; () if there is no
+way, or if a command of ROBOT has been interrupted since."
   (let ((way (robot-published-way robot)))
     (and way
          (eq (planned-way-interruption way) (resource-interruption robot))
@@ -49,7 +49,8 @@ none, or a command of ROBOT has been interrupted since."
 ;;; The remaining way.
 
 (defun foot-on (from to x y)
-  "Return the point between FROM and TO, on a line, that is nearest to X, Y, and how far it is."
+  "Return the point (x y) nearest to X, Y on the line segment between FROM and TO, and its distance
+from X, Y."
   (destructuring-bind (x1 y1 x2 y2) (append from to)
     (let* ((dx (- x2 x1)) (dy (- y2 y1))
            (square (+ (* dx dx) (* dy dy)))
@@ -79,8 +80,8 @@ none, or a command of ROBOT has been interrupted since."
 
 (addition make-odometer)
 (defun make-odometer (robot name)
-  "Return a new odometer of ROBOT called NAME, a symbol. Another of that name is destroyed: it
-no longer changes (manual 3.2.2)."
+  "Return a new odometer of ROBOT named NAME, a symbol. An older odometer of the same name is
+destroyed: it no longer changes (manual 3.2.2)."
   (check-argument make-odometer robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument make-odometer name (and name (symbolp name)) "a symbol")
   (changing ((robot-world robot) make-odometer robot name)
@@ -89,7 +90,8 @@ no longer changes (manual 3.2.2)."
 (define-operator 'make-odometer '(robot name) #'make-odometer)
 
 (defun reset-by-program (odometer part)
-  "Reset PART of ODOMETER for a program; return ODOMETER. If it was destroyed, no journal has this."
+  "Reset PART of ODOMETER for a program; return ODOMETER. The reset of a destroyed odometer is not
+journalled."
   (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
     (if (eq odometer (robot-odometer robot name))
         (changing ((robot-world robot) reset-odometer robot name part)
@@ -123,8 +125,8 @@ no longer changes (manual 3.2.2)."
 
 (addition place-robot)
 (defun place-robot (robot x y angle)
-  "Put ROBOT at (X,Y) heading ANGLE at once, without error and ignoring obstacles: a change from
-outside, as the prompt's POS and ANGLE make. Inside a wall, a warning is queued. Signals
+  "Put ROBOT at (X,Y) heading ANGLE at once, exactly and without regard to obstacles, as the lines
+POS and ANGLE of the prompt do. A warning is queued if the position is inside a wall. Signals
 WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) (argument-type-text 'robot robot))
   (check-of-type 'place-robot 'x x 'number)

@@ -9,12 +9,12 @@
 ;;; it, each in its own world.
 
 (define-record blueprint
-  "A robot as DEFROBOT has defined it."
+  "The definition of a robot by DEFROBOT, from which robots are made."
   (name nil symbol "the name of the robot" :export)
   (map nil symbol "the name of the map that the robot starts in" :export)
   (x 0d0 double-float "the x coordinate where the robot starts, in metres" :export)
   (y 0d0 double-float "the y coordinate where the robot starts, in metres" :export)
-  (angle 0d0 double-float "the heading with which the robot starts, in radians" :export)
+  (angle 0d0 double-float "the robot's heading at its start, in radians" :export)
   (parts '() list "a list (kind initarg value ...) for each of its parts" :export))
 
 (defmethod print-object ((blueprint blueprint) stream)
@@ -43,7 +43,7 @@
     "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual
 2.2)."
   (:fixed
-   (name nil symbol "the symbol that the robot was defined by" :addition)
+   (name nil symbol "the symbol that names the robot" :addition)
    (blueprint nil (or null blueprint) "the blueprint that the robot was made from" :export)
    (world nil (or null world) "the world that the robot is in" :addition)
    (cameras #() simple-vector "the vector of the robot's cameras" :part :addition)
@@ -61,37 +61,42 @@
    (turn-angle 0.3d0 double-float "the turning speed that was set, in radians per tick" :addition)
    (odometer-list '() list "the robot's odometers, oldest first" :part)
    (designators (make-array 4 :adjustable t :fill-pointer 0) vector
-                "the vector of the robot's designators by number; NIL: none" :part :export)
+                "the vector of the robot's designators by number; an element is NIL if no designator
+has the number" :part :export)
    (designators-made 0 fixnum "how many designators the robot has had so far")
    (ended-tracks '() list
-                 "the tracks that have ended in this tick, newest first: (track . code)" :export)
+                 "a list of pairs (track . code) for the tracks that have ended in this tick, newest
+first" :export)
    (last-place nil symbol "the name of the place type that the robot last sensed, or NIL" :addition)
    (drove-tick -1 fixnum "the tick in which the robot last drove" :export))
   (:memory
    (start-x 0d0 double-float "where the last movement began, the x coordinate in metres")
    (start-y 0d0 double-float "where the last movement began, the y coordinate in metres")
-   (estimate-x 0d0 double-float "the estimate of how far it has moved since, in x, in metres")
-   (estimate-y 0d0 double-float "the estimate of how far it has moved since, in y, in metres")
+   (estimate-x 0d0 double-float "the estimate of the robot's movement since then, in x, in metres")
+   (estimate-y 0d0 double-float "the estimate of the robot's movement since then, in y, in metres")
    (placements 0 fixnum
-               "how many times the robot has been put somewhere, other than by driving" :export)
+               "how many times the robot has been put at a position without driving there" :export)
    (put-x 0d0 double-float "where the robot was last put, the x coordinate in metres" :export)
    (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres" :export)
    (failure nil t
-            "a record of the command that failed last on the robot or a part, or NIL" :export)
+            "a record of the last failed command of the robot or of a part, or NIL" :export)
    (published-way nil t "the way that PUBLISH-WAY was last given, or NIL" :shared))
   (:scratch
    (moved 0d0 double-float "the true length of the last step of driving, in metres" :export)
    (turned-low 0d0 double-float
-               "the lower bound read for the last step of turning, in radians" :export)
+               "the lower bound of the odometers' reading of the last step of turning, in
+radians" :export)
    (turned-high 0d0 double-float
-                "the upper bound read for the last step of turning, in radians" :export))
+                "the upper bound of the odometers' reading of the last step of turning, in
+radians" :export))
   (:link
    (retired nil (or null string) "why the robot's run is over, or NIL while it is not" :export)
    (enders '() list "the functions to call when the robot's run is over" :export)))
 
 ;; Parts of another run are not copied.
 (defun copy-of-robots (object robot copier)
-  "Return the copy by COPIER of OBJECT, which is ROBOT or belongs to it."
+  "Return the copy that COPIER makes of OBJECT, which is ROBOT or belongs to ROBOT. If ROBOT is in
+another run, return OBJECT."
   (if (eq (robot-world robot) (copier-option copier :world))
       (copy-slots object copier)
       object))
@@ -125,7 +130,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
              "the camera's TRACK, or NIL if it tracks nothing; see CAMERA-TRACKS" :part :export))
   (:memory
    (last-view '() list "the last view, a list of numbers; () before the first" :shared :addition)
-   (last-view-tick 0 tick-count "the tick in which that was taken" :export)))
+   (last-view-tick 0 tick-count "the tick in which the last view was taken" :export)))
 
 (public hand)
 (addition hand-p)
@@ -137,14 +142,16 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (contents '() list "a list of the thing that the hand holds, or ()" :addition))
   (:memory
    (way-in '() list
-           "what plans have put the hand into and it is still in, innermost first" :export)))
+           "the containers that plans have put the hand into and that it is still in, innermost
+first" :export)))
 
 (public storage-bin)
 (addition storage-bin-p)
 (define-kind (storage-bin :include part)
-    "A storage bin on the robot, with room for things of CAPACITY size units (manual 3.6)."
+    "A storage bin of a robot, with room for things with a total size of CAPACITY units (manual
+3.6)."
   (:fixed
-   (capacity 0d0 double-float "the size of all that fits into the bin" :addition))
+   (capacity 0d0 double-float "the total size of the things that fit into the bin" :addition))
   (:state
    (closed-p nil boolean "the bin is closed" :addition)
    (contents '() list "the things in the bin, newest first" :addition)))
@@ -153,12 +160,12 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
           storage-bin-robot storage-bin-index)
 
 (defun not-a-robot-text (value)
-  "Return a text on how to get a robot if VALUE is NIL or a robot's name; else NIL."
+  "Return a text that says how to get a robot if VALUE is NIL or a robot's name; else NIL."
   (let ((name (and value (typep value '(or symbol string)) (find-blueprint value nil)
                    (string-downcase value))))
     (when (or name (null value))
-      (format nil "~:[its name is a variable that holds it~;~:*~A without a quote is one~] in ~
-                   (with-simulation (~A) ...) or after (simulator '~:*~A)"
+      (format nil "~:[a robot's name is a variable whose value is the robot~;~:*~A without a quote ~
+                   is a robot~] in (with-simulation (~A) ...) or after (simulator '~:*~A)"
               name (or name "ROBOT")))))
 
 (define-argument-type 'robot #'robot-p "a robot" #'not-a-robot-text)
@@ -177,7 +184,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   (world-timeline world))
 
 (defun ensure-timeline (world)
-  "Return the timeline of WORLD, made if it has none."
+  "Return the timeline of WORLD. Make it if WORLD has no timeline."
   (or (world-timeline world)
       (progn (compare-and-swap (world-timeline world)
                                nil (make-timeline (map-name (world-map world))))
@@ -187,7 +194,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (addition world-tick)
 (declaim (inline world-tick))
 (defun world-tick (world)
-  "Return how many ticks have passed in WORLD; inside a tick, its number."
+  "Return how many ticks have passed in WORLD or, inside a tick, the number of this tick."
   (let ((timeline (world-timeline world)))
     (declare (type (or null timeline) timeline))
     (if timeline (timeline-tick timeline) 0)))
@@ -211,8 +218,8 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
     (:hands robot-hands hand)
     (:bins robot-bins storage-bin)
     (:sensors robot-sensors part))
-  "The vectors that hold a robot's parts: name, reader, and type of the elements. A part is in the
-first vector whose type it has.")
+  "The vectors that hold a robot's parts: name, reader, and type of the elements. A part belongs to
+the first vector whose element type fits.")
 
 (addition robot-parts)
 (defun robot-parts (robot)
@@ -221,7 +228,7 @@ first vector whose type it has.")
         append (coerce (the simple-vector (funcall reader robot)) 'list)))
 
 (defun (setf robot-parts) (parts robot)
-  "Set the parts of ROBOT, which is being made, to the list PARTS."
+  "Set the parts of ROBOT to the list PARTS, while ROBOT is being made."
   (dolist (row *part-vectors* parts)
     (destructuring-bind (key reader type) row
       (declare (ignore key))
@@ -237,7 +244,7 @@ parts and its mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (defun unsettle (robot)
-  "Make the next tick check the world of ROBOT. Call this before creating anything that
+  "Make the next tick check the world of ROBOT. Call UNSETTLE before creating anything that
 WORLD-SETTLED-P excludes."
   (setf (world-settled-p (robot-world robot)) nil))
 
@@ -273,15 +280,15 @@ WORLD-SETTLED-P excludes."
 
 (addition robot-part)
 (defun robot-part (robot kind index)
-  "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of your own, with INDEX
-among those, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return the part of ROBOT of KIND, a symbol such as CAMERA or a kind of your own, with INDEX among
+the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument robot-part kind (typep kind '(or symbol string)) "the name of a kind of part")
   (unless (find-kind-name kind 'part)
     (reject-name "kind of part" kind (mapcar #'kind-name (all-kinds 'part))))
   (part-of robot (lambda (robot) (parts-of-kind robot kind)) index 'robot-part))
 
 (defun parts-of-kind (robot kind)
-  "Return a vector of the parts of ROBOT of the kind called KIND."
+  "Return a vector of the parts of ROBOT whose kind is named KIND."
   (coerce (remove kind (robot-parts robot) :key #'type-of :test-not #'same-name-p) 'simple-vector))
 
 ;;; Parts are printed with their numbers (manual E).

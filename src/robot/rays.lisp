@@ -11,22 +11,23 @@
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the current scan has found; clear between scans.")
 (define-constant +least-component+ 1d-12
-  :documentation "Any component of a ray's direction that is nearer to 0 is taken for this.")
+  :documentation "The replacement for any component of a ray's direction that is nearer to 0.")
 
 (deftype flag-vector () '(simple-array (unsigned-byte 8) (*)))
 (deftype index-step ()
-  "How far it is from a cell to the next, by index."
+  "The difference of the indices of two neighbouring cells."
   '(signed-byte 16))
 
 (declaim (inline nonzero walk-to-corner walk-ray))
 (defun nonzero (component)
-  "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if it is almost 0 (either sign will do)."
+  "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if COMPONENT is almost 0, whatever its
+sign."
   (declare (type double-float component))
   (if (< (abs component) +least-component+) +least-component+ component))
 
 (defun walk-to-corner (visit world x y dx dy)
-  "Do as WALK-RAY does, but stop at an obstructed corner through which the ray passes. Return the
-point beyond that corner, as two values, or NIL if the ray has ended."
+  "Call VISIT as WALK-RAY does, but stop at an obstructed corner through which the ray passes.
+Return the point beyond the corner, as two values, or NIL if the ray has ended."
   (declare (type function visit) (type double-float x y dx dy))
   (let* ((flags (world-flags world)) (map (world-map world))
          (beyond-x nil) (beyond-y nil))
@@ -43,8 +44,8 @@ point beyond that corner, as two values, or NIL if the ray has ended."
 
 (defun walk-ray (visit world x y dx dy)
   "Call VISIT with index and flags of each cell of WORLD, after the first, on the ray from (X,Y) in
-direction (DX,DY), until it returns true or the map ends. At a corner the ray meets neither of the
-two cells beside it, if one of them lets it through (reading 100)."
+direction (DX,DY), until VISIT returns true or the map ends. At a corner the ray meets neither of
+the two cells beside the corner, if one of these cells lets the ray through (reading 100)."
   (declare (type function visit) (type double-float x y dx dy))
   (let ((dx (nonzero dx)) (dy (nonzero dy)) (map (world-map world)))
     (loop
@@ -56,8 +57,8 @@ two cells beside it, if one of them lets it through (reading 100)."
         (setf x beyond-x y beyond-y)))))
 
 (defun cells-past-corner (world x y dx dy)
-  "If an opaque cell stops a ray in direction (DX,DY) at (X,Y), but the ray only meets a corner
-there, continue it. Return a list of the cells with things that it then meets."
+  "If an opaque cell stops a ray in direction (DX,DY) at (X,Y), but the ray only touches a corner
+there, continue the ray. Return a list of the cells with things that the continued ray meets."
   (let ((cells '()))
     (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
       (when beyond-x
@@ -72,8 +73,9 @@ there, continue it. Return a list of the cells with things that it then meets."
 (defmacro do-fan ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
                   &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
-ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. All are computed
-before BODY runs for the direction before, so that the processor divides while BODY walks."
+ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. The values for a
+direction are computed before BODY runs for the previous direction, so that the processor divides
+while BODY walks."
   (with-gensyms (spacing first cos sin next-x next-y next-per-x next-per-y)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))
@@ -99,10 +101,10 @@ before BODY runs for the direction before, so that the processor divides while B
 
 (declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
-  "Return how the index changes where a ray crosses borders of one axis, the distance of the first
-crossing, and the largest number of crossings. PER is the distance from border to border; BACK is
-true towards smaller coordinates. BEHIND and AHEAD are the distances to the next borders,
-LEFT-BEHIND and LEFT-AHEAD the numbers of borders."
+  "Return the change of the cell index where a ray crosses a border of one axis, the distance of the
+first crossing, and the largest number of crossings. PER is the distance from border to border along
+the ray; BACK is true if the ray runs towards smaller coordinates. BEHIND and AHEAD are the
+distances to the next border in both directions, LEFT-BEHIND and LEFT-AHEAD the numbers of borders."
   (declare (type double-float per behind ahead) (type grid-size stride left-behind left-ahead))
   (if back
       (values (- stride) (* per behind) left-behind)

@@ -12,12 +12,12 @@
 
 (declaim (inline mark-seen walls-around-p))
 (defun mark-seen (flags index)
-  "Swap the flags +SEEN+ and +OCCUPIED+ in FLAGS at INDEX."
+  "Replace +OCCUPIED+ by +SEEN+, or the reverse, in the element of FLAGS at INDEX."
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
 
 (defun walls-around-p (map x y)
-  "True if any line from (X,Y) ends at a wall of MAP."
+  "True if every line from (X,Y) ends at a wall of MAP."
   (declare (type double-float x y))
   (and (map-enclosed map)
        (<= 1d0 x) (< x (double (1- (map-width map))))
@@ -58,8 +58,8 @@
     (nreverse found)))
 
 (defun place-cells (world number x y angle width count)
-  "Return a list of the cells of WORLD that a fan of rays as in OCCUPIED-CELLS meets and whose
-place type has NUMBER in the map."
+  "Return a list of the cells of WORLD whose place type has NUMBER in the map and that a fan of
+COUNT rays from (X,Y) meets, WIDTH radians wide around ANGLE."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
   (let ((flags (world-flags world)) (places (map-places (world-map world))) (found '()))
@@ -92,7 +92,8 @@ meet within REACH columns and rows."
                                 scan-density* reach)))))
 
 (defun faced-p (camera thing)
-  "True if CAMERA looks straight at THING, within reach on the floor, or is where that is."
+  "True if THING, on the floor within reach, is in the field of view of CAMERA and not hidden, or is
+at the position of CAMERA."
   (let ((robot (camera-robot camera)) (x (thing-x thing)) (y (thing-y thing)))
     (or (<= (distance-to robot x y) +contact+)
         (and (<= (abs (angle-difference (bearing-to robot x y) (camera-heading camera)))
@@ -100,7 +101,7 @@ meet within REACH columns and rows."
              (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) x y)))))
 
 (defun cells-around (robot)
-  "Return a list of the cells of the map around that of ROBOT, and its own."
+  "Return a list of the indices of ROBOT's cell and of the cells around it."
   (let ((map (world-map (robot-world robot)))
         (column (floor (robot-x robot))) (row (floor (robot-y robot))))
     (loop for y from (1- row) to (1+ row)
@@ -109,7 +110,8 @@ meet within REACH columns and rows."
                        when index collect index))))
 
 (defun things-in-cells (cells camera local)
-  "Return the things in CELLS local to CAMERA's robot, or unless LOCAL the others (reading 131)."
+  "Return the things in CELLS that are local to CAMERA's robot if LOCAL, else the things that are
+not (reading 131)."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
     (dolist (index cells (nreverse things))
       (do-cell (thing index world)
@@ -117,7 +119,8 @@ meet within REACH columns and rows."
           (push thing things))))))
 
 (defun things-in-open-view (camera local)
-  "Return the things on the floor in CAMERA's view: within reach if LOCAL, else the others."
+  "Return the things on the floor that CAMERA has in view: those within reach if LOCAL, else those
+out of reach."
   (let* ((cells (cells-in-view camera (if local 1 +no-limit+)))
          (others (and local cells
                       (remove-if (lambda (index) (member index cells))
@@ -138,7 +141,7 @@ meet within REACH columns and rows."
 ;;; Finding some of them, and others.
 
 (defun phantom-count (probability all dice)
-  "Return how many false designators a search finds: if not ALL, at most one."
+  "Return how many false designators a search finds by chance, at most 8 if ALL, else at most 1."
   (loop with probability = (sensing-chance probability)
         while (and (< count 8) (chance probability dice))
         count t into count
@@ -146,12 +149,13 @@ meet within REACH columns and rows."
         finally (return count)))
 
 (defun some-of (finds all dice)
-  "Return FINDS if ALL, else a list of any one of them; () if there are none (reading 133)."
+  "Return FINDS if ALL, else a list of one element of FINDS, chosen at random; () if FINDS is empty
+(reading 133)."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
 (defun matching-things (camera type demands dice)
-  "Return a list of (thing . readings) for things that CAMERA has in view and does not miss, and
-whose readings fit DEMANDS (reading 129)."
+  "Return a list of pairs (thing . readings) for the things of TYPE that CAMERA has in view and does
+not miss by chance, and whose readings fit DEMANDS (reading 129)."
   (loop with missing = (sensing-chance miss-thing-prob*)
         for thing in (things-in-view camera type)
         for distance = (seen-from camera thing)
@@ -171,8 +175,8 @@ whose readings fit DEMANDS (reading 129)."
                    (describe-thing thing readings (seen-from camera thing) dice))))
 
 (defun look-for-things (camera type specification &key all)
-  "Return sightings by CAMERA of things of TYPE that fit SPECIFICATION: one, or ALL. False sightings
-may be among them."
+  "Return a list of CAMERA's sightings of things of TYPE that fit SPECIFICATION: all sightings if
+ALL, else one. The list may contain false sightings."
   (let* ((world (robot-world (camera-robot camera)))
          (dice (world-dice world :looking))
          (demands (parse-specification specification))
@@ -188,7 +192,7 @@ may be among them."
                       (false-sighting camera type (false-description world demands dice) dice)))))
 
 (defun places-in-view (camera type)
-  "Return the places of TYPE that CAMERA, in the open, has in view, but for the robot's own cell."
+  "Return the places of TYPE that CAMERA, in the open, has in view, except the robot's own cell."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (map (world-map world))
          (number (place-type-index map type)) (own (robot-cell-index robot)))
     (when (and number own)
@@ -200,9 +204,9 @@ may be among them."
                         (cell-type (map-cell map x y)))))))
 
 (defun look-for-places (camera type &key all (name (place-type-name type)))
-  "Return sightings by CAMERA, in the open, of places of the place type TYPE: one, or ALL. False
-sightings may be among them. They are described by NAME, the symbol by which the caller asked for
-TYPE (reading 74)."
+  "Return a list of CAMERA's sightings, in the open, of places of the place type TYPE: all sightings
+if ALL, else one. The list may contain false sightings. The data of each sighting are NAME, the
+symbol by which the caller asked for TYPE (reading 74)."
   (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
          (missing (sensing-chance miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
@@ -232,7 +236,8 @@ TYPE (reading 74)."
     best))
 
 (defun true-pixel (world x y dx dy)
-  "Return what a ray from (X,Y) in direction DX, DY sees, without noise (reading 65)."
+  "Return the substance parameter that a ray from (X,Y) in direction DX, DY sees, without noise
+(reading 65)."
   (let ((sum 0d0) (count 1) (last 0d0))
     (flet ((visit (index flag)
              (cond ((zerop flag) nil)
@@ -250,8 +255,9 @@ TYPE (reading 74)."
     (/ (+ sum last) count)))
 
 (defun noisy-pixel (value map dice)
-  "Return a reading of VALUE: uniform within PIXEL-ERROR-RANGE* of it, or occasionally any number
-from the least to the greatest parameter of the walls of MAP (reading 147)."
+  "Return a noisy reading of VALUE, a true pixel: uniformly distributed within PIXEL-ERROR-RANGE* of
+VALUE, or occasionally any number from the least to the greatest parameter of the walls of MAP
+(reading 147)."
   (cond (no-sensor-error* value)
         ((chance pixel-outlier-prob* dice)
          (roll-between (map-least-parameter map) (map-greatest-parameter map) dice))

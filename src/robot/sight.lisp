@@ -15,15 +15,15 @@
   (the fixnum (floor (the (double-float -1d9 1d9) x))))
 
 (defun within-cell (coordinate cell)
-  "Return COORDINATE, or the nearest inside CELL if rounding took it out."
+  "Return COORDINATE or, if rounding moved it out of CELL, the nearest coordinate inside CELL."
   (declare (type double-float coordinate) (type fixnum cell))
   ;; The number before the far border is the greatest that is less.
   (max (float cell 1d0)
        (min coordinate (* (float (1+ cell) 1d0) (- 1d0 double-float-negative-epsilon)))))
 
 (define-constant +contact-gap+ 1d-6
-  :documentation "How far from an obstacle a robot stops, in metres. A line no farther than this
-from a corner, along both axes, passes through it.")
+  :documentation "The distance from an obstacle at which a robot stops, in metres. A line that is no
+farther than this from a corner, along both axes, passes through the corner.")
 
 (define-constant +blocking+ (logior +wall+ +obsmove+)
   :documentation "The flags of a cell that keeps robots out.")
@@ -36,7 +36,7 @@ from a corner, along both axes, passes through it.")
 
 (defun beyond-corner (world mask x y column row)
   "If (X,Y) is at a corner of the cell at COLUMN and ROW, and the two cells beside the corner do not
-stop a line from there, return the point just beyond it, in the cell opposite, as two values; else
+both stop a line, return the point just beyond the corner, in the cell opposite, as two values; else
 NIL. Cells with a flag of MASK stop the line."
   (let ((corner-x (round x)) (corner-y (round y)))
     (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
@@ -49,8 +49,9 @@ NIL. Cells with a flag of MASK stop the line."
                   (within-cell (double corner-y) other-row)))))))
 
 (defun past-corner (world mask x y dx dy)
-  "If a line in direction (DX,DY) that is stopped at (X,Y) only meets a corner there and passes,
-return the point just beyond it, as two values; else NIL. Cells with a flag of MASK stop the line."
+  "If a line in direction (DX,DY), stopped at (X,Y), only touches a corner there and may pass,
+return the point just beyond the corner, as two values; else NIL. Cells with a flag of MASK stop the
+line."
   (flet ((before (position direction)
            (if (plusp direction) (1- (round position)) (round position))))
     (unless (or (zerop dx) (zerop dy))
@@ -65,8 +66,8 @@ return the point just beyond it, as two values; else NIL. Cells with a flag of M
        (= (floor y) (floor to-y))))
 
 (defun corner-clear-p (world x y dx dy to-x to-y)
-  "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only meets a corner
-there and passes."
+  "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only touches a corner
+there and reaches its end."
   (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
     (and beyond-x
          (or (same-cell-p beyond-x beyond-y to-x to-y)
@@ -93,7 +94,8 @@ there and passes."
         (corner-clear-p world (+ x (* dx at)) (+ y (* dy at)) dx dy to-x to-y))))
 
 (defun in-sight-p (world x y to-x to-y)
-  "True if in WORLD the cell of (TO-X,TO-Y), or a good part of it, can be seen from (X,Y)."
+  "True if in WORLD the point (TO-X,TO-Y), or at least one corner of its cell, can be seen from
+(X,Y)."
   (let ((left (+ (floor to-x) 1d-3)) (top (+ (floor to-y) 1d-3)) (side (- 1d0 2d-3)))
     (flet ((clear-p (to-x to-y) (line-clear-p world x y to-x to-y)))
       (or (clear-p to-x to-y)
@@ -109,8 +111,8 @@ there and passes."
 ;;; next to a robot that stands at the cell. Where a robot has arrived is always within its reach.
 
 (define-constant +contact+ (* 1.001d0 +contact-gap+)
-  :documentation "A robot no farther than this from a cell, in metres, stands at it: the gap, and
-what rounding adds to it.")
+  :documentation "The greatest distance from a cell, in metres, at which a robot counts as standing
+at the cell: the contact gap, and an allowance for rounding.")
 (define-constant +farthest-reach+ 1.001d0
   :documentation "No robot reaches farther than this along an axis, in metres.")
 
@@ -119,7 +121,7 @@ what rounding adds to it.")
   (same-cell-p x y (robot-x robot) (robot-y robot)))
 
 (defun at-cell-p (robot x y)
-  "True if ROBOT stands in the cell of (X,Y), or no farther from it than the contact gap."
+  "True if ROBOT is in the cell of (X,Y), or no farther from the cell than the contact gap."
   (flet ((gap (position start)
            (max (- start position) (- position (1+ start)))))
     (and (<= (gap (robot-x robot) (floor x)) +contact+)
@@ -127,7 +129,7 @@ what rounding adds to it.")
 
 (defun within-reach-p (robot x y)
   "True if (X,Y), in metres, is local to ROBOT: less than a metre away, in the same cell, or in a
-cell that blocks ROBOT and that it stands at (reading 108)."
+cell that blocks ROBOT and that ROBOT touches (reading 108)."
   (let ((dx (- (double x) (robot-x robot))) (dy (- (double y) (robot-y robot))))
     (declare (type double-float dx dy))
     (and (<= (abs dx) +farthest-reach+)
@@ -138,8 +140,9 @@ cell that blocks ROBOT and that it stands at (reading 108)."
                   (closed-cell-p (robot-world robot) x y +blocking+))))))
 
 (defun reached-p (robot x y last-step block)
-  "True if ROBOT has arrived at (X,Y) by its drive in this tick. LAST-STEP is true if it could get
-that far in the tick; BLOCK, if something blocked it. Nothing may hide the point (reading 108)."
+  "True if ROBOT has arrived at (X,Y) by its drive in this tick. LAST-STEP is true if ROBOT could
+reach (X,Y) in the tick; BLOCK is true if an obstacle blocked ROBOT. Nothing may hide (X,Y) from
+ROBOT (reading 108)."
   (or (in-same-cell-p robot x y)
       (and (within-reach-p robot x y)
            (or last-step

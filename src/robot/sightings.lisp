@@ -8,12 +8,13 @@
 ;;; one after another, so each must still be where it was seen when its turn comes.
 
 (define-kind (sighting :constructor (make-sighting (type denotation x y data)))
-    "Something seen at (X,Y); it is false if it has no DENOTATION."
+    "A thing or place that a camera has seen at (X,Y). A sighting without a DENOTATION is false."
   (:state
-   (type :non-local (member :local :non-local) "whether it is next to the robot")
+   (type :non-local (member :local :non-local) ":LOCAL if the sighting is next to the robot, else
+:NON-LOCAL")
    (denotation nil (or null thing place) "what was really seen, or NIL")
-   (x 0d0 double-float "where it seems to be, the x coordinate in metres")
-   (y 0d0 double-float "where it seems to be, the y coordinate in metres")
+   (x 0d0 double-float "the x coordinate where the sighting seems to be, in metres")
+   (y 0d0 double-float "the y coordinate where the sighting seems to be, in metres")
    (data '() list "what it looks like")))
 
 (defmethod reference ((sighting sighting))
@@ -55,7 +56,8 @@ robot's cell, ending with probability PROB-STOP* at each, or at the edge of the 
           finally (return (edge-point robot map (1- metres) dx dy)))))
 
 (defun edge-point (robot map metres dx dy)
-  "Return where the ray from ROBOT in direction DX, DY leaves MAP, between METRES and one more."
+  "Return the point where the ray from ROBOT in direction DX, DY leaves MAP, at a distance between
+METRES and METRES + 1."
   (flet ((exit (position direction size)
            (cond ((plusp direction) (/ (- size position) direction))
                  ((minusp direction) (/ (- position) direction))
@@ -79,8 +81,8 @@ robot's cell, ending with probability PROB-STOP* at each, or at the edge of the 
       (make-sighting type nil x y data))))
 
 (defun false-description (world demands dice)
-  "Return a random description that meets DEMANDS. Each attribute noticed in addition is true of
-some thing in WORLD, a different one for each."
+  "Return a random description that meets DEMANDS. Other attributes may be added, each with the
+value of a random thing in WORLD."
   (let ((readings (loop for demand in demands
                         for (low high) = (list (demand-low demand) (demand-high demand))
                         collect (list (demand-key demand)
@@ -103,7 +105,8 @@ some thing in WORLD, a different one for each."
 ;;; Designators.
 
 (defun unchanged-p (sighting camera)
-  "True if CAMERA and what SIGHTING denotes are both still where they were."
+  "True if CAMERA and the thing that SIGHTING denotes are still where they were at the time of
+SIGHTING."
   (let ((thing (sighting-denotation sighting))
         (robot (camera-robot camera)) (x (sighting-x sighting)) (y (sighting-y sighting)))
     (and (or (not (thing-p thing))
@@ -115,8 +118,8 @@ some thing in WORLD, a different one for each."
              (within-reach-p robot x y)))))
 
 (defun set-bearing (designator bearing dice)
-  "Mark DESIGNATOR as seen in the true direction BEARING; its angle becomes an estimate of that, the
-nearest to the old angle."
+  "Record that the denotation of DESIGNATOR was seen in the true direction BEARING. Set the angle of
+DESIGNATOR to an estimate of this direction, without jumps of a full turn."
   (let* ((heading (robot-angle (designator-robot designator)))
          (angle (designator-angle designator))
          (change (angle-difference bearing (+ heading angle))))
@@ -126,7 +129,7 @@ nearest to the old angle."
           (designator-angle designator) (+ angle change (angle-error dice)))))
 
 (defun designate (sighting camera)
-  "Return a new designator for what CAMERA sees in SIGHTING, or NIL if that is no longer there."
+  "Return a new designator for SIGHTING, seen by CAMERA, or NIL if its thing is no longer there."
   (when (unchanged-p sighting camera)
     (let* ((robot (camera-robot camera))
            (dice (world-dice (robot-world robot) :looking))

@@ -10,9 +10,9 @@
         do (must-hold (and (typep part type)
                            (eq robot (part-robot part))
                            (or (eq type 'part) (= position (part-index part))))
-                      "part number ~D of ~A makes no sense" position robot)
+                      "part number ~D of ~A is invalid" position robot)
            (must-hold (typep (part-location part) '(or null thing storage-bin))
-                      "the location of ~A makes no sense" part)
+                      "the location of ~A is invalid" part)
            (check-occupant part)))
 
 (defun check-contents (holder contents most)
@@ -22,7 +22,7 @@
              "the contents of ~A are not inside it" holder))
 
 (defun check-track (track)
-  "Signal CONTRADICTION if TRACK has an operation that is not a valid request."
+  "Signal CONTRADICTION if the operation of TRACK is not a valid request."
   (when (track-operation track) (check-request (track-operation track))))
 
 (defun check-camera (camera)
@@ -33,7 +33,7 @@
                       (eq (camera-robot camera)
                           (designator-robot (track-designator track)))
                       (designator-valid-p (track-designator track)))
-                 "the track of ~A makes no sense" camera)
+                 "the track of ~A is invalid" camera)
       (check-track track))))
 
 (defun check-designator (robot number designator)
@@ -45,7 +45,7 @@
                       (< -1 (designator-serial designator) (robot-designators-made robot))
                       (typep (designator-location designator) '(or null thing storage-bin))
                       (proper-list-p (designator-data designator))))
-             "designator ~D of ~A makes no sense" number robot))
+             "designator ~D of ~A is invalid" number robot))
 
 (defun check-designators (robot)
   (let ((designators (robot-designators robot)))
@@ -56,7 +56,7 @@
           do (check-designator robot number designator))
     (must-hold (proper-list-of-p (lambda (end) (typep end '(cons track keyword)))
                                  (robot-ended-tracks robot))
-               "the ended tracks of ~A make no sense" robot)
+               "the ended tracks of ~A are invalid" robot)
     (loop for (track) in (robot-ended-tracks robot) do (check-track track))))
 
 (defun check-odometers (robot)
@@ -68,7 +68,7 @@
              "the odometers of ~A do not belong to it" robot))
 
 (defun check-stance (robot)
-  "Signal CONTRADICTION unless ROBOT stands somewhere in its map, and could move from there."
+  "Signal CONTRADICTION unless the position, heading and speeds of ROBOT are valid in its map."
   (must-hold (every #'within-reason-p
                     (list (robot-x robot) (robot-y robot) (robot-angle robot)
                           (robot-speed robot) (robot-turn-angle robot)))
@@ -77,11 +77,11 @@
   ;; On another machine the last bit may differ.
   (must-hold (and (< (abs (- (robot-cos robot) (cosine (robot-angle robot)))) 1d-9)
                   (< (abs (- (robot-sin robot) (sine (robot-angle robot)))) 1d-9))
-             "the heading of ~A is not that of its cosine and sine" robot))
+             "the heading of ~A does not fit its cosine and sine" robot))
 
 (defun check-robot (robot world)
-  "Signal an error, CONTRADICTION where we check for it, unless ROBOT of WORLD, which was read from
-a file, is in a state that a run can reach."
+  "Signal an error, usually CONTRADICTION, unless ROBOT of WORLD, which was read from a file, is in
+a state that a run can reach."
   (must-hold (and (robot-p robot)
                   (eq world (robot-world robot))
                   (robot-blueprint robot)

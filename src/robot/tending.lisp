@@ -8,7 +8,8 @@
 ;;; does not find what no ray reaches. The same holds for tracks.
 
 (defun ray-crosses-cell-p (dx dy angle)
-  "True if a ray in the direction ANGLE crosses the cell whose centre is at (DX,DY) from its start."
+  "True if a ray in the direction ANGLE crosses the cell whose centre is at (DX,DY), relative to the
+start of the ray."
   (let ((cos (cosine angle)) (sin (sine angle)))
     (and (plusp (+ (* dx cos) (* dy sin)))
          (<= (abs (- (* dx sin) (* dy cos)))
@@ -25,8 +26,9 @@
     reached))
 
 (defun sight-by-rays (world x y to-x to-y heading width count)
-  "Return :CLEAR if one of COUNT rays from (X,Y), over WIDTH radians around HEADING, reaches the
-cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would are stopped before; NIL if none would."
+  "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around HEADING. Return :CLEAR if a
+ray reaches the cell of (TO-X,TO-Y), :OBSTRUCTED if all rays towards the cell are stopped before it,
+or NIL if no ray is directed at the cell."
   (let* ((index (map-index (world-map world) to-x to-y))
          (dx (- (+ 0.5d0 (floor to-x)) x)) (dy (- (+ 0.5d0 (floor to-y)) y))
          (spacing (/ width count)) (first (- heading (* 0.5d0 (- width spacing))))
@@ -45,9 +47,9 @@ cell of (TO-X,TO-Y) in WORLD; :OBSTRUCTED if all that would are stopped before; 
 
 ;; Where a robot can drive straight ahead it can see, too, however few the rays are.
 (defun visible-p (designator camera)
-  "True if CAMERA, pointing at what DESIGNATOR denotes, sees it: a search would find it, or would
-miss it though nothing obstructs it (reading 141). False designators are visible. During an approach
-a line to a corner of the cell is enough."
+  "True if CAMERA, pointed at what DESIGNATOR denotes, sees it: rays reach its cell, or nothing
+obstructs the view although no ray reaches the cell (reading 141). False designators are visible.
+During an approach a free line to a corner of the cell is enough."
   (let* ((robot (camera-robot camera)) (world (robot-world robot))
          (own-x (robot-x robot)) (own-y (robot-y robot))
          (x (designator-x designator)) (y (designator-y designator)))
@@ -78,7 +80,8 @@ a line to a corner of the cell is enough."
 ;;; Refreshing.
 
 (defun drift (designator dice)
-  "Make the false DESIGNATOR drift: if non-local, nearer or farther and to the side (reading 143)."
+  "Move the false DESIGNATOR at random, unless it is local: nearer or farther, and to a side
+(reading 143)."
   (let* ((robot (designator-robot designator))
          (map (world-map (robot-world robot)))
          (x (designator-x designator)) (y (designator-y designator)))
@@ -93,8 +96,8 @@ a line to a corner of the cell is enough."
                            (+ (robot-y robot) (* distance (sine bearing)))))))))
 
 (defun refresh-designator (designator dice)
-  "Bring the tracked DESIGNATOR up to date; DESIGNATOR-SWING is then how far its direction has
-changed (reading 226)."
+  "Update the tracked DESIGNATOR, and store the change of its direction in DESIGNATOR-SWING (reading
+226)."
   (let ((robot (designator-robot designator)) (before (designator-distance designator)))
     (unless (designator-denotation designator) (drift designator dice))
     (multiple-value-bind (x y) (designator-position designator)
@@ -109,7 +112,8 @@ changed (reading 226)."
               (setf (designator-bearing-p designator) nil)))))))
 
 (defun update-bearing (designator bearing before dice)
-  "Update DESIGNATOR to the true direction BEARING; BEFORE is its previous distance."
+  "Update the direction of DESIGNATOR to the true direction BEARING. BEFORE is the previous distance
+of its denotation."
   (let* ((robot (designator-robot designator))
          (relative (- bearing (robot-angle robot)))
          (known (designator-bearing-p designator)))
@@ -137,7 +141,7 @@ changed (reading 226)."
              (null (denotation-space designator))))))
 
 (defun arrived-p (designator)
-  "True if its robot is in the cell where the non-local DESIGNATOR's denotation is."
+  "True if the robot of the non-local DESIGNATOR is in the cell of what DESIGNATOR denotes."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
 
@@ -154,8 +158,8 @@ changed (reading 226)."
        (not (visible-p designator camera))))
 
 (defun cannot-follow-p (camera designator)
-  "True if CAMERA cannot follow the non-local DESIGNATOR any longer. The arrival of an approach does
-not count, as the approach reports it (reading 112)."
+  "True if CAMERA cannot follow the non-local DESIGNATOR any longer. The arrival at the end of an
+approach does not count, because the approach itself reports it (reading 112)."
   (if (arrived-p designator)
       (not (approached-p camera))
       (or (not (trackable-p designator camera))
@@ -163,7 +167,7 @@ not count, as the approach reports it (reading 112)."
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose-track (camera designator dice)
-  "Point CAMERA at DESIGNATOR, unless by chance it loses the track (readings 220, 235)."
+  "Point CAMERA at DESIGNATOR, or by chance let CAMERA lose the track (readings 220, 235)."
   (if (and (not no-sensor-error*)
            (chance (per-tick-probability (if (designator-denotation designator)
                                              prob-lose-track*
@@ -222,7 +226,7 @@ not count, as the approach reports it (reading 112)."
     (tend-robot robot (world-tick world))))
 
 (defun tracks-busy-p (world)
-  "True if WORLD needs ticks for a track."
+  "True if WORLD must run ticks because a camera tracks or a track has ended."
   (loop for robot in (world-robots world)
           thereis (or (robot-ended-tracks robot)
                       (some #'camera-tracking (robot-cameras robot)))))
@@ -239,7 +243,8 @@ not count, as the approach reports it (reading 112)."
         (camera-tracking camera) (make-track designator operation)))
 
 (defun end-on-arrival (camera)
-  "End the track of CAMERA, since the robot has arrived. Point CAMERA there before (reading 108)."
+  "End the track of CAMERA, because the robot has arrived. Before that, point CAMERA at what it
+tracks (reading 108)."
   (let ((designator (camera-tracks camera)))
     (when (designator-denotation designator)
       (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))

@@ -16,10 +16,11 @@
 
 ;; See reading 82.
 (define-kind (track :constructor (make-track (designator operation)))
-    "What a camera does while it tracks a designator."
+    "The state of a camera that tracks a designator."
   (:state
    (designator nil (or null designator) "what is tracked")
-   (operation nil t "the operation to tell of the track's end (see TRACK-ENDED), or NIL" :export)))
+   (operation nil t "the operation that TRACK-ENDED is called with when the track ends, or
+NIL" :export)))
 
 (defgeneric track-ended (operation code designator)
   (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
@@ -52,7 +53,7 @@
           thereis (tracking-p camera designator)))
 
 (defun approached-p (camera)
-  "True if its robot is on the way to what CAMERA tracks."
+  "True if the robot of CAMERA is driving to what CAMERA tracks."
   (let ((event (resource-event (camera-robot camera))))
     (and event (approaching-p event camera))))
 
@@ -68,8 +69,8 @@
     (and (typep operation 'request) (request-asker operation))))
 
 (defun stop-track (camera code warning)
-  "End the track of CAMERA and nothing else. Return its designator, or NIL if it had no track.
-See reading 161."
+  "End the track of CAMERA, but keep the designator valid. Return the designator, or NIL if CAMERA
+had no track. See reading 161."
   (let ((track (camera-tracking camera)))
     (when track
       (setf (camera-tracking camera) nil)
@@ -85,8 +86,8 @@ See reading 161."
       (track-designator track))))
 
 (defun drop-designator (designator &key silently)
-  "Make DESIGNATOR invalid and its number free; the cameras that track it lose it. Queue warnings
-unless SILENTLY."
+  "Make DESIGNATOR invalid and free its number. Cameras lose their tracks of DESIGNATOR. Queue
+warnings unless SILENTLY."
   (when (designator-valid-p designator)
     (unless silently
       (let ((*robot-told-of* (robot-name (designator-robot designator))))
@@ -119,7 +120,7 @@ track is lost and no other camera tracks the designator, drop the designator."
 ;;; When things and parts move.
 
 (defun watch-thing (thing old-location new-location)
-  "Update the robots' designators after THING has moved. A world's move watcher."
+  "Update the robots' designators after THING has moved. A move watcher of a world."
   (let ((by-hand (or (hand-p old-location) (hand-p new-location))))
     (dolist (robot (world-robots (thing-world thing)))
       (when (plusp (length (robot-designators robot)))
@@ -130,9 +131,9 @@ track is lost and no other camera tracks the designator, drop the designator."
 (note-lasting 'watch-thing)
 
 (defun survives-move-p (designator by-hand)
-  "True if DESIGNATOR stays valid although its denotation has moved. A tracked one does if it can be
-followed; others if a hand grasped it or set it down (BY-HAND), and it was and is local (reading
-139)."
+  "True if DESIGNATOR stays valid although its denotation has moved. A tracked designator stays
+valid if the camera can follow it; an untracked designator does if a hand grasped the thing or set
+it down (BY-HAND), and the thing was local and still is (reading 139)."
   (if (tracked-p designator)
       (eq (denotation-space designator) (designator-location designator))
       (and by-hand
@@ -140,8 +141,8 @@ followed; others if a hand grasped it or set it down (BY-HAND), and it was and i
            (designator-local-p* designator))))
 
 (defun part-moved (part old-location)
-  "Account for the move of PART, a camera or hand, from OLD-LOCATION to PART-LOCATION: a camera
-loses its track, and what a hand holds has moved. Warnings are queued."
+  "Update tracks and designators after PART, a camera or hand, has moved from OLD-LOCATION to
+PART-LOCATION: a camera loses its track, and what a hand holds has moved. Warnings are queued."
   (unless (eq old-location (part-location part))
     (etypecase part
       (camera
