@@ -120,7 +120,7 @@
 (test arguments.say-where-designators-and-things-come-from
   (is-true (complains-p '(run:with-simulation (rover)
                           (command:camera-track (robot:robot-camera rover 0) 'ball))
-                        "a designator: searches of cameras give them"
+                        "a designator: cameras' searches pass designators"
                         "(camera-get-object-designator"))
   (is-true (complains-p '(world:get-attribute 'ball :color) "as (find-thing 'ball) returns"))
   (is-true (complains-p '(world:set-attribute 3 :color 'red) "(find-thing 'NAME)")))

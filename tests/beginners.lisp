@@ -54,7 +54,7 @@
   (is-true (complains-p '(command:robot-turn nil 1 nil)
                         "robot is NIL" "(with-simulation (ROBOT) ...)" "(simulator 'ROBOT)"))
   (is-true (complains-p '(command:robot-turn 'rover 1 nil)
-                        "rover without a quote is one in (with-simulation (rover) ...)"))
+                        "rover without a quote is a robot in (with-simulation (rover) ...)"))
   (is-true (complains-p '(command:robot-turn 5 1 nil) "robot is 5; give a robot.")))
 
 (test continuations.of-another-number-of-parameters-are-told-of

@@ -85,7 +85,7 @@ ok."
 (test arguments.that-no-attribute-has-are-told-with-what-it-can-have
   "As in Lisp."
   (is-true (has-words-p (complaint "obj-desig 1 non-local ((:color raed))")
-                        "not (:color raed), as the values are" "did you mean red? OBJ-DESIG")))
+                        "not (:color raed), because the values are" "did you mean red? OBJ-DESIG")))
 
 (test json.has-no-line-for-what-a-plan-of-an-option-does
   (let ((message (first (objects-of-script "" "--plan" "stroll 1"))))

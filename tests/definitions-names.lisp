@@ -256,7 +256,7 @@
       (base:undefine 'kicker 'hop)
       (destructuring-bind (size messages) (size-after-a-tick)
         (is (= 1 size))
-        (is (search "goes without the kicker" (first messages))))
+        (is (search "is made without the kicker" (first messages))))
       (define-hop 7)
       (is (equal '(7 ()) (size-after-a-tick))))))
 

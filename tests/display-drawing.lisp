@@ -152,7 +152,7 @@
       (detail robot :hands)
       (let ((texts (mapcar #'base:message-text (base:take-messages))))
         (is (= 1 (length texts)))
-        (is (mentions-p (first texts) "from a file of data")))
+        (is (mentions-p (first texts) "from a data file")))
       (world::set-attribute-again thing :draw-function 'draw-word)
       (is (self-made-p robot)))))
 

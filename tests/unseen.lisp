@@ -176,7 +176,7 @@ output."
   (is-true (has-words-p (warning-about
                          '(world:defmap cluttered (9 9)
                            (obj ball (3 3) ((:size 1) (:kickers (wobble)) (:prototype crate)))))
-                        "ball has :kickers among its attributes, where it does nothing"
+                        "ball has :kickers among its attributes, where it has no effect"
                         "write (obj (ball :kickers (sway)) ...)"
                         "write (obj (ball :prototype box) ...)"))
   (is-true (has-words-p (warning-about '(world:new-thing ball nil ((:size 1) (:prototype crate))))

@@ -215,7 +215,7 @@ faces the end of the wall."
 (test def-place-type.rejects-malformed-clauses
   (loop for (options . expected)
           in '((() . "either :check-matchers or :checker")
-               ((:checker t :check-matchers ((((-)) 0))) . "one of them")
+               ((:checker t :check-matchers ((((-)) 0))) . "not both")
                ((:checker t :confuse 1) . ":confusion")
                ((:checker t :confusion 2) . "a probability")
                ((:checker t :checker t) . "only once")
@@ -281,7 +281,7 @@ faces the end of the wall."
 
 (test place-types.one-of-which-all-is-taken-is-warned-of
   (let ((doorway '((((- - -) (* - *) (- - -)) 0))))
-    (is (search "say :before doorway" (type-warning doorway)))
+    (is (search "write :before doorway" (type-warning doorway)))
     (is (null (type-warning doorway :before 'doorway)))
     (is (null (type-warning (append doorway '((((* * *) (* - *) (* * *)) 0))))))
     (is (null (type-warning '((((x - -) (* - *) (- - -)) 0)))))))

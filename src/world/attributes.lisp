@@ -11,12 +11,12 @@
 (addition attribute-p)
 (define-record (attribute (:constructor make-attribute))
   "An attribute of things: its possible values and sensing parameters."
-  (name nil symbol "the keyword that the attribute is called" :addition)
+  (name nil symbol "the keyword that names the attribute" :addition)
   (kind :discrete (member :discrete :numeric) ":discrete or :numeric" :addition)
   (domain '() list "the list of possible values of a discrete attribute; NIL if numeric" :addition)
   (success 1d0 double-float "the base probability that a discrete reading is correct" :addition)
   (base 0d0 double-float "the base standard deviation of numeric readings" :addition)
-  (max-mult 1d0 double-float "the largest multiplier of that deviation, far away" :addition)
+  (max-mult 1d0 double-float "the largest multiplier of the base deviation, far away" :addition)
   (noticed 0d0 double-float "the base probability that the attribute is sensed unasked" :addition)
   (supporters '() list "the keywords of the attributes that support this one" :addition))
 
@@ -38,7 +38,7 @@
         when (eq key (attribute-name attribute)) return attribute))
 
 (defun declared-name-like (name)
-  "Return the declared name that NAME, an undeclared one, may be a misspelling of; or NIL."
+  "Return the declared name that NAME, an undeclared name, is probably a misspelling of; or NIL."
   (let ((key (attribute-key name)))
     (unless (or (attribute-of key) (eq key :draw-function))
       (find-if (lambda (other) (resembles-p key other))
@@ -49,7 +49,7 @@
 (defun check-domain (definition domain)
   (cond ((and (consp domain) (eq 'quote (first domain)))
          (reject-clause definition domain
-                        "the values in a list that is not quoted, as it is not evaluated"))
+                        "an unquoted list of the values, because the list is not evaluated"))
         ((and (consp domain) (null (rest domain)) (symbolp (first domain))
               (same-name-p (first domain) 'numeric))
          (reject-clause definition domain "NUMERIC without parentheses"))
@@ -66,37 +66,39 @@
     (reject-clause definition (list :supported-by supported-by) "a list of attribute names")))
 
 (defvar *built-in-attributes* '()
-  "The names of the attributes of table 3.3, which every thing has.")
+  "The names of the attributes in the manual's table 3.3, which every thing has.")
 
 (defun built-in-attribute-p (attribute)
-  "True if ATTRIBUTE is one of the manual's, which every thing has, at least by default."
+  "True if ATTRIBUTE is an attribute of the manual, which every thing has, at least by default."
   (member (attribute-name attribute) *built-in-attributes* :test #'eq))
 
 (defun check-kind-of-built-in (definition name domain)
-  "Signal MALFORMED-DEFINITION if NAME is a built-in attribute of the other kind than DOMAIN."
+  "Signal MALFORMED-DEFINITION if NAME is a built-in attribute and DOMAIN is of the other kind,
+discrete or numeric."
   (let ((old (attribute-of name)))
     (when (and old (built-in-attribute-p old)
                (not (eq (attribute-kind old) (if (consp domain) :discrete :numeric))))
       (reject-clause definition domain
-                     (format nil "a ~(~A~) attribute, as the simulator computes with ~(~S~)"
+                     (format nil "a ~(~A~) attribute, because the simulator computes with ~(~S~)"
                              (attribute-kind old) (attribute-name old))))))
 
 ;;; Programs read and set attributes often, so the declared name that another one resembles is
 ;;; cached. Names of undeclared attributes that a thing has are compared, too.
 
 (define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
-  "For each undeclared name, the name that it may be a misspelling of, or NIL.")
+  "A table from undeclared names to the names that they are probably misspellings of, or NIL.")
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
-  "Define or redefine the attribute NAME; what DEFATTRIBUTE expands to. Return NAME (reading 120)."
+  "Define or redefine the attribute NAME. DEFATTRIBUTE expands to a call of this function. Return
+NAME (reading 120)."
   (let ((definition (title "defattribute" name))
         (old (attribute-of name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
     (when (eq (attribute-key name) :draw-function)
       (reject-clause definition name
-                     (format nil "no definition of :draw-function, which is the simulator's own; ~
-                                  give it to things: (set-attribute thing :draw-function 'name)")))
+                     (format nil "another name, because the simulator itself defines :draw-function;
+give this attribute to things: (set-attribute thing :draw-function 'name)")))
     (check-kind-of-built-in definition name domain)
     (dolist (supporter supported-by)
       (let ((like (declared-name-like supporter)))
@@ -117,7 +119,8 @@
     name))
 
 (defun doubt-attribute-options (definition domain options)
-  "Warn if OPTIONS give an attribute of DOMAIN only the noise of the other kind."
+  "Warn if OPTIONS give an attribute of DOMAIN only options for the other kind of attribute, numeric
+or discrete."
   (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
     (let ((strange (if (consp domain)
                        (find-if #'given-p '(:base :max-mult))
@@ -151,10 +154,10 @@
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1
   :base deviation -- base standard deviation of numeric readings; default 0
-  :max-mult factor -- the largest multiplier of that deviation, far away; default 1
+  :max-mult factor -- the largest multiplier of the base deviation, far away; default 1
   :noticed p (or :support p) -- base probability of being sensed unasked; default 0
-  :supported-by (name...) -- attributes that raise that chance when asked for; unevaluated
-  :documentation text -- ours: what the attribute is
+  :supported-by (name...) -- attributes that raise the probability :noticed when asked for
+  :documentation text -- an addition: what the attribute is
 Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment (lambda () (attribute-forms name domain options))))
 
@@ -163,9 +166,9 @@ Signals MALFORMED-DEFINITION. Return the name."
 ;;; with what it senses, a manipulation with the true values.
 
 (defun asking-form-p (form)
-  "True if FORM is a list (attribute value) or (attribute value threshold), whatever the values of
-that attribute are. A value is an atom or a proper list, a threshold NIL or not below 0; numbers
-are from -1e15 to 1e15."
+  "True if FORM is a list (attribute value) or (attribute value threshold). The value is an atom or
+a proper list, and is not compared with the attribute's domain. The threshold is NIL or a number not
+below 0. Numbers are from -1e15 to 1e15."
   (and (proper-list-p form)
        (<= 2 (length form) 3)
        (first form) (symbolp (first form))
@@ -173,7 +176,7 @@ are from -1e15 to 1e15."
        (or (null (third form)) (amount-p (third form)))))
 
 (defun askable-p (value)
-  "True if VALUE, an atom or a proper list, has no number beyond +-1e15 in it."
+  "True if VALUE, an atom or a proper list, contains no number beyond +-1e15."
   (if (consp value)
       (and (proper-list-p value) (every #'askable-p value))
       (or (not (realp value)) (quantity-p value))))
@@ -183,26 +186,29 @@ are from -1e15 to 1e15."
   (and (number-pair-p value) (<= (first value) (second value))))
 
 (defun value-limits (value)
-  "Return the least and greatest number that VALUE, a number or two in a list, means; else NIL."
+  "Return the least and the greatest number of VALUE, a number or a list of two numbers; NIL for
+other values."
   (cond ((realp value) (values value value))
         ((number-pair-p value) (values (first value) (second value)))))
 
 ;;; Functions by attribute; NIL is an undeclared one.
 
 (defun discrete-p (attribute)
-  "True if ATTRIBUTE, or NIL, is known to have one of a list of values."
+  "True if ATTRIBUTE is discrete. ATTRIBUTE is NIL for an undeclared attribute."
   (and attribute (eq :discrete (attribute-kind attribute))))
 
 (defun in-domain-p (attribute value)
-  "True if VALUE is one of those that ATTRIBUTE, which is discrete, can have."
+  "True if VALUE is in the domain of ATTRIBUTE, which is discrete."
   (and (member value (attribute-domain attribute) :test #'value-equal) t))
 
 (defun can-be-false-p (attribute)
-  "True if for ATTRIBUTE, or NIL, the value NIL means false rather than unspecified."
+  "True if the value NIL of ATTRIBUTE means false, rather than unspecified. ATTRIBUTE is NIL for an
+undeclared attribute."
   (and attribute (member nil (attribute-domain attribute)) t))
 
 (defun asks-range-p (attribute value)
-  "True if VALUE, asked for of ATTRIBUTE, or NIL, is a range, and does not mean any of two values."
+  "True if VALUE, a value in a specification of ATTRIBUTE, is a range rather than a list of
+alternatives. ATTRIBUTE is NIL for an undeclared attribute."
   (and (number-pair-p value) (not (discrete-p attribute))))
 
 (define-facts (attribute attribute)
@@ -212,8 +218,8 @@ are from -1e15 to 1e15."
   "Chance of a right reading" (and (eq :discrete (attribute-kind attribute))
                                    (attribute-success attribute))
   "Standard deviation of readings" (and (eq :numeric (attribute-kind attribute))
-                                        (format nil "~A, far away at most ~A times that"
+                                        (format nil "~A nearby, far away at most ~A times as much"
                                                 (attribute-base attribute)
                                                 (attribute-max-mult attribute)))
   "Chance of being sensed unasked" (attribute-noticed attribute)
-  "Sensed more often when these are asked for" (listed (attribute-supporters attribute)))
+  "Sensed more often together with" (listed (attribute-supporters attribute)))

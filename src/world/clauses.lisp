@@ -20,7 +20,8 @@
              (reject-clause definition (list key value) "each option only once"))))
 
 (defun check-probability (definition option value)
-  "Return VALUE, of OPTION, as a double-float. Signals MALFORMED-DEFINITION."
+  "Return VALUE, the value of OPTION, a probability, as a double-float. Signals
+MALFORMED-DEFINITION."
   (unless (probability-p value)
     (reject-clause definition (list option value) (argument-type-text 'probability)))
   (double value))
@@ -30,14 +31,14 @@
   (and (proper-list-p form) (= 2 (length form)) (every #'quantity-p form)))
 
 (defun check-name (definition name what)
-  "Signal MALFORMED-DEFINITION unless NAME can name what is defined, a WHAT."
+  "Signal MALFORMED-DEFINITION unless NAME can be the name of a WHAT, such as \"map\"."
   (unless (and name (symbolp name) (not (eq name t)) (not (keywordp name)))
     (reject-clause definition name
                    (format nil "a symbol, but no keyword, as the name of the ~A" what))))
 
 (defun call-for-value (function definition clause expected)
-  "Return the value of FUNCTION, which runs code of CLAUSE. Its errors become MALFORMED-DEFINITIONs
-of DEFINITION, which expected EXPECTED there."
+  "Return the value of FUNCTION, which runs code of CLAUSE. If the code signals an error, signal
+MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
   (handler-case (funcall function)
     (malformed-definition (condition) (error condition))
     (error (condition)
@@ -47,7 +48,7 @@ of DEFINITION, which expected EXPECTED there."
                              (namesake (missing-name condition)))))))
 
 (defun namesake (name)
-  "Return in words a variable called NAME that another package exports, or NIL."
+  "Return the text PACKAGE:NAME of a variable named NAME that some package exports, or NIL."
   (dolist (symbol (and (symbolp name) name (find-all-symbols name)))
     (let ((package (symbol-package symbol)))
       (when (and package (boundp symbol) (not (keywordp symbol))
@@ -57,11 +58,12 @@ of DEFINITION, which expected EXPECTED there."
 ;;; Clauses one by one.
 
 (defvar *path* '()
-  "The positions that lead from the current definition to the current clause.")
+  "A list of positions, the path from the current definition to the current clause.")
 
 (defun call-with-clause (function clause path)
-  "Call FUNCTION with CLAUSE, at PATH of the current definition, with restarts that return NIL or
-use another clause, read again or typed. A whole definition replaces the current one."
+  "Call FUNCTION with CLAUSE, at PATH of the current definition. Restarts leave the clause out and
+return NIL, read the clause again from its file, or use a typed clause. A typed definition replaces
+the whole current definition."
   (restart-case (let ((*path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
@@ -80,8 +82,8 @@ use another clause, read again or typed. A whole definition replaces the current
           (call-with-clause function other path)))))
 
 (defun parts-of-clauses (function clauses first)
-  "Append what FUNCTION returns for CLAUSES, the elements from FIRST on of the current definition,
-or for what replaces them."
+  "Append the lists that FUNCTION returns for CLAUSES, or for the clauses that replace them. CLAUSES
+are the elements of the current definition from the position FIRST on."
   (loop for clause in clauses
         for position from first
         append (call-with-clause function clause (append *path* (list position)))))

@@ -16,7 +16,8 @@
                  collect `(list ',key (lambda () ,form)))))
 
 (defun code-value (name source form)
-  "Return the value of SOURCE, code of the thing called NAME or NIL, which FORM, evaluated, has."
+  "Return the value of FORM, which is made from SOURCE, code for the thing named NAME, or for a
+prototype if NAME is NIL. Use the compiled code if there is any."
   (let ((compiled (second (find (list name source) *code* :key #'first :test #'equal))))
     (if compiled (funcall compiled) (eval form))))
 
@@ -38,7 +39,7 @@
       (reject-clause definition clause ":kickers (name ...), names in a list"))))
 
 (defun check-thing-clause (definition clause head descriptor)
-  "Return true. Signals MALFORMED-DEFINITION unless HEAD and DESCRIPTOR, of CLAUSE, are right."
+  "Return true. Signals MALFORMED-DEFINITION if HEAD or DESCRIPTOR, parts of CLAUSE, are invalid."
   (check-head definition clause head)
   (or (descriptor-p descriptor)
       (reject-clause definition clause
@@ -60,7 +61,8 @@
                            (map-width map) (map-height map)))))
 
 (defun code-in-thing (definition head descriptor contents)
-  "Return lists (key form) for a thing's code. Signals MALFORMED-DEFINITION for wrong contents."
+  "Return a list of (key form) for the code of a thing and its contents. Signals
+MALFORMED-DEFINITION for invalid contents."
   (destructuring-bind (name &key prototype &allow-other-keys) (ensure-list head)
     (append (and prototype (list (list (list nil prototype) prototype)))
             (loop for (key value) in descriptor
@@ -110,13 +112,14 @@
 ;;; about when a file is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP again, and cache it in PATH, if any, if the code of all types worked."
+  "Find the places of MAP again. If the code of all place types worked, cache MAP in the file PATH,
+unless PATH is NIL."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))
 
 (defun build-map (map)
-  "Fill the grid of MAP from its clauses, or from its cache if that holds them."
+  "Fill the grid of MAP from its clauses, or from its cache if the cache is valid."
   (let ((path (usable-cache-path map)))
     (unless (and path (restore-from-cache map path (cache-key map)))
       (clear-walls map)
@@ -140,8 +143,8 @@ cache. Worlds of MAP see the change at once. Return the map."
                 thereis (loop for (x y) in (clause-value :corners map wall)
                                 thereis (not (and (<= 0 x (map-width map))
                                                   (<= 0 y (map-height map))))))
-    (doubt-clause map clause "~S goes beyond the map, which is ~D by ~D metres; what is outside is ~
-                              pressed against its edge."
+    (doubt-clause map clause "~S goes beyond the map, which is ~D by ~D metres; the part outside ~
+                              is drawn at the map's edge."
                   clause (map-width map) (map-height map)))
   (dolist (name (substances-of map walls))
     (let ((like (unless (find-substance name nil)
@@ -166,7 +169,7 @@ cache. Worlds of MAP see the change at once. Return the map."
   (if (stringp (first clauses)) (rest clauses) clauses))
 
 (defun fill-map (map clauses)
-  "Give MAP the walls and things of CLAUSES; a docstring may precede them."
+  "Give MAP the walls and things of CLAUSES; a docstring may precede the clauses."
   (flet ((parts (clause)
            (let ((parts (parts-of-clause map clause)))
              (warn-of-walls map clause (remove-if #'recipe-p parts))
@@ -179,8 +182,9 @@ cache. Worlds of MAP see the change at once. Return the map."
 
 (defun define-map (name width height &key cache (frame '(1 0 0 0)) clauses code
                                        (package *package*))
-  "Define or redefine the map NAME; what DEFMAP expands to. FRAME is as MAP-FRAME says. CODE is as
-CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map."
+  "Define or redefine the map NAME. DEFMAP expands to a call of this function. FRAME is a value of
+MAP-FRAME, CODE the value of a form made by CODE-FORM, and PACKAGE the package that the author
+writes in. Return the map."
   (unless (typep cache '(or null string pathname))
     (reject-clause (title "defmap" name) (list :cache cache) "the name of a file"))
   (check-room (title "defmap" name) width height)
@@ -228,17 +232,17 @@ CODE-FORM makes it. PACKAGE is the one that the author writes in. Return the map
 cells of one metre, then options:
 - :cache file -- keep the built grid in this file, relative to the file of the DEFMAP; not used
   while a place type has a :checker
-- :frame (size x y yaw) -- ours, see MAP-FRAME
-A string before the clauses, ours, is the map's documentation. Clauses of the manual:
+- :frame (size x y yaw) -- an addition, see MAP-FRAME
+A string before the clauses is the map's documentation (an addition). Clauses of the manual:
   (wall (x0 y0) (x1 y1) substance parameter [parameter1]) -- a line of walls
   (rect (x0 y0) (x1 y1) substance parameter [parameter1 parameter2 parameter3]) -- an outline
-  (circle (x y) radius substance parameter) -- likewise
+  (circle (x y) radius substance parameter) -- an outline
   (obj name (x y) descriptor contents...) -- a thing; contents: (name descriptor contents...)
-Instead of a thing's name: (name :prototype form) and, ours, (name :kickers (kicker...)).
-DEFINE-MAP-CLAUSE adds kinds of clauses. Later walls overwrite earlier ones. If NAME is a symbol of
-Common Lisp or ours, such as ROOM, there is no variable: write 'ROOM. A redefinition applies to runs
-that start later; a live simulation of the old map stops. Signals MALFORMED-DEFINITION, with
-restarts for the clause. Return the name."
+Options may stand beside a thing's name: (name :prototype form) or, an addition, (name :kickers
+(kicker...)). DEFINE-MAP-CLAUSE adds kinds of clauses. Later walls overwrite earlier walls. If NAME
+is a symbol of Common Lisp or of the simulator, such as ROOM, there is no variable: write 'ROOM. A
+redefinition applies to runs that start later; a live simulation of the old map stops. Signals
+MALFORMED-DEFINITION, with restarts for the clause. Return the name."
   (expand-definition form environment
                      (lambda () (values (map-forms name size clauses) (variable-forms name)))))
 

@@ -9,7 +9,7 @@
 ;;; data file, such as a journal, cannot have any function called. Manual B, reading 211.
 
 (define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
-  :documentation "How the arguments of a :draw-function are written.")
+  :documentation "The lambda list of a :draw-function, for messages.")
 
 (defvar *from-code-p* t
   "True where values of attributes come from code; false where they are data, as in a journal.")
@@ -29,9 +29,10 @@
                 (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
 
 (defun draw-function-words (value)
-  "Return what to write instead of VALUE, which cannot be that of :draw-function."
-  (format nil "a function of ~A, or the name of one that is defined before: ~
-               (defun ~(~A~) ~A ...)~:[~;; a list is data, which runs nothing~]"
+  "Return a text that says what to write instead of VALUE, which is no valid value of
+:draw-function."
+  (format nil "a function of ~A, or the name of a function that is defined already: (defun ~(~A~) ~
+               ~A ...)~:[~;; a list is data, which is not executed~]"
           +draw-arguments+
           (if (and value (symbolp value) (not (keywordp value))) value "draw-it")
           +draw-arguments+ (consp value)))
@@ -45,13 +46,14 @@
     value))
 
 (defun drawing-code (value)
-  "Return the function that VALUE of :draw-function means now, or NIL. If VALUE is a name and means
-none, a second value says why, and what to do."
+  "Return the function that VALUE of :draw-function stands for now, or NIL. If VALUE is a name
+without a function, a second value, a text, says why, and what to do."
   (cond ((null value) nil)
         ((functionp value) value)
         ((not (get value 'from-code-p))
-         (values nil (format nil "the name ~(~A~) is from a file of data, which runs nothing; if ~
-                                  you trust it, say (set-attribute thing :draw-function '~:*~(~A~))"
+         (values nil (format nil "the name ~(~A~) is from a data file, which cannot have code ~
+                                  executed; if you trust the name, evaluate (set-attribute thing ~
+                                  :draw-function '~:*~(~A~))"
                              value)))
         ((names-function-p value) (fdefinition value))
         (t (values nil (format nil "there is no function ~(~A~) any more; define it: ~
@@ -64,13 +66,13 @@ none, a second value says why, and what to do."
   (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))
 
 (defun name-for-lambda (thing-name form)
-  "Return a symbol to call the function that FORM makes for things called THING-NAME."
+  "Return a symbol to name the draw function FORM of things named THING-NAME."
   (intern (format nil "DRAW-~A-~36R" thing-name
                   (ldb (byte 32 0) (digest-value (digest-add (make-digest) form))))
           *package*))
 
 (defun with-ignorable-arguments (form)
-  "Return FORM, (lambda (window thing ...) ...), that need not use all of its arguments."
+  "Return FORM, (lambda (window thing ...) ...), with its arguments declared as ignorable."
   (destructuring-bind (operator &optional arguments &rest body) form
     (if (and (proper-list-p arguments)
              (every #'symbolp arguments)
@@ -79,7 +81,8 @@ none, a second value says why, and what to do."
         form)))
 
 (defun draw-function-called (name function)
-  "Define NAME as FUNCTION and return NAME; or FUNCTION itself, if it is a closure or cannot draw."
+  "Define NAME as FUNCTION and return NAME. If FUNCTION is a closure or no draw function, return
+FUNCTION instead."
   (cond ((or (closure-p function) (not (draw-function-p function))) function)
         (t (setf (fdefinition name) function)
            name)))

@@ -11,7 +11,8 @@
 
 (declaim (inline copy-by-rank))
 (defun copy-by-rank (thing old new)
-  "Return what THING was copied to, if it is one of the vector OLD, that were copied to NEW."
+  "Return the copy of THING if THING is in the vector OLD, whose elements have their copies in the
+vector NEW; else NIL."
   (declare (type thing thing) (type simple-vector old new))
   (let ((rank (thing-rank thing)))
     (and (< rank (length old))
@@ -38,7 +39,8 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function that copies an attachment for a copied thing, and puts it into the new group."
+  "Return a function of an attachment and a copied thing that copies the attachment for this thing,
+and puts the copy into the copied group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)
@@ -58,7 +60,8 @@
           copy)))))
 
 (defun put-other-members (group copy copier)
-  "Put into COPY the members of GROUP that were removed from things, until they are taken out."
+  "Put into COPY, the copy of GROUP, copies of the members that were removed from their things and
+are still in the row of GROUP."
   (when (group-dead group)
     (let ((row (group-row copy)))
       (loop for place from 0 below (* 3 (group-count group)) by 3
@@ -69,7 +72,8 @@
 ;;; Things.
 
 (defun copy-thing (thing world copied)
-  "Return a copy of THING for WORLD, with old location and contents. COPIED copies attachments."
+  "Return a copy of THING for WORLD that still has the original location and contents. COPIED is a
+function that copies attachments."
   (declare #.*hot* (type thing thing) (type function copied))
   (let ((twin (copy-structure thing)))
     (setf (thing-world twin) world)
@@ -86,7 +90,7 @@
        (null (thing-contents thing))))
 
 (defun complete-thing (thing old new copier)
-  "Replace location and contents of the copy of THING by copies. See COPY-BY-RANK."
+  "Replace the location and the contents of the copy of THING by their copies. See COPY-BY-RANK."
   (declare (type thing thing))
   (flet ((twin (other) (or (copy-by-rank other old new) (forked other copier))))
     (let ((twin (twin thing)))

@@ -14,23 +14,25 @@
 ;;; its kicker. They lie side by side because a kick costs mostly memory access (25 ns).
 
 (define-kind (group :constructor (make-group (probability)))
-    "Kickers of equal PROBABILITY, in a row of trials."
+    "A group of attached kickers with the same PROBABILITY. In each tick there is a trial for each
+member."
   (:fixed
    (probability 0d0 double-float "the probability per unit of time of the group's kickers"))
   (:state
-   (quantum 0 real "for how long a tick the trials were drawn")
+   (quantum 0 real "the value of TICK-QUANTUM* for which the trials were drawn")
    (scale 0d0 double-float "the factor that turns the logarithm of a roll into a gap")
    (skip 0 fixnum "how many trials fail before the next that succeeds")
    (row (make-array 12 :initial-element nil) simple-vector "the members: attachment, thing, kicker")
    (count 0 fixnum "how many members the row has")
    (dead '() list "members that have left since the last tick"))
   (:scratch
-   (outlook nil (or null outlook) "what is known of the next trials, if there are many"))
+   (outlook nil (or null outlook) "the results of the next trials, drawn ahead in a large group, or
+NIL"))
   (:link
    (origin (make-origin) origin "the attachment that is running, for errors")))
 
 (defstruct (origin (:constructor make-origin ()) (:copier nil))
-  "Printed as the origin of an error: the attachment that was running."
+  "The origin of an error in a kicker: it prints as the attachment that was running."
   ;; Checking a type would read the attachment, which is distant memory, each time one runs.
   (attachment nil :type t))
 
@@ -86,7 +88,7 @@
       (push attachment (group-dead group)))))
 
 (defun remove-dead-members (group)
-  "Close the gaps in the row of GROUP, with members from its end."
+  "Fill the gaps that removed members leave in the row of GROUP with members from its end."
   (dolist (attachment (shiftf (group-dead group) '()))
     (let* ((last (decf (group-count group))) (row (group-row group)))
       (put-member group (attachment-index attachment) (svref row (* 3 last)))
@@ -105,7 +107,7 @@
 
 (declaim (inline test-holds-p))
 (defun test-holds-p (kicker test thing)
-  "Return the value of TEST, of KICKER, for THING, and record it."
+  "Return the value of TEST, the test of KICKER, for THING, and record the outcome in KICKER."
   (cond ((funcall (the function test) thing)
          (or (eq t (kicker-test-outcome kicker)) (setf (kicker-test-outcome kicker) t)))
         ;; Another thread may record true at this moment.
@@ -120,7 +122,7 @@
       (funcall (the function (kicker-body kicker)) thing))))
 
 (defun kick-again (origin)
-  "Run the member in ORIGIN once more, after an error."
+  "Run the attachment in ORIGIN once more, after an error."
   (let ((attachment (origin-attachment origin)))
     (setf self attachment)
     (run-member (attachment-kicker attachment) (attachment-thing attachment))))
@@ -128,11 +130,11 @@
 ;; Distant memory is read ahead. In a large world a move then takes 420 ns instead of 750. Kickers
 ;; that move nothing would not benefit, and would pay for it.
 (defconstant +large-group+ 5000
-  "How many members of a group need more memory than a processor caches.")
+  "The number of members from which a group needs more memory than a processor caches.")
 
 (defun read-group-ahead (group end dice)
-  "Read ahead for the things whose trials succeed next, before END in GROUP. Return the index there
-of the first one not read."
+  "Read into the cache the memory of the things whose trials succeed next, before the index END in
+GROUP. Return the index of the first success for which nothing was read."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
@@ -149,15 +151,15 @@ of the first one not read."
     ahead))
 
 (defun run-and-see (kicker thing)
-  "Do as RUN-MEMBER. True if THING has moved."
+  "Call RUN-MEMBER with KICKER and THING. Return true if THING has moved."
   (let ((x (thing-x thing)) (y (thing-y thing)))
     (run-member kicker thing)
     (not (and (= x (thing-x thing)) (= y (thing-y thing))))))
 
 (defun run-members (group end dice tick)
-  "Run the members of GROUP before END whose trials succeed, except those already run in TICK, if
-not 0. The next success is drawn before a member runs: an error skips it, unless it is retried. In a
-large group, memory is read ahead if the first member to run moves its thing."
+  "Run the members of GROUP before END whose trials succeed, except those already run in TICK if
+TICK is not 0. The next success is drawn before a member runs, so an error skips the member unless
+it is retried. In a large group, memory is read ahead if the first member to run moves its thing."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
   (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
@@ -186,7 +188,8 @@ large group, memory is read ahead if the first member to run moves its thing."
   t)
 
 (defun run-row (group end dice tick)
-  "Run the members of GROUP before END whose trials succeed, also those after one with an error."
+  "Run the members of GROUP before END whose trials succeed, also those after a member with an
+error."
   (unwind-protect
        (loop while (< (group-skip group) end)
              do (unless (call-user-code #'run-members (group-origin group) group end dice tick)
@@ -205,7 +208,7 @@ large group, memory is read ahead if the first member to run moves its thing."
 
 (declaim (inline skip-group))
 (defun skip-group (group)
-  "Let a tick pass for GROUP if no trial in it succeeds, as in most ticks. True if so."
+  "If no trial in GROUP succeeds in this tick, as in most ticks, let the tick pass and return true."
   (declare (type group group))
   (let ((left (- (group-skip group) (group-count group))))
     (when (and (>= left 0)
@@ -244,8 +247,8 @@ then those whose trials succeed. Errors in a kicker are queued as error messages
 
 (public run-kicker)
 (defun run-kicker (attachment)
-  "Run ATTACHMENT, usually given as SELF, once more on the next tick, whatever its probability and
-test. Its own trial is left out that tick (manual 5.3.1). Return nothing. See reading 170."
+  "Run ATTACHMENT, usually SELF, once more in the next tick, whatever its probability and test. In
+that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
   (let ((world (world-of-living (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
@@ -260,12 +263,12 @@ test. Its own trial is left out that tick (manual 5.3.1). Return nothing. See re
 (define-operator 'run-kicker '(attachment) #'run-kicker)
 
 (defun world-has-kickers-p (world)
-  "True if any kicker in WORLD may run, so that its ticks can matter."
+  "True if any kicker in WORLD may run, so that ticks can change WORLD."
   (or (world-due-kickers world)
       (some (lambda (group) (plusp (group-count group))) (world-kicker-groups world))))
 
 (defun some-kicker (test world)
-  "True if TEST returns true of a kicker that some thing in WORLD has."
+  "True if TEST, a function of a kicker, returns true for a kicker on some thing in WORLD."
   (loop for group in (world-kicker-groups world)
         thereis (loop with last = nil
                       for index below (group-count group)

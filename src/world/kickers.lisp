@@ -11,16 +11,18 @@
 
 (addition kicker-p)
 (define-record (kicker (:constructor make-kicker (name)))
-  "Code that is run with probability PROB on any tick on which TEST, if any, holds."
-  (name nil symbol "the symbol that the kicker is called" :writable :addition)
+  "Code that a thing runs with the probability PROB in each tick in which TEST, if any, returns
+true."
+  (name nil symbol "the symbol that names the kicker" :writable :addition)
   (prob 1d0 (double-float 0d0 1d0) "the kicker's probability per tick" :writable :addition)
   (test nil (or null function)
         "the function of a thing that says whether the kicker may run, or NIL" :writable :export)
   (body (constantly nil) function "the function of a thing that the kicker runs" :writable :export)
   (test-attributes '() list "the attributes that the test reads" :writable)
   (test-outcome nil (member nil :no t) "NIL before the first test, :NO while all tests were false, T
-after a true one" :writable)
-  (checked-p nil boolean "it has been attached, or a run has ended without that" :writable))
+after a true test" :writable)
+  (checked-p nil boolean "the kicker has been attached, or a run has ended without an
+attachment" :writable))
 
 (define-kind (attachment :constructor (make-attachment (kicker thing)))
     "A kicker on a thing."
@@ -29,10 +31,10 @@ after a true one" :writable)
    (thing nil thing "the thing that the kicker is on" :addition))
   (:state
    (alive-p t boolean "the kicker has not been taken off")
-   (due 0 tick-count "the tick of kickers in which it runs by request")
-   (ran 0 tick-count "the tick of kickers in which it last ran by request")
-   (index 0 fixnum "its number in its group")
-   (group nil t "the group of equal kickers that it is in, or NIL")))
+   (due 0 tick-count "the WORLD-KICKER-TICK in which the attachment runs by request")
+   (ran 0 tick-count "the WORLD-KICKER-TICK in which the attachment last ran by request")
+   (index 0 fixnum "the index of the attachment in its group")
+   (group nil t "the group that the attachment is in, or NIL")))
 
 (defmethod reference ((attachment attachment))
   (list :attachment (thing-serial (attachment-thing attachment)) (attachment-name attachment)))
@@ -64,7 +66,8 @@ after a true one" :writable)
 
 (public self)
 (defvar self nil
-  "While a kicker's test or body runs: the kicker being run, for RUN-KICKER (manual 5.3.1).")
+  "The attached kicker whose test or body is running, for RUN-KICKER; otherwise NIL (manual
+5.3.1).")
 
 (defmethod reinstate ((kicker kicker))
   (incf *kicker-generation*)
@@ -77,8 +80,8 @@ after a true one" :writable)
   kicker)
 
 (defun define-kicker (name &key (prob 1) test (body (constantly nil)) test-attributes)
-  "Define or redefine the kicker NAME; what DEFKICKER expands to. TEST and BODY are functions of
-a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker."
+  "Define or redefine the kicker NAME. DEFKICKER expands to a call of this function. TEST and BODY
+are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker."
   (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
     (setf (kicker-test-attributes new) test-attributes)
@@ -88,7 +91,8 @@ a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker
     (register *kickers* name (if old (overwrite-object old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
-  "Return the keyword arguments, as forms, for a kicker with OPTIONS and BODY (reading 169)."
+  "Return the keyword arguments of DEFINE-KICKER, as forms, for a kicker with OPTIONS and BODY
+(reading 169)."
   (unless (and variable (symbolp variable) (not (constantp variable)))
     (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
   (unless (typep options '(or null (cons keyword)))
@@ -106,7 +110,7 @@ a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker
       :body ,(thing-function body))))
 
 (defun attributes-read-in (test)
-  "Return the keywords that TEST, a form, gives GET-ATTRIBUTE."
+  "Return the keywords that TEST, a form, passes to GET-ATTRIBUTE."
   (let ((keys '()))
     (map-calls (lambda (call)
                  (when (and (typep call '(cons symbol (cons t (cons keyword null))))
@@ -119,12 +123,12 @@ a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker
 (define-user-macro defkicker (&whole form name lambda-list &optional options
                      &body body &environment environment)
   "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
-any tick on which the form :test (default true) holds. LAMBDA-LIST is one variable, bound to the
-thing in both. NAME becomes a special variable bound to the kicker, unless it is one of Common
-Lisp's symbols, such as OPEN, or ours, or already has a value: such kickers are called by name.
-Redefinition affects things that have it. Random numbers depend on the seed, both of CL:RANDOM,
-which is seeded in each tick, and of the dice in (roll-between 0 1 (world-dice *world* :user)).
-Signals MALFORMED-DEFINITION. Return the name."
+any tick on which the form :test (default true) holds. LAMBDA-LIST is a list of one variable, bound
+to the thing in BODY and :test. NAME becomes a special variable bound to the kicker, unless NAME is
+a symbol of Common Lisp, such as OPEN, or of the simulator, or already has a value: refer to such
+kickers by name. A redefinition affects things that have the kicker. Random numbers depend on the
+seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-between 0 1 (world-dice
+*world* :user)). Signals MALFORMED-DEFINITION. Return the name."
   (let ((definition (title "defkicker" name)))
     (expand-definition
      form environment
@@ -140,11 +144,11 @@ Signals MALFORMED-DEFINITION. Return the name."
 ;;; Putting kickers on things and taking them off.
 
 (defun find-attachment (thing name)
-  "Return the kicker called NAME on THING, as attached, or NIL."
+  "Return the attachment of the kicker named NAME on THING, or NIL."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
 
 (defun detached-kicker (thing name)
-  "Return a placeholder for a kicker called NAME that was attached to THING and was removed."
+  "Return a placeholder for the attachment of a kicker named NAME that was removed from THING."
   (let ((attachment (make-attachment (make-kicker name) thing)))
     (setf (attachment-alive-p attachment) nil)
     attachment))
@@ -160,7 +164,7 @@ Signals MALFORMED-DEFINITION. Return the name."
   (setf (thing-kickers thing) '()))
 
 (defun attach-kicker (thing kicker)
-  "Put KICKER on THING instead of any other of its name. Return the attachment."
+  "Attach KICKER to THING instead of any other kicker of the same name. Return the attachment."
   (detach-kicker thing (kicker-name kicker))
   (setf (kicker-checked-p kicker) t)
   (let ((attachment (make-attachment kicker thing)))
@@ -171,9 +175,9 @@ Signals MALFORMED-DEFINITION. Return the name."
 
 (public set-kicker)
 (defun set-kicker (thing kicker-name)
-  "Attach to THING the kicker called KICKER-NAME, a symbol, or given as itself (manual 5.3.1).
-Signals WRONG-ARGUMENT and UNKNOWN-NAME. Return it as attached, what SELF is when it runs.
-See reading 171."
+  "Attach to THING the kicker KICKER-NAME, a symbol or a kicker (manual 5.3.1). Signals
+WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, the value of SELF when it runs. See
+reading 171."
   (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
     (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
@@ -182,7 +186,7 @@ See reading 171."
 (define-operator 'set-kicker '(thing name) #'set-kicker)
 
 (defun call-put-kicker (thing name &key (prob 1) test body)
-  "Do what PUT-KICKER says; without a BODY, remove the kicker NAME."
+  "Attach a kicker NAME to THING only, as PUT-KICKER does. Without a BODY, remove the kicker NAME."
   (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (and body (fill-kicker (make-kicker name) (title "put-kicker" name)
                                        prob test body))))
@@ -196,10 +200,10 @@ See reading 171."
 
 (public put-kicker)
 (define-user-macro put-kicker (name target &optional options &body body)
-  "Define a kicker NAME for one thing only, with options as for DEFKICKER. It replaces the thing's
-kicker of that name. With an empty BODY, remove the thing's kicker NAME, even a global one (manual
-5.3.1). TARGET is (variable thing); the variable is bound to the thing in test and body. Return the
-attached kicker, if any."
+  "Define a kicker NAME for one thing only, with options as for DEFKICKER. The new kicker replaces
+the thing's kicker of the same name. With an empty BODY, remove the thing's kicker NAME, even if
+DEFKICKER defined it (manual 5.3.1). TARGET is (variable thing); the variable is bound to the thing
+in test and body. Return the attached kicker, if any."
   (let ((definition (title "put-kicker" name)))
     (check-name definition name "kicker")
     (unless (and (proper-list-p target) (= 2 (length target)))
@@ -214,7 +218,7 @@ attached kicker, if any."
 ;;; direction only, by single writes, so a race can at most repeat a warning.
 
 (defun code-names-p (name package)
-  "True if the code of another kicker, or of a function named in PACKAGE, has NAME in it."
+  "True if the code of another kicker, or of a user's function in PACKAGE, refers to NAME."
   (flet ((names-it-p (function) (member name (code-references function))))
     (or (loop for kicker in (all-kickers)
                 thereis (and (not (eq name (kicker-name kicker)))
@@ -227,8 +231,8 @@ attached kicker, if any."
                  (return t)))))))
 
 (defun perhaps-used-p (entry world)
-  "True if the kicker of ENTRY is named in a function, or more than once in the file of WORLD's map,
-or is from another file."
+  "True if the kicker of ENTRY may be in use: a function refers to it, its name is more than once in
+the file of WORLD's map, or the kicker is from another file."
   (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
         (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
     (if file
@@ -250,7 +254,8 @@ or is from another file."
                          (kicker-name kicker))))))
 
 (defun doubt-untrue-kicker (kicker world)
-  "Warn if KICKER is on a thing of WORLD, and its test, never true, reads an unknown attribute."
+  "Warn if KICKER is on a thing of WORLD and its test was never true and reads an unknown
+attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)
@@ -273,7 +278,7 @@ or is from another file."
 (defun where-to-mend (attachment)
   (let* ((kicker (attachment-kicker attachment))
          (file (function-file (kicker-body kicker))))
-    (cond (file (format nil "in ~A, and load that again" file))
+    (cond (file (format nil "in ~A, and load the file again" file))
           ((eq kicker (find-kicker (kicker-name kicker) nil)) "by DEFKICKER")
           (t "by PUT-KICKER"))))
 
@@ -282,8 +287,8 @@ or is from another file."
 
 (defmethod recurring-remedy ((attachment attachment))
   (let ((name (attachment-name attachment)))
-    (format nil "Mend the kicker ~A ~A; or take it off: ~
-                 (put-kicker ~(~A~) (thing (find-thing \"~A\")))."
+    (format nil "Correct the kicker ~A ~A; or remove it: (put-kicker ~(~A~) (thing (find-thing ~
+                 \"~A\")))."
             name (where-to-mend attachment) name (attachment-thing attachment))))
 
 (define-facts (kicker kicker)

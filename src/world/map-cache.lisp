@@ -11,13 +11,13 @@
 ;;; not the magic one, if it is not a file of bytes, or if this cannot be determined.
 
 (defconstant +cache-magic+ #x4152534D41503031
-  "ARSMAP01 in ASCII; changes when the file's layout does.")
+  "The first word of a cache, ARSMAP01 in ASCII. It changes with the layout of the file.")
 (defconstant +cache-header+ 5 "How many words come before the cells.")
 
 (deftype words () '(simple-array (unsigned-byte 64) (*)))
 
 (defun cache-key (map)
-  "Return the 64-bit key of MAP's grid (reading 62)."
+  "Return a 64-bit digest of all that the grid of MAP depends on (reading 62)."
   (digest-value
    (digest-add (make-digest)
                (list (map-width map) (map-height map) (map-clauses map)
@@ -26,7 +26,8 @@
                                          (place-type-rules type)))))))
 
 (defun words-sum (words)
-  "Return a check sum of WORDS, except the first and the sum itself, the last of the header."
+  "Return a check sum of WORDS without the first word and without the check sum itself, the last
+word of the header."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
@@ -72,7 +73,8 @@
 ;;; Reading.
 
 (defun read-words (path most)
-  "Return the words of the file PATH, none if they are more than MOST; NIL if there is no file."
+  "Return a vector of the words of the file PATH, empty if there are more than MOST; NIL if there is
+no file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
       (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)
@@ -90,7 +92,7 @@
 (defun restore-cell (map wall-p index number value)
   "Make the cell INDEX of MAP a wall of substance NUMBER if WALL-P, else a place of type NUMBER."
   (unless (< 0 number (length (if wall-p (map-substance-types map) (map-place-types map))))
-    (error "no name has the number ~D" number))
+    (error "no substance or place type has the number ~D" number))
   (if wall-p
       (setf (aref (map-flags map) index) +wall+
             (aref (map-substances map) index) number
@@ -99,7 +101,7 @@
             (aref (map-directions map) index) value)))
 
 (defun restore-map (map words)
-  "Fill the empty grid of MAP from WORDS. Signals an error if they are no grid."
+  "Fill the empty grid of MAP from WORDS. Signals an error if WORDS describe no grid."
   (clear-walls map)
   (clear-places map)
   (let ((walls-end (+ +cache-header+ (* 2 (aref words 2)))))
@@ -111,7 +113,7 @@
   (note-walls map))
 
 (defun begins-as-cache-p (path)
-  "True if the file PATH is empty or begins as caches do."
+  "True if the file PATH is empty or begins like a map cache."
   (let ((words (make-array 1 :element-type '(unsigned-byte 64))))
     (or (zerop (file-size path))
         (with-open-file (in path :element-type '(unsigned-byte 64))
@@ -119,7 +121,8 @@
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-cache-p (path)
-  "True if the file PATH exists and is not a map cache, whole or damaged, or if that is unknown."
+  "True if the file PATH exists and is not a map cache, not even a damaged one, or if this cannot be
+determined."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
 
@@ -128,7 +131,7 @@
                "; the map is built anew."))
 
 (defun restore-from-cache (map path key)
-  "Fill MAP from the file PATH; true if that could be done."
+  "Fill MAP from the cache file PATH. Return true on success."
   (handler-case
       ;; Each cell is a wall, or a place, or both.
       (let ((words (read-words path (+ +cache-header+ (* 4 (map-width map) (map-height map))))))
@@ -148,7 +151,8 @@
                    " cannot be written: " (text-of-condition condition)))))
 
 (defun cache-path (name)
-  "Return the path of the cache NAME, relative to the definition's file or the current directory."
+  "Return the path of the cache file NAME, relative to the definition's file or else to the current
+directory."
   (let ((directory (base-directory))
         (file (source-file (current-source))))
     (merge-pathnames (path-called name)
@@ -158,14 +162,14 @@
                          directory))))
 
 (defun usable-cache-path (map)
-  "Return the cache file of MAP, if it has one, unless that file holds something else."
+  "Return the path of the cache file of MAP, or NIL if MAP has none or the file is not a map cache."
   ;; Checkers are users' code, on which places would depend.
   (let ((path (and (notany #'place-type-checker (registry-objects *place-types*))
                    (map-cache map))))
     (cond ((null path) nil)
           ((foreign-cache-p path)
            (warning-set "The file " (native-name path)
-                        " is no cache of a map; it is left as it is, and " (map-name map)
+                        "is no map cache and is left as it is;" (map-name map)
                         " is not kept. Give :cache another name.")
            nil)
           (t (or (ignore-errors (probe-file path)) path)))))

@@ -9,7 +9,7 @@
 ;;; other clauses. So a map stores only clauses of our kinds, and its cache depends on nothing else.
 
 (define-record (clause-kind (:constructor make-clause-kind (name usage derived-p function)))
-  "A kind of clause."
+  "A kind of clause that DEFMAP accepts."
   (name nil symbol "the symbol that clauses of the kind begin with" :export)
   (usage "" string "how clauses of the kind are written, a string" :export)
   (derived-p nil boolean "the clauses expand to other clauses")
@@ -22,7 +22,8 @@ the form for the option"))
 (defun map-title (map) (title "defmap" (map-name map)))
 
 (defun clause-value (option map clause &optional (kind (find-clause-kind (first clause))))
-  "Return the value of the form for OPTION that the KIND of CLAUSE, of MAP, has; NIL without one."
+  "Return the value, for CLAUSE of MAP, of the form that KIND, the kind of CLAUSE, has for OPTION;
+NIL if KIND has no such form."
   (funcall (clause-kind-function kind) option map clause))
 
 (defun kind-of-clause (map clause)
@@ -52,16 +53,19 @@ the form for the option"))
 ;;; Expansion. The parts of a map are walls, rects and circles, and recipes of things.
 
 (defun wrong-derivation-text (kind condition)
-  "Return in words what is expected instead of a clause of KIND whose expansion CONDITION rejects."
+  "Return a text that says what is expected instead of a clause of KIND, because CONDITION rejects
+the clause's expansion."
   (let ((*print-pretty* nil))
-    (format nil "~A; it expands to ~(~S~), where there should be ~A" (clause-kind-usage kind)
+    (format nil "~A; the clause expands to ~(~S~), where there should be ~
+                 ~A" (clause-kind-usage kind)
             (abridged (malformed-definition-clause condition))
             (malformed-definition-expected condition))))
 
 (defun derived-parts (map clause kind depth)
-  "Return the parts that CLAUSE of MAP, of KIND, expands to. Mistakes in them are CLAUSE's."
+  "Return the parts that CLAUSE of MAP, a clause of KIND, expands to. Mistakes in the parts are
+reported as mistakes of CLAUSE."
   (when (< 50 depth)
-    (reject-clause (map-title map) clause "a clause that does not expand to itself without end"))
+    (reject-clause (map-title map) clause "a clause whose expansion ends"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
   (handler-case (call-for-value
                  (lambda ()
@@ -82,8 +86,8 @@ the form for the option"))
           (t (list clause)))))
 
 (defun code-in-clause (map clause)
-  "Return the code in CLAUSE of MAP, as CODE-IN-THING does: none if it is of a user's kind or,
-with a warning in a compiled file, wrong."
+  "Return the code in CLAUSE of MAP, as CODE-IN-THING does. Return () for a clause of a user's kind
+and, with a warning in a compiled file, for an invalid clause."
   (let ((code '()))
     (flet ((look ()
              (let ((kind (kind-of-clause map clause)))
@@ -113,7 +117,8 @@ with a warning in a compiled file, wrong."
                      "a name that no clause of the simulator has, and :clauses with a form"))))
 
 (defun clause-function-form (lambda-list options)
-  "Return the function of a kind whose clauses fit LAMBDA-LIST, and whose forms are in OPTIONS."
+  "Return a form for the function of a kind of clause, with the LAMBDA-LIST of its clauses and its
+OPTIONS."
   (destructuring-bind (map . parameters) lambda-list
     (multiple-value-bind (whole parameters) (variable-after '&whole parameters)
       (with-gensyms (option clause kind)
@@ -129,10 +134,10 @@ with a warning in a compiled file, wrong."
 (define-user-macro define-map-clause (&whole form name lambda-list &optional usage
                                       &body options &environment environment)
   "Define clauses (NAME argument...) of DEFMAP. LAMBDA-LIST is a variable for the map, whose name
-and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause;
-error messages quote it. Options are forms:
-  :clauses form -- the list of clauses, such as walls and things, that it expands to
-  :check form -- true if the arguments are valid; by default all that fit the lambda list are
+and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause, and
+is quoted in error messages. Options are forms:
+  :clauses form -- the list of clauses, such as walls and things, that the clause expands to
+  :check form -- true if the arguments are valid; by default all are valid that fit the lambda list
 Existing maps do not change. Return the name. Signals MALFORMED-DEFINITION."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      ,(expand-definition

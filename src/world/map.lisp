@@ -25,9 +25,8 @@
 (public map)
 (addition map-p)
 (define-record (map (:constructor %make-map))
-  "A fixed grid of cells, with the recipe of the things that a fresh world of it holds (manual
-5.1)."
-  (name nil symbol "the symbol that the map is called" :addition)
+  "A fixed grid of cells, with recipes of the things in a fresh world of the map (manual 5.1)."
+  (name nil symbol "the symbol that names the map" :addition)
   (width 1 (integer 1 32767) "how many cells the map is wide" :addition)
   (height 1 (integer 1 32767) "how many cells the map is high" :addition)
   (flags (make-octets 0) octets
@@ -35,11 +34,13 @@
   (parameters (make-doubles 0) doubles "the substance parameters of the map's cells by index, 0
 where empty" :writable :export)
   (substances (make-array 0 :element-type '(unsigned-byte 16)) indices
-              "the indices, by cell index, into the map's MAP-SUBSTANCE-TYPES" :writable :export)
+              "the substances of the map's cells, by cell index, as indices into
+MAP-SUBSTANCE-TYPES" :writable :export)
   (substance-types #(nil) simple-vector
                    "a vector of substance names; element 0 is NIL, for no wall" :writable :export)
   (places (make-octets 0) octets
-          "the indices, by cell index, into the map's MAP-PLACE-TYPES" :writable :export)
+          "the place types of the map's cells, by cell index, as indices into
+MAP-PLACE-TYPES" :writable :export)
   (directions (make-doubles 0) doubles "the basic canonical directions of the map's cells by index,
 radians" :writable :export)
   (place-types #(nil) simple-vector
@@ -56,14 +57,14 @@ out" :writable :export)
 with" :writable :export)
   (package nil (or null string)
            "the name of the package that the map's author wrote in, or NIL" :export)
-  (clauses '() list "the clauses that its author wrote" :writable)
+  (clauses '() list "the clauses of the map's walls, after expansion" :writable)
   (clause-kinds '() list "the names of the users' kinds of clauses that the map is written
 with" :writable :export)
-  (cache nil (or null string pathname) "the file that caches its grid, or NIL" :writable)
-  (frame '(1 0 0 0) list "a list (size x y yaw) that relates the map to other coordinates: the
-side of a cell there, in metres, the position of the lower left corner there, in metres, and the
-counterclockwise turn of the x axis there, in radians. It is (1 0 0 0) unless DEFMAP or IMPORT-MAP
-has set it" :addition)
+  (cache nil (or null string pathname) "the file that caches the map's grid, or NIL" :writable)
+  (frame '(1 0 0 0) list "a list (size x y yaw) that relates the map to a frame of real coordinates:
+the real side of a cell, in metres, the position of the map's lower left corner in the frame, in
+metres, and the counterclockwise rotation of the map's x axis in the frame, in radians. The list is
+(1 0 0 0) unless DEFMAP or IMPORT-MAP has set it" :addition)
   (resident nil t "the world of the map that top-level code works in, NIL before
 the first use" :writable :export))
 
@@ -88,8 +89,8 @@ the first use" :writable :export))
 (define-registry map "map" :object-p map-p :by-symbol t)
 
 (defgeneric map-replaced (old new)
-  (:documentation "Called when the map NEW has taken the place of OLD; OLD is NIL if there was none,
-NEW if OLD was undefined. The layer above ends the runs of OLD.")
+  (:documentation "Called when the map NEW has replaced the map OLD. OLD is NIL if there was no such
+map; NEW is NIL if OLD was undefined. The layer above ends the runs of OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)
@@ -100,15 +101,16 @@ NEW if OLD was undefined. The layer above ends the runs of OLD.")
   map)
 
 (defun map-form (form environment)
-  "Return a form for the map that FORM denotes in ENVIRONMENT: its value, or, for a symbol without a
-map as its value, such as ROOM, the map of that name."
+  "Return a form that returns the map that FORM denotes in ENVIRONMENT, or its name. A symbol whose
+value is no map, such as ROOM, is the name of a map."
   (cond ((or (null form) (not (symbolp form))) form)
         ((local-variable-p form environment) form)
         ((known-variable-p form environment) `(map-meant ',form))
         (t `',form)))
 
 (defun map-meant (name)
-  "Return the value of the variable NAME, if that can be a map; otherwise NAME, a map's name."
+  "Return the value of the variable NAME if the value can be a map or its name; otherwise return
+NAME, the name of a map."
   (let ((value (and (boundp name) (symbol-value name))))
     (if (or (map-p value)
             (stringp value)
@@ -124,14 +126,16 @@ map as its value, such as ROOM, the map of that name."
 
 (declaim (inline cell-index-at point-index))
 (defun cell-index-at (map x y)
-  "Return the index of the cell of MAP with the integer coordinates X and Y, or NIL outside."
+  "Return the index of the cell of MAP with the integer coordinates X and Y, or NIL outside the
+map."
   (declare (type fixnum x y))
   (let ((width (map-width map)))
     (and (< -1 x width) (< -1 y (map-height map))
          (the cell-index (+ x (the cell-index (* y width)))))))
 
 (defun point-index (map x y)
-  "Return the index of the cell of MAP with X, Y (double-floats), or NIL outside (reading 51)."
+  "Return the index of the cell of MAP that holds the point (X, Y), double-floats, or NIL outside
+the map (reading 51)."
   (declare (type double-float x y))
   (let ((width (map-width map)))
     (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
@@ -139,7 +143,8 @@ map as its value, such as ROOM, the map of that name."
             (the cell-index (* width (truncate (the (double-float 0d0 32768d0) y))))))))
 
 (defun map-index (map x y)
-  "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside."
+  "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside the
+map."
   (point-index map (double x) (double y)))
 
 ;; As reading 53 says.
@@ -165,7 +170,7 @@ WRONG-ARGUMENT."
 
 (addition cell-p)
 (define-record (cell (:constructor make-cell (map x y)))
-  "A cursor on the cell with the integer coordinates X and Y of MAP, perhaps outside it."
+  "A cursor on the cell of MAP with the integer coordinates X and Y, perhaps outside MAP."
   (map nil map "the map that the cell is in" :addition)
   (x 0 fixnum "the cell's column, an integer" :writable :addition)
   (y 0 fixnum "the cell's row, an integer" :writable :addition))
@@ -176,8 +181,8 @@ WRONG-ARGUMENT."
 
 (addition map-cell)
 (defun map-cell (map x y)
-  "Return the cell of MAP that holds the point (X, Y), in metres; it may be outside the map. Signals
-WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
+  "Return the cell of MAP that holds the point (X, Y), in metres; the point may be outside the map.
+Signals WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
   (check-argument map-cell map (map-p map) "a map")
   (check-of-type 'map-cell 'x x 'number)
   (check-of-type 'map-cell 'y y 'number)
@@ -188,7 +193,7 @@ WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
 
 (addition cell-filled?)
 (defun cell-filled? (cell)
-  "True if CELL is a wall; outside the map everything is (manual 5.1.1)."
+  "True if CELL is a wall; all cells outside the map count as walls (manual 5.1.1)."
   (filled-at-p (cell-map cell) (cell-x cell) (cell-y cell)))
 
 (addition cell-substance-type)
@@ -199,15 +204,15 @@ WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
 
 (addition cell-substance-parameter)
 (defun cell-substance-parameter (cell)
-  "Return the substance parameter of the wall in CELL; 0 if it is empty or outside the map."
+  "Return the substance parameter of the wall in CELL; 0 if CELL is empty or outside the map."
   (let ((index (cell-index-in-map cell)))
     (if index (aref (map-parameters (cell-map cell)) index) 0d0)))
 
 (public cell-occupancy-window)
 (defun cell-occupancy-window (cell width height)
   "Return a list of HEIGHT rows, each a list of WIDTH entries, centred on CELL: T for a wall,
-NIL for an empty cell (manual 5.1.1). Of an even number of entries one more lies before CELL. WIDTH
-and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
+NIL for an empty cell (manual 5.1.1). If WIDTH or HEIGHT is even, there is one entry more before
+CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   (check-argument cell-occupancy-window width (whole-p width 1 1000) "an integer from 1 to 1000")
   (check-argument cell-occupancy-window height (whole-p height 1 1000) "an integer from 1 to 1000")
   (let ((map (cell-map cell))
@@ -221,12 +226,12 @@ and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
 ;;; inline, with VISIT a known function, so that nothing is called or allocated for a cell.
 
 (defconstant +endless+ 1d100
-  "A distance that stands for infinity, also when a rounding error multiplies it.")
+  "A distance that stands for infinity, even if multiplied by a rounding error.")
 (defconstant +no-limit+ 32767
-  "How many columns and rows a walk crosses at most when nothing else ends it.")
+  "A number of columns and rows that no walk along a line exceeds.")
 
 (deftype grid-size ()
-  "How many columns or rows a grid has, or one has to cross."
+  "A number of columns or rows of a grid."
   '(unsigned-byte 15))
 
 (declaim (inline cell-number border-spacing to-border walk-grid))
@@ -235,21 +240,24 @@ and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
 
 (defun border-spacing (component)
-  "Return how far it is from border to border of cells along a line with COMPONENT on this axis."
+  "Return the distance, along a line, between neighbouring cell borders of one axis. COMPONENT is
+that of the line's direction on this axis."
   (declare (type double-float component))
   (if (zerop component) +endless+ (abs (/ component))))
 
 (defun to-border (start cell back)
-  "Return how far it is on one axis from START in CELL to its border: the lower if BACK."
+  "Return the distance on one axis from START, in the column or row CELL, to the lower border of
+CELL if BACK, else to the upper border."
   (declare (type double-float start) (type grid-size cell))
   (if back (- start cell) (- (1+ cell) start)))
 
 (defun walk-grid (visit width height x y dx dy reach &optional column-first)
   "Call VISIT with each cell, after the first, on the line from (X,Y) in direction (DX,DY), in a
-grid of WIDTH by HEIGHT that contains (X,Y). Arguments of VISIT: the index, the distance at which
-the line enters the cell, and whether it comes from another column. Stop when VISIT returns true, at
-the edge, or after REACH columns or rows; return the distance there. Through a corner the line goes
-by the next row, or, if the constant COLUMN-FIRST is true, by the next column."
+grid of WIDTH by HEIGHT that contains (X,Y). The arguments of VISIT are the cell's index, the
+distance at which the line enters the cell, and whether the line comes from another column. Stop
+when VISIT returns true, at the edge of the grid, or after REACH columns or rows; return the
+distance of this point. At a corner the line enters the cell in the next row first or, if the
+constant COLUMN-FIRST is true, the cell in the next column."
   (declare (type function visit) (type grid-size width height reach)
            (type double-float x y dx dy))
   (let* ((cell-x (cell-number x)) (cell-y (cell-number y))

@@ -13,14 +13,16 @@
 (deftype neighbourhood-code () '(unsigned-byte 9))
 
 (defstruct (rule (:constructor make-rule (form direction dx dy)) (:copier nil))
-  "Where the walls are as in FORM around a cell, the cell DX, DY away is a place facing DIRECTION."
+  "A rule of a place type: if the walls around a cell are as in FORM, the cell at the offset DX, DY
+is a place that faces DIRECTION."
   (form '() :type list :read-only t)
   (direction 0d0 :type double-float :read-only t)
   (dx 0 :type fixnum :read-only t)
   (dy 0 :type fixnum :read-only t))
 
 (defun normal-entry (entry)
-  "Return T, NIL or :ANY for ENTRY of a match form, or :BAD (reading 75)."
+  "Return T, NIL or :ANY for ENTRY, an entry of a match form, or :BAD if ENTRY is invalid (reading
+75)."
   (cond ((matchvar-p entry) :any)
         ((not (symbolp entry)) :bad)
         ((or (null entry) (same-name-p entry "-")) nil)
@@ -35,7 +37,7 @@
       (reject "a match form: a list of rows, each a list of entries"))
     (unless (and (oddp (length form)) (oddp (length (first form)))
                  (apply #'= (mapcar #'length form)))
-      (reject "rows of one length, an odd number of them, each of an odd length"))
+      (reject "an odd number of rows, all of the same odd length"))
     (let ((rows (loop for row in form collect (mapcar #'normal-entry row))))
       (dolist (row rows rows)
         (when (member :bad row)
@@ -45,7 +47,7 @@
   (values (length (first form)) (length form)))
 
 (defun small-form-p (form)
-  "True if FORM looks at a cell's neighbours at most."
+  "True if FORM, a match form, concerns only a cell and its neighbours."
   (multiple-value-bind (width height) (form-size form)
     (and (<= width 3) (<= height 3))))
 
@@ -62,7 +64,8 @@
     (values mask value)))
 
 (defun rules-table (rules)
-  "Return a table of the number, from 1, of the first of RULES, all small, that fits a code, or 0."
+  "Return a table by neighbourhood code: the number, from 1, of the first of RULES that fits the
+code, or 0. The match forms of RULES are small."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
           do (multiple-value-bind (mask value) (form-bits (rule-form rule))
@@ -72,7 +75,7 @@
     table))
 
 (defun form-matches-p (form map x y)
-  "True if the walls around the cell X, Y of MAP are as FORM, of any size, says."
+  "True if the walls around the cell X, Y of MAP are as in FORM, a match form of any size."
   (multiple-value-bind (width height) (form-size form)
     (loop for row in form for cy from (- y (floor height 2))
           always (loop for entry in row for cx from (- x (floor width 2))
@@ -86,8 +89,8 @@
 
 (addition place-type-p)
 (define-record (place-type (:constructor %make-place-type (name)))
-  "A stereotypical bit of wall structure that the robot can sense and align with."
-  (name nil symbol "the symbol that the place type is called" :writable :addition)
+  "A typical structure of walls, such as a doorway, that the robot can sense and align with."
+  (name nil symbol "the symbol that names the place type" :writable :addition)
   (confusion 0d0 (double-float 0d0 1d0)
              "the probability of a false designator in a search for the type" :writable :addition)
   (invisible-p nil boolean "no designator can be acquired for the place type" :writable :addition)
@@ -111,14 +114,14 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
   (position type (registry-objects *place-types*) :test #'eq))
 
 (defun place-type-index (map type)
-  "Return the number of TYPE in MAP-PLACES of MAP, or NIL if MAP was built before it was defined."
+  "Return the number of TYPE in MAP-PLACES of MAP, or NIL if MAP was built before TYPE was defined."
   (position type (map-place-types map) :test #'eq))
 
 ;;; Places.
 
 (addition place-p)
 (define-record (place (:constructor make-place (type canonical-dir cell)))
-  "A cell as a place: its PLACE-TYPE, basic canonical direction (radians) and the cell."
+  "A cell that is a place: its PLACE-TYPE, its basic canonical direction in radians, and the cell."
   (type nil place-type "the PLACE-TYPE that the place is of" :addition)
   (canonical-dir 0d0 double-float
                  "the place's basic canonical direction, radians (manual 5.1.1)" :addition)
@@ -141,8 +144,8 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
 
 (addition place-directions)
 (defun place-directions (place)
-  "Return the two canonical directions of PLACE, radians: what its type's :directions form says,
-or its basic direction and the opposite. Errors in the form are queued as error
+  "Return the two canonical directions of PLACE, in radians: the values of its type's :directions
+form, or its basic direction and the opposite direction. Errors in the form are queued as error
 messages (reading 72)."
   (let* ((basic (place-canonical-dir place))
          (type (place-type place))
@@ -169,7 +172,7 @@ messages (reading 72)."
                  '(:confusion :check-matchers :checker :directions :invisible :graphics :before
                    :documentation))
   (when (eq (null (getf options :check-matchers)) (null (getf options :checker)))
-    (reject-clause definition options "either :check-matchers or :checker, one of them")))
+    (reject-clause definition options "either :check-matchers or :checker, but not both")))
 
 (defun checked-direction (definition matcher direction)
   (unless (within-reason-p direction)
@@ -221,17 +224,20 @@ messages (reading 72)."
   "Define the place type NAME (manual 5.1.1). LAMBDA-LIST is (CELL); options, in any order:
   :confusion p -- probability of a false designator in a search for the type; default 0
   :check-matchers ((match-form direction)...) -- wall patterns centred on the place
-  :checker form -- or a form of four values: true to classify, integers dx and dy to the place
-    from CELL, its basic canonical direction; CELL is one cursor that moves over the map
-  :directions form -- of two values, radians; default the basic direction and its opposite
-  :invisible true -- no designator can be acquired for it
-  :graphics ((window x y) body...) -- draws it (manual B.1)
-  :before name -- ours: where a cell could be of both, this type wins over the one called NAME,
-    or over all others if NAME is T; without it, a type that was defined earlier wins
-  :documentation text -- ours: what the place type is
-A matcher may have integers dx dy after the direction, as a checker's values: ours too. Checker and
-directions are tried once on a small separate map. Maps built earlier learn of the type from
-REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
+    :checker form -- or a form that returns four values: true if there is a place; integers dx and
+    dy, the offset of the place from CELL; and the basic canonical direction of the place. CELL is
+    the same object in each call, a cursor that moves over the map
+  :directions form -- a form that returns two values, radians; by default the basic direction and
+    its opposite
+  :invisible true -- no designator can be acquired for places of the type
+  :graphics ((window x y) body...) -- a body that draws a place of the type (manual B.1)
+  :before name -- an addition: where a cell fits two types, this type wins over the type NAME, or
+    over all others if NAME is T; without :before, a type that was defined earlier wins
+  :documentation text -- an addition: what the place type is
+After its direction a matcher may have integers dx and dy, the offset of the place, as a checker
+does; this is an addition, too. The code of :checker and :directions is tried once on a small
+separate map. Call REBUILD-MAP to find places of the type in maps built earlier. Signals
+MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment
                      (lambda () (place-type-forms name lambda-list options))))
 
@@ -245,8 +251,9 @@ REBUILD-MAP. Signals MALFORMED-DEFINITION. Return the name."
 
 (defun define-place-type (name &key (confusion 0) invisible rules checker directions graphics
                                  before (key 0))
-  "Define the place type NAME; what DEF-PLACE-TYPE expands to, with functions of a cell for
-CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cache. Return NAME."
+  "Define the place type NAME. DEF-PLACE-TYPE expands to a call of this function. CHECKER and
+DIRECTIONS are functions of a cell. KEY is a digest of the definition, for the key of a map's cache.
+Return NAME."
   (let* ((definition (title "def-place-type" name))
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))
@@ -277,5 +284,5 @@ CHECKER and DIRECTIONS. KEY stands for the definition in the key of a map's cach
   "Recognized by" (if (place-type-checker type)
                       "a checker"
                       (format nil "~R matcher~:P" (length (place-type-rules type))))
-  "Chance that a search finds it where it is not" (place-type-confusion type)
+  "Chance that a search finds a false place" (place-type-confusion type)
   "Can be designated" (if (place-type-invisible-p type) "no" "yes"))

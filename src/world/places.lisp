@@ -10,7 +10,8 @@
 
 (declaim (inline column-code))
 (defun column-code (flags x y width height)
-  "Return three bits: the walls at column X in the rows above, at and below Y."
+  "Return three bits that say whether column X has a wall in the row above Y, in the row Y, and in
+the row below."
   (declare (type octets flags) (type (signed-byte 20) x y width height))
   (flet ((bit-at (y)
            (declare (type (signed-byte 20) y))
@@ -38,7 +39,8 @@
 
 (declaim (inline classify-cell))
 (defun classify-cell (map number x y direction)
-  "Make the cell X, Y of MAP, if free and no place yet, one of the type NUMBER (reading 71)."
+  "Make the cell X, Y of MAP a place of the type NUMBER, if the cell is free and not a place yet
+(reading 71)."
   (declare (type (signed-byte 20) x y) (type (unsigned-byte 8) number))
   (when (and (< -1 x (map-width map)) (< -1 y (map-height map)))
     (let ((index (+ x (* y (map-width map)))))
@@ -76,7 +78,8 @@
                          (rule-direction rule)))))))
 
 (defun definition-of (type)
-  "Return a value for *DEFINITION*: the current definition of TYPE, or else one from its entry."
+  "Return a value for *DEFINITION*: the current definition of TYPE, or else a definition made from
+the registry's entry of TYPE."
   (let ((operator "def-place-type")
         (entry (lookup-entry (place-type-name type) *place-types*)))
     (if (and *definition* (same-name-p operator (first (defining-form *definition*))))
@@ -92,9 +95,10 @@
                    expected)))
 
 (defun call-blaming-type (function cell type option)
-  "Call FUNCTION, which runs the OPTION of TYPE for CELL, and blame TYPE for errors in it."
+  "Call FUNCTION, which runs the code of OPTION of TYPE for CELL. Report errors in the code as
+mistakes in the definition of TYPE."
   (flet ((blame (condition)
-           (blame-type type option (format nil "code that runs; at ~A: ~A" cell
+           (blame-type type option (format nil "code that runs without an error; at ~A: ~A" cell
                                            (string-right-trim "." (text-of-condition condition))))))
     (handler-case
         (handler-bind ((error (lambda (condition)
@@ -129,13 +133,15 @@
       (call-blaming-type #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
-  "Make the cells of MAP that are no places yet places of TYPE, with NUMBER, where it fits."
+  "Make the cells of MAP that fit TYPE and are not places yet places of TYPE, whose number is
+NUMBER."
   (cond ((place-type-checker type) (classify-by-checker map type number))
         ((place-type-table type) (classify-by-table map type number codes))
         (t (classify-by-forms map type number))))
 
 (defun check-directions (map type number)
-  "Signal MALFORMED-DEFINITION unless the :directions of TYPE are two where it is first found."
+  "Signal MALFORMED-DEFINITION unless the :directions of TYPE return two angles for the first place
+of TYPE in MAP."
   (let ((index (position number (map-places map)))
         (function (place-type-directions type)))
     (when (and index function)
@@ -150,7 +156,7 @@
                                 cell directions))))))))
 
 (defun clear-places (map)
-  "Clear the places of MAP; number the current place types."
+  "Remove all places from MAP, and give MAP the current place types."
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-places map) (make-octets size)
           (map-directions map) (make-doubles size)
@@ -158,8 +164,8 @@
                                         'simple-vector))))
 
 (defun classify-places (map)
-  "Find the places of MAP anew, without those of types whose code fails: these get a warning. Return
-MAP, and true if no type was left out (reading 70)."
+  "Find the places of MAP again. Leave out place types whose code fails, with a warning. Return MAP,
+and true if no type was left out (reading 70)."
   (clear-places map)
   (let ((codes (neighbourhood-codes map)) (whole t))
     (loop for type in (registry-objects *place-types*) for number from 1
@@ -189,10 +195,11 @@ MAP, and true if no type was left out (reading 70)."
     "#.#.......#"
     "#...#..#..#"
     "###########")
-  "Walls with doorways, corners, posts and ends of walls.")
+  "The rows of a sample map with doorways, corners, posts and ends of walls.")
 
 (defun small-map (width height filled-p)
-  "Return a map in which the cells for which FILLED-P of column and row is true are walls."
+  "Return a map with walls in the cells for which FILLED-P, a function of column and row, returns
+true."
   (let ((map (%make-map :name 'sample :width width :height height)))
     (clear-grid map)
     (dotimes (y height)
@@ -207,7 +214,7 @@ MAP, and true if no type was left out (reading 70)."
   (and (<= 0 column) (<= 0 row) (eq t (nth column (nth row form)))))
 
 (defun rule-map (rule)
-  "Return a map with the walls of RULE and room for the place beside them."
+  "Return a small map with the walls in the match form of RULE, and free cells around them."
   (multiple-value-bind (width height) (form-size (rule-form rule))
     (let ((margin (1+ (max (abs (rule-dx rule)) (abs (rule-dy rule))))))
       (small-map (+ width (* 2 margin)) (+ height (* 2 margin))
@@ -231,14 +238,14 @@ MAP, and true if no type was left out (reading 70)."
 ;;; in its centre never applies, nor does a type all of whose forms fit only cells of earlier types.
 
 (defun walled-p (rule)
-  "True if RULE wants a wall where it has the place."
+  "True if the match form of RULE requires a wall in the cell that RULE makes a place."
   (multiple-value-bind (width height) (form-size (rule-form rule))
     (form-wall-p (rule-form rule)
                  (+ (rule-dx rule) (floor width 2))
                  (+ (rule-dy rule) (floor height 2)))))
 
 (defun match-form-text (form)
-  "Return FORM in the abbreviations of manual 5.1.1."
+  "Return the text of FORM, a match form, in the abbreviations of manual 5.1.1."
   (format nil "(~{(~{~A~^ ~})~^ ~})"
           (loop for row in form
                 collect (loop for entry in row
@@ -246,9 +253,9 @@ MAP, and true if no type was left out (reading 70)."
 
 (defun warn-of-walled (definition rule)
   (let ((dx (rule-dx rule)) (dy (rule-dy rule)))
-    (warn-of-definition "~A: the match form ~A can never fit a place, as ~A is a wall, and only ~
-                         free cells are places; write - there, or give the free cell beside it ~
-                         that is the place: (match-form direction dx dy)"
+    (warn-of-definition "~A: the match form ~A can never fit a place, because ~A is a wall, and ~
+                         only free cells are places; write - there, or give the offset of a free ~
+                         cell beside it that is the place: (match-form direction dx dy)"
                         definition (match-form-text (rule-form rule))
                         (if (= 0 dx dy)
                             "its middle"
@@ -257,13 +264,13 @@ MAP, and true if no type was left out (reading 70)."
 ;;; Cells of earlier types.
 
 (defun free-codes (rule)
-  "Return the codes of the neighbourhoods, around a free cell, that RULE, which is small, fits."
+  "Return the codes of all neighbourhoods of a free cell that fit RULE, whose match form is small."
   (multiple-value-bind (mask value) (form-bits (rule-form rule))
     (loop for code below 512
           when (and (= value (logand code mask)) (not (logbitp 4 code))) collect code)))
 
 (defun taker (code types)
-  "Return the first of TYPES that takes a cell with the neighbourhood CODE for itself, or NIL."
+  "Return the first of TYPES that makes a cell with the neighbourhood CODE a place, or NIL."
   (find-if (lambda (type)
              (let ((number (if (place-type-table type) (aref (place-type-table type) code) 0)))
                (and (plusp number)
@@ -272,7 +279,8 @@ MAP, and true if no type was left out (reading 70)."
            types))
 
 (defun takers (rules types)
-  "Return those of TYPES that take all cells that RULES fit; NIL if any is left."
+  "Return the types in TYPES that classify the cells that fit RULES, if they classify all these
+cells; else NIL."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))
@@ -280,20 +288,20 @@ MAP, and true if no type was left out (reading 70)."
         (pushnew (or (taker code types) (return-from takers '())) takers)))))
 
 (defun warn-of-taken (definition type)
-  "Warn if types defined before TYPE leave nothing for it."
+  "Warn if types defined before TYPE classify all cells that fit TYPE."
   (let* ((types (registry-objects *place-types*))
          (rules (remove-if #'walled-p (place-type-rules type)))
          (takers (and (place-type-table type)
                       (takers rules (ldiff types (member type types))))))
     (when takers
-      (doubt-definition "~A: all that it fits is of the type ~{~(~A~)~^ or ~} already; what was ~
-                         defined before wins; to let this one win, say :before ~(~A~)"
+      (doubt-definition "~A: all cells that fit are of the type ~{~(~A~)~^ or ~} already; the type ~
+                         that was defined earlier wins; to let this type win, write :before ~(~A~)"
                         definition (mapcar #'place-type-name takers)
                         (place-type-name (find-if (lambda (other) (member other takers))
                                                   types))))))
 
 (defun warn-of-vain-rules (definition type)
-  "Warn of rules of TYPE, which has been registered, that can never make a place."
+  "Warn of rules of TYPE, a registered place type, that can never make a place."
   (mapc (lambda (rule) (warn-of-walled definition rule))
         (remove-if-not #'walled-p (place-type-rules type)))
   (warn-of-taken definition type))

@@ -15,14 +15,14 @@
           (if (thing-obsview-p thing) +obsview+ 0)))
 
 (defun refresh-cell-flags (world index)
-  "Make the flags of a cell of WORLD agree with the things on its floor."
+  "Set the flags of the cell INDEX of WORLD by the map and the things on its floor."
   (declare (type world world) (type cell-index index))
   (let ((flags (world-flags world)))
     (setf (aref flags index) (logior (logand +wall+ (aref flags index))
                                      (marks-of-cell index (world-stock world))))))
 
 (defun set-mark (thing stock)
-  "Set the flags of a cell with THING on its floor in STOCK."
+  "Record in STOCK the flags that THING causes in its cell."
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
@@ -46,7 +46,8 @@
     (add-flags (thing-rank thing) index world)))
 
 (defun change-cell (rank world from to)
-  "Move the thing with RANK from the cell FROM of WORLD to the end of the cell TO. Conses nothing."
+  "Move the thing with RANK from the cell FROM of WORLD to the end of the list of things in the cell
+TO. Conses nothing."
   (declare #.*hot* (type cell-index rank from to) (type world world))
   (let ((stock (world-stock world)))
     (unless (and (= from to) (alone-in-cell-p rank from stock))
@@ -63,7 +64,7 @@
     (change-cell (thing-rank thing) (thing-world thing) from (thing-index thing))))
 
 (defun take-away (thing)
-  "Take THING from where it is, leaving it nowhere."
+  "Remove THING from its location, so that THING is nowhere."
   (let ((location (thing-location thing)))
     (case location
       ((nil))
@@ -73,15 +74,15 @@
 
 (declaim (inline lay-down))
 (defun lay-down (thing x y)
-  "Take THING from wherever it is to the floor at X, Y, a point inside the map."
+  "Move THING from any location to the floor at X, Y, a point inside the map."
   (declare (type double-float x y))
   (cond ((eq :floor (thing-location thing)) (move-on-floor thing x y))
         (t (take-away thing)
            (put-on-floor thing x y))))
 
 (defun place-thing (thing location &optional x y)
-  "Put THING into LOCATION: NIL, what holds things, or :FLOOR at X, Y (metres, inside the map).
-The primitive: it checks only the position and tells no watchers. Return THING."
+  "Put THING into LOCATION: NIL, a holder of things, or :FLOOR at X, Y (metres, inside the map).
+Check only the position, and do not call the move watchers. Return THING."
   (if (eq location :floor)
       (let ((x (double x)) (y (double y)))
         (check-inside 'place-thing (world-map (thing-world thing)) x y)
@@ -97,8 +98,8 @@ The primitive: it checks only the position and tells no watchers. Return THING."
 ;; You may put a thing or robot anywhere on the map by hand. A warning, in the same words
 ;; everywhere, says so if the position is most likely a mistake.
 (defun warn-if-in-wall (what world x y)
-  "Queue a warning that WHAT, a string, has been put into a wall of WORLD at (X,Y). The first one
-about WHAT in a run is also printed if it is not read."
+  "If (X,Y) is in a wall of WORLD, queue a warning that WHAT, a string, is inside a wall. The first
+such warning about WHAT in a run is also printed if no program reads it."
   (when (wall-at-p (world-map world) x y)
     (queue-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
                  :notable-p (first-time-p (list :in-wall what) world))))
@@ -120,7 +121,8 @@ about WHAT in a run is also printed if it is not read."
   (and (compute-applicable-methods #'location-contents (list object)) t))
 
 (defun check-holder (operator thing holder)
-  "Signal unless HOLDER can hold THING (NIL: a new thing); return its world."
+  "Signal WRONG-ARGUMENT or MISUSE unless HOLDER can hold THING, or a new thing if THING is NIL.
+Return the world of HOLDER."
   (unless (holder-p holder)
     (reject-argument operator "location" holder
                      "a container, hand or storage bin, or a position"))
@@ -142,7 +144,7 @@ about WHAT in a run is also printed if it is not read."
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))
 
 (defun relocate (thing location &optional x y)
-  "Place THING and call the watchers."
+  "Put THING into LOCATION as PLACE-THING does, and call the move watchers."
   (let ((old (thing-location thing)))
     (place-thing thing location x y)
     (note-move thing old location)
@@ -185,8 +187,8 @@ MISUSE for prototypes, destroyed things, and a container put into itself. Return
 
 (addition destroy-thing)
 (defun destroy-thing (thing)
-  "Destroy THING; its contents stay at its location. Destroying it again does nothing. Signals
-MISUSE for prototypes. Return nothing. See reading 168."
+  "Destroy THING; its contents stay at its location. Destroying a destroyed thing has no effect.
+Signals MISUSE for prototypes. Return nothing. See reading 168."
   (unless (and (thing-p thing) (not (thing-alive-p thing)))
     (check-movable 'destroy-thing thing)
     (changing ((thing-world thing) destroy-thing thing)
@@ -206,7 +208,8 @@ MISUSE for prototypes. Return nothing. See reading 168."
 
 (declaim (inline kickable-p open-at-p start-kick))
 (defun kickable-p (thing)
-  "True if THING lies on the floor, or where nothing closed keeps it from getting there."
+  "True if THING is on the floor, or inside something from which it can get onto the floor, because
+nothing around it is closed."
   (or (eq :floor (thing-location thing))
       (and (thing-location (thing-outermost thing))
            (not (enclosed-p thing)))))
@@ -219,7 +222,8 @@ MISUSE for prototypes. Return nothing. See reading 168."
 ;; It is on the stack, and is passed to functions instead of floats, which would be boxed.
 (declaim (inline make-kick))
 (defstruct (kick (:constructor make-kick (dx dy)) (:copier nil) (:predicate nil))
-  "A kick by DX and DY, from where the thing is to where it comes, all in metres."
+  "A kick by DX and DY metres, with the thing's position before the kick (FROM-X, FROM-Y) and after
+the kick (X, Y)."
   (dx 0d0 :type double-float :read-only t)
   (dy 0d0 :type double-float :read-only t)
   (from-x 0d0 :type double-float)
@@ -239,8 +243,8 @@ MISUSE for prototypes. Return nothing. See reading 168."
   kick)
 
 (defun deflect-kick (kick world)
-  "End KICK in the one of the eight cells around its end that is empty and nearest to its start, or
-return NIL."
+  "Let KICK end in another cell: of the eight cells around its end, the empty cell that is nearest
+to its start. Return NIL if no cell is empty."
   (declare #.*hot* (type kick kick) (type world world))
   (let ((column (floor (the (double-float -2d9 2d9) (kick-x kick))))
         (row (floor (the (double-float -2d9 2d9) (kick-y kick))))
@@ -257,7 +261,7 @@ return NIL."
     found))
 
 (defun %kick-thing (thing kick kick-if-wall)
-  "Move THING, in a world that may be changed here, by KICK. True if it moved."
+  "Move THING by KICK, in a world that the calling thread may change. Return true if THING moved."
   (declare #.*hot* (type thing thing) (type kick kick))
   (when (kickable-p thing)
     (let ((world (thing-world thing)))
@@ -280,7 +284,8 @@ return NIL."
       (%kick-thing thing kick kick-if-wall))))
 
 (defun kick-by (thing kick kick-if-wall)
-  "Do as KICK-THING, by KICK, or return :OTHERWISE if that is impossible."
+  "Move THING by KICK, as KICK-THING does. Return :OTHERWISE if the arguments are invalid or this
+thread may not change the world."
   (declare #.*hot* (type kick kick))
   (if (and (thing-p thing)
            (within-reason-p (kick-dx kick))
@@ -297,10 +302,10 @@ return NIL."
 (declaim (inline kick-thing))
 (public kick-thing)
 (defun kick-thing (thing dx dy kick-if-wall)
-  "Move THING by DX, DY metres (manual 5.3.1). If that ends in a wall: with KICK-IF-WALL true, move
-it to the empty cell beside that wall which is nearest to where it was; else leave it. True if it
-was put into a cell, perhaps its own. NIL also if it is inside something closed or destroyed
-(reading 172)."
+  "Move THING by DX, DY metres (manual 5.3.1). If the end is in a wall and KICK-IF-WALL is true,
+move THING to the empty cell beside the wall that is nearest to its old position; if KICK-IF-WALL is
+false, do not move THING. Return true if THING was put into a cell, perhaps its own. Return NIL if
+THING is inside something closed, or is destroyed (reading 172)."
   (let ((moved (if (and (typep dx 'common-number) (typep dy 'common-number))
                    (let ((kick (make-kick (double dx) (double dy))))
                      (declare (dynamic-extent kick))

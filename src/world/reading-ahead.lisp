@@ -15,15 +15,16 @@
 
 (declaim (inline cell-to-read))
 (defun cell-to-read (thing)
-  "Return the index of the cell that THING lies in, or 0 if it does not lie on the floor."
+  "Return the index of the cell that THING is in, or 0 if THING is not on the floor."
   (declare (type thing thing))
   (or (and (eq :floor (thing-location thing))
            (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing)))
       0))
 
 (defun read-ahead (batch count world)
-  "Read ahead to move the first COUNT elements of BATCH, things or NIL, and overwrite these. Return
-a meaningless number, so that the compiler does not remove the reads."
+  "Read into the cache the memory for moves of the first COUNT elements of BATCH, things or NIL, and
+overwrite these elements. Return a meaningless number, so that the compiler does not remove the
+reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -41,14 +42,15 @@ a meaningless number, so that the compiler does not remove the reads."
 ;;; Which trials succeed: the gaps between successes, drawn or foreseen.
 
 (defun gap-scale (probability)
-  "Return the factor that turns the logarithm of a roll into a gap, see DRAW-GAP."
+  "Return the factor that turns the logarithm of a roll into a gap between successes; see DRAW-GAP."
   (cond ((>= probability 1d0) 0d0)
         ((< probability 1d-12) (- (/ (max probability 1d-300))))
         (t (/ (logarithm (- 1d0 probability))))))
 
 (declaim (inline draw-gap))
 (defun draw-gap (scale dice)
-  "Return how many trials fail before the next success; SCALE is 1 / log(1 - p), 0 for p = 1."
+  "Return how many trials fail before the next success. For the probability p, SCALE is 1 / log(1 -
+p), or 0 if p is 1."
   (declare (type double-float scale))
   (let ((u (- 1d0 (roll dice))))
     (declare (type (double-float (0d0) 1d0) u))
@@ -61,7 +63,8 @@ a meaningless number, so that the compiler does not remove the reads."
 (deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
-  "The next draws of dice: COUNT of the GAPS. Dice in STATE draw the one with the number NEXT."
+  "Gaps between successes, drawn ahead: the first COUNT elements of GAPS. Dice whose state is STATE
+would draw the gap with the index NEXT."
   (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
@@ -73,7 +76,7 @@ a meaningless number, so that the compiler does not remove the reads."
 (declaim (inline foresee))
 (defun foresee (outlook index end scale dice)
   "Store in OUTLOOK the next gaps of SCALE and DICE for trials before END, if the next success is at
-INDEX. Return the index of the first success after them."
+INDEX. Return the index of the first success after these gaps."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))
@@ -90,7 +93,8 @@ INDEX. Return the index of the first success after them."
 
 (declaim (inline draw-foreseen-gap))
 (defun draw-foreseen-gap (outlook scale dice)
-  "Return the value of DRAW-GAP for SCALE and DICE, from OUTLOOK, if not NIL, when it has it."
+  "Return the value of DRAW-GAP for SCALE and DICE. Take the value from OUTLOOK, unless NIL, if it
+was drawn ahead."
   (let ((next (if outlook (outlook-next outlook) 0)))
     (cond ((and outlook
                 (< next (outlook-count outlook))

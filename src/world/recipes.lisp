@@ -10,15 +10,16 @@
 ;;; Manual 5.1 and 5.3.
 
 (define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
-  "A thing to be made: NAME with ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."
+  "A recipe for a thing with NAME, ATTRIBUTES, CONTENTS and KICKERS. In the recipe of a map, the
+thing is at X, Y."
   (name nil symbol)
-  (attributes '() list "its attributes, an object descriptor")
-  (contents '() list "the recipes of its contents")
-  (kickers '() list "the kickers on it")
+  (attributes '() list "the thing's attributes, an object descriptor")
+  (contents '() list "the recipes of the thing's contents")
+  (kickers '() list "the kickers on the thing")
   (x nil (or null double-float)
-     "the x coordinate where it is put, in metres, or NIL")
+     "the x coordinate of the thing, in metres, or NIL")
   (y nil (or null double-float)
-     "the y coordinate where it is put, in metres, or NIL"))
+     "the y coordinate of the thing, in metres, or NIL"))
 
 (defmethod reference ((recipe recipe))
   (list :recipe (recipe-name recipe) (recipe-attributes recipe) (recipe-contents recipe)
@@ -30,8 +31,9 @@
                (mapcar #'thing-recipe (thing-contents thing))))
 
 (defun write-recipe (operator name descriptor &key prototype contents kickers x y)
-  "Return the recipe of a thing NAME, like PROTOTYPE but for DESCRIPTOR, with the recipes CONTENTS
-added (reading 58). Signals WRONG-ARGUMENT."
+  "Return the recipe of a thing NAME with the attributes and contents of PROTOTYPE, overridden by
+the attributes in DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals
+WRONG-ARGUMENT."
   (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
     (reject-argument operator "prototype" prototype "a thing, made by NEW-THING"))
@@ -46,14 +48,15 @@ added (reading 58). Signals WRONG-ARGUMENT."
                  :x (and x (double x)) :y (and y (double y)))))
 
 (defun attach-by-recipe (thing kicker)
-  "Attach KICKER, or the kicker of that name, to THING; warn if there no longer is one."
+  "Attach KICKER, a kicker or its name, to THING; warn if there is no such kicker any more."
   (let ((found (find-kicker kicker nil)))
     (if found
         (attach-kicker thing found)
-        (warning-set thing " goes without the kicker " kicker ", which is no longer defined."))))
+        (warning-set thing "is made without the kicker" kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
-  "Return a new thing made by RECIPE, nowhere yet; without WORLD a prototype (reading 63)."
+  "Make a thing from RECIPE and return it. The thing has no location yet; if WORLD is NIL, the thing
+is a prototype (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
          (thing (%make-thing (recipe-name recipe) (if world (world-next-serial world) 0) world)))
@@ -69,7 +72,8 @@ added (reading 58). Signals WRONG-ARGUMENT."
     thing))
 
 (defun find-recipe (test recipes)
-  "Return the first of RECIPES, or of those in them, of which TEST is true; and its value."
+  "Return the first recipe in RECIPES, or in their contents, for which TEST returns true, and the
+value of TEST."
   (dolist (recipe recipes)
     (let ((value (funcall test recipe)))
       (when value (return (values recipe value))))
@@ -91,7 +95,7 @@ added (reading 58). Signals WRONG-ARGUMENT."
 ;;; Worlds.
 
 (defun empty-world (world)
-  "Reset WORLD to its map: destroy all things, and reset its robots."
+  "Reset WORLD to an empty map: destroy all things, and reset the robots."
   (let ((map (world-map world)))
     (do-things (thing world)
       (setf (thing-alive-p thing) nil (thing-location thing) nil (thing-contents thing) '())
@@ -102,15 +106,16 @@ added (reading 58). Signals WRONG-ARGUMENT."
           (world-kicker-generation world) *kicker-generation*)))
 
 (defun reset-world (world &key (seed (world-seed world)))
-  "Make WORLD as it was when it was fresh, with the integer SEED: the things of its map's recipe,
-tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
+  "Reset WORLD to its initial state with the integer SEED: the things of the map's recipes, tick 0,
+robots at their starts. The timeline and the move watchers stay. Return WORLD."
   (empty-world world)
   (seed-world world seed)
   (dolist (recipe (map-things (world-map world)) world)
     (place-thing (follow-recipe recipe world) :floor (recipe-x recipe) (recipe-y recipe))))
 
 (defun make-world (map &key (seed 0))
-  "Return a fresh world of MAP (a map or its name) that depends on it and the integer SEED only."
+  "Return a fresh world of MAP, a map or its name. The world depends only on MAP and the integer
+SEED."
   (reset-world (%make-world (find-map map)) :seed seed))
 
 ;;; Objects of maps and definitions are shared.
@@ -119,13 +124,14 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
 ;;; Making things on the fly (manual 5.3).
 
 (defun resolve-location (location)
-  "Return the world, location and coordinates that LOCATION, as MAKE-NEW-THING takes it, means."
+  "Return the world, the location and the coordinates that LOCATION, an argument of MAKE-NEW-THING,
+stands for."
   (cond ((null location) nil)
         ((and (proper-list-p location) (= 2 (length location)) (eq :with (first location)))
          (let ((thing (second location)))
            (unless (and (thing-p thing) (thing-location thing))
              (reject-argument 'new-thing "location" location
-                              "(:with thing), a thing that is somewhere"))
+                              "(:with thing), a thing that has a location"))
            (values (thing-world thing) (thing-location thing) (thing-x thing) (thing-y thing))))
         ((and (proper-list-p location) (= 3 (length location)))
          (destructuring-bind (map x y) location
@@ -134,29 +140,30 @@ tick 0, robots where they start. Timeline and watchers stay. Return WORLD."
              (values world :floor x y))))
         ((consp location)
          (reject-argument 'new-thing "location" location
-                          "NIL, what holds things, (:with thing) or (map x y)"))
+                          "NIL, a holder of things, (:with thing) or (map x y)"))
         (t (values (check-holder 'new-thing nil location) location))))
 
 ;; What is noted is independent of later changes to a prototype, or to a map's name.
 (defun noted-location (location world)
-  "Return LOCATION, in WORLD, for MAKE-THING-AGAIN."
+  "Return LOCATION, in WORLD, as an argument of MAKE-THING-AGAIN for the journal."
   (if (and (consp location) (not (eq :with (first location))))
       (cons (world-map world) (rest location))
       location))
 
 (addition make-new-thing)
 (defun make-new-thing (name location descriptor &key prototype contents kickers)
-  "Return a new thing NAME, a symbol, with the attributes of DESCRIPTOR; NEW-THING as a function.
-LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or
-(map x y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose attributes
-and contents are copied first. CONTENTS, ours, is a list of recipes made by THING-RECIPE; KICKERS,
-ours, a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME, and MISUSE for a
-hand that holds something."
+  "Make and return a thing NAME, a symbol, with the attributes of DESCRIPTOR, as NEW-THING does.
+LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or (map x
+y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose attributes and
+contents are copied first. CONTENTS, an addition, is a list of recipes made by THING-RECIPE.
+KICKERS, an addition, is a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME,
+and MISUSE for a hand that holds something."
   (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
                                                          :contents contents :kickers kickers)))
     (multiple-value-bind (world place x y) (resolve-location location)
       (when (location-full-p place)
-        (reject-use "new-thing: ~A holds ~{~A~^, ~} and nothing else. Let go of that first."
+        (reject-use "new-thing: ~A holds ~{~A~^, ~} already and can hold nothing else. Let it drop ~
+                     that first."
                     (location-name place) (location-contents place)))
       (if world
           (note-slips name descriptor world)
@@ -171,7 +178,7 @@ hand that holds something."
           thing)))))
 
 (defun make-thing-again (name location descriptor &rest more)
-  "Do as MAKE-NEW-THING, in the current world only."
+  "Make a thing as MAKE-NEW-THING does, but only in the current world."
   (unless (eq *world* (resolve-location location))
     (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
   (apply #'call-with-data #'make-new-thing name location descriptor more))
@@ -179,15 +186,16 @@ hand that holds something."
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
 (defun destroyed-thing (serial world)
-  "Return a placeholder for the destroyed thing of WORLD with the number SERIAL; NIL without one."
+  "Return a placeholder for the destroyed thing of WORLD with the number SERIAL; NIL if WORLD never
+had this thing."
   (when (< 0 serial (world-next-serial world))
     (let ((thing (%make-thing 'destroyed serial world)))
       (setf (thing-alive-p thing) nil)
       thing)))
 
 (defun position-form-p (form environment)
-  "True if FORM is (map x y) rather than a call: its first element is a variable, or the name of a
-map or of no function."
+  "True if FORM is (map x y) rather than a call: its first element is a form, a variable, the name
+of a map, or a symbol that names no function."
   (and (proper-list-p form) (= 3 (length form))
        (let ((head (first form)))
          (or (consp head)
@@ -202,12 +210,11 @@ map or of no function."
 LOCATION is one of
   a form whose value is a container, hand or storage bin, or NIL for a prototype;
   (:with form) -- at the location of another thing;
-  (map x y) -- in a map, at coordinates in metres; all three are forms, but a symbol that is no
-    variable is the name of a map.
+  (map x y) -- in a map, at coordinates in metres; MAP, X and Y are forms, but a symbol
+    MAP that is no variable is the name of a map.
 PROTOTYPE is a form whose value is a thing; its attributes and contents are copied first, its
-kickers are not. To compute name or descriptor use MAKE-NEW-THING. Signals WRONG-ARGUMENT, and
-MISUSE for a hand that holds something.
-See readings 12 and 167."
+kickers are not. To compute the name or the descriptor, use MAKE-NEW-THING. Signals WRONG-ARGUMENT,
+and MISUSE for a hand that holds something. See readings 12 and 167."
   (unless (and name (symbolp name))
     (reject-clause "new-thing" name "a symbol as the name of the thing"))
   (unless (descriptor-p descriptor)

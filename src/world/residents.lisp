@@ -10,7 +10,8 @@
 (defvar *residents-lock* (make-lock "resident worlds"))
 
 (defun map-resident-world (map)
-  "Return the world of MAP that top-level code works in, made when first asked for."
+  "Return the resident world of MAP, in which top-level code works. Make this world at the first
+call."
   (or (map-resident map)
       (with-lock (*residents-lock*)
         (or (map-resident map)
@@ -18,8 +19,8 @@
 
 (addition current-world)
 (defun current-world (map)
-  "Return the world of MAP (a map or its name) that code works in here and now: *WORLD* if it is
-of MAP, else MAP's resident world. A world is returned as it is."
+  "Return the world of MAP (a map or its name) that code works in now: *WORLD* if it is a world of
+MAP, else the resident world of MAP. If MAP is a world, return MAP."
   (if (world-p map)
       map
       (let ((map (find-map map)))
@@ -30,13 +31,15 @@ of MAP, else MAP's resident world. A world is returned as it is."
 ;;; Finding.
 
 (defun worlds-in-view (world)
-  "Return a list of WORLD, or if that is NIL of *WORLD*, or else of all maps' resident worlds."
+  "Return a list of the worlds to search: WORLD unless NIL, else *WORLD* unless NIL, else the
+resident worlds of all maps."
   (cond (world (list (current-world world)))
         (*world* (list *world*))
         (t (mapcar #'map-resident-world (registry-objects *maps*)))))
 
 (defun thing-called-p (thing name)
-  "True if THING is called NAME: its symbol or string, with or without #serial, or its serial."
+  "True if NAME denotes THING: NAME is the name of THING, a symbol or string, with or without
+#serial, or its serial number."
   (if (integerp name)
       (= name (thing-serial thing))
       (or (same-name-p name (thing-name thing))
@@ -44,9 +47,10 @@ of MAP, else MAP's resident world. A world is returned as it is."
 
 (addition find-things)
 (defun find-things (name &optional world)
-  "Return a list of the things called NAME (a symbol or string, perhaps \"PEN#2\", or a serial
-number) in WORLD, in order of creation. WORLD may be a map; by default it is that of the current
-simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUMENT."
+  "Return a list of the things named NAME (a symbol or string, perhaps \"PEN#2\", or a serial
+number) in WORLD, in order of creation. WORLD may be a map. By default WORLD is the world of the
+current simulation or, without a simulation, the resident worlds of all maps are searched. Signals
+WRONG-ARGUMENT."
   (check-argument find-things name (typep name '(or symbol string integer))
                   "a symbol, a string such as \"PEN#2\", or a serial number")
   (loop for each in (worlds-in-view world)
@@ -64,7 +68,8 @@ simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUM
          (not (string-equal (without-digits name) (without-digits other))))))
 
 (defun thing-like (name world)
-  "Return a thing's name that NAME, of none now or at first in WORLD, may be a slip for; or NIL."
+  "Return the name of a thing in WORLD that NAME is probably a misspelling of, or NIL. A name that a
+thing of the map had at first is no misspelling."
   (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
                        (map-things (world-map world)))
     (do-things (thing world)
@@ -73,15 +78,15 @@ simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUM
 
 ;; Looking through all things takes time, so it is done only for the first request of each name.
 (defun note-unknown-thing (name world)
-  "Warn if NAME, of no thing in WORLD, may be a slip for that of one."
+  "Warn if NAME, which no thing in WORLD has, is probably a misspelling of a thing's name."
   (let ((like (and (first-time-p (list :thing name) world) (thing-like name world))))
     (when like
       (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
 
 (defun missed-name-text ()
-  "Return in words the last new name that FIND-THING did not find in the current world, and what was
-perhaps meant; or NIL."
+  "Return a text with the last new name that FIND-THING did not find in the current world, and with
+a similar name if there is one; or NIL."
   (let* ((noted (and *world* (world-noted-names *world*)))
          (name (second (find-if (lambda (key) (typep key '(cons (eql :thing)))) noted))))
     (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]"
@@ -89,8 +94,8 @@ perhaps meant; or NIL."
 
 (addition find-thing)
 (defun find-thing (name &optional world)
-  "Return the first of FIND-THINGS with the same arguments, or NIL. An unknown NAME that
-resembles that of a thing gets a warning, once in a run."
+  "Return the first thing that FIND-THINGS finds with the same arguments, or NIL. Warn once in a run
+if NAME is unknown and resembles the name of a thing."
   (let ((things (find-things name world)))
     (when (and (null things) (typep name '(or (and symbol (not null)) string)))
       (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))

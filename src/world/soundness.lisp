@@ -5,7 +5,8 @@
 (export '(check-world world-invariant-violations))
 
 (defun check-cell (index stock met)
-  "Signal CONTRADICTION unless the cell INDEX of STOCK has things with new tags; add these to MET."
+  "Signal CONTRADICTION unless all tags in the cell INDEX of STOCK belong to things and are not in
+MET yet. Add the tags to MET."
   (loop for tag = (aref (stock-firsts stock) index) then (aref (stock-nexts stock) (1- tag))
         until (zerop tag)
         do (must-hold (and (<= tag (stock-count stock))
@@ -19,7 +20,7 @@
          (met (make-array (1+ (stock-count stock)) :element-type 'bit :initial-element 0)))
     (must-hold (= size (* (map-width (world-map world)) (map-height (world-map world)))
                   (length (world-flags world)))
-               "its world does not have the size of ~A" (world-map world))
+               "the world does not have the size of its map, ~A" (world-map world))
     (dotimes (index size) (check-cell index stock met))))
 
 (defun check-thing-table (stock)
@@ -28,7 +29,7 @@
                   (= (length (stock-things stock)) (length (stock-nexts stock))
                      (length (stock-marks stock)))
                   (every #'null (subseq (stock-things stock) (stock-count stock))))
-             "its vector of things cannot grow"))
+             "the world's vector of things cannot grow"))
 
 (defun check-thing (thing rank world)
   (must-hold (and (thing-p thing)
@@ -36,19 +37,19 @@
                   (thing-alive-p thing)
                   (= rank (thing-rank thing))
                   (< 0 (thing-serial thing) (world-next-serial world)))
-             "number ~D of its things is not one of them" rank)
+             "element ~D of the world's things is no living thing of the world" rank)
   (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
                                (thing-attributes thing))
              "the attributes of ~A are invalid" thing)
   (must-hold (proper-list-of-p (lambda (inside)
                                  (and (thing-p inside) (eq thing (thing-location inside))))
                                (thing-contents thing))
-             "the contents of ~A are no things, or are elsewhere" thing)
+             "the contents of ~A are not things, or are elsewhere" thing)
   (must-hold (proper-list-of-p (lambda (attachment)
                                  (and (attachment-p attachment)
                                       (eq thing (attachment-thing attachment))))
                                (thing-kickers thing))
-             "the kickers of ~A are not its own" thing))
+             "the kickers of ~A belong to another thing" thing))
 
 (defun check-things (world)
   (let ((serials (make-hash-table)))
@@ -60,12 +61,12 @@
                           "two things have the number ~D" (thing-serial thing))
                (setf (gethash (thing-serial thing) serials) t)))
     (must-hold (= (world-live-count world) (hash-table-count serials))
-               "it does not have as many things as it counts")))
+               "the world does not have as many things as it counts")))
 
 ;;; Places. Each thing is met once: in the cell where it lies, or in what holds it.
 
 (defun count-things (things location met)
-  "Count in the table MET each of THINGS, which are in LOCATION."
+  "Count each of THINGS in the table MET. Signal CONTRADICTION unless all THINGS are in LOCATION."
   (dolist (thing things)
     (must-hold (eq location (thing-location thing)) "~A is not where it is listed" thing)
     (incf (gethash thing met 0))))
@@ -73,12 +74,12 @@
 (defun check-lying (thing index world)
   (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
                   (= index (thing-index thing)))
-             "~A does not lie in its cell" thing)
+             "~A is not in the cell where it is listed" thing)
   (must-hold (= (thing-flags thing) (aref (stock-marks (world-stock world)) (thing-rank thing)))
-             "the marks of ~A are wrong" thing))
+             "the recorded flags of ~A are wrong" thing))
 
 (defun check-floor (world met)
-  "Add the things in the cells of WORLD to MET, and check them and the cells' flags."
+  "Add the things in the cells of WORLD to MET, and check the things and the cells' flags."
   (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
         do (do-cell (thing index world)
@@ -103,7 +104,7 @@
       (loop for outer = thing then (thing-location outer)
             for passed from 0
             while (and (thing-p outer) (not (gethash outer grounded)))
-            do (must-hold (< passed (world-live-count world)) "~A is in itself" thing))
+            do (must-hold (< passed (world-live-count world)) "~A is inside itself" thing))
       (loop for outer = thing then (thing-location outer)
             while (and (thing-p outer) (not (gethash outer grounded)))
             do (setf (gethash outer grounded) t)))))
@@ -132,7 +133,7 @@
                     (= index (attachment-index attachment))
                     (eq thing (and (attachment-alive-p attachment) (attachment-thing attachment)))
                     (eq (svref row (+ 2 (* 3 index))) (attachment-kicker attachment)))
-               "number ~D of the kickers with probability ~A is not one of them"
+               "entry ~D in the group of kickers with probability ~A is invalid"
                index (group-probability group))))
 
 (defun check-group (group)
@@ -143,10 +144,11 @@
                   (zerop (mod (length (group-row group)) 6))
                   (probability-p (group-probability group))
                   (<= 0 (group-quantum group)))
-             "its groups of kickers are invalid")
+             "the world's groups of kickers are invalid")
   (dotimes (index (group-count group)) (check-member group index))
   (must-hold (every #'null (subseq (group-row group) (* 3 (group-count group))))
-             "there are more kickers with probability ~A than it counts" (group-probability group))
+             "the group of kickers with probability ~A has more members than it ~
+              counts" (group-probability group))
   (must-hold (and (proper-list-of-p (lambda (attachment)
                                       (and (attachment-p attachment)
                                            (eq group (attachment-group attachment))
@@ -160,20 +162,21 @@
              (group-probability group)))
 
 (defun check-kickers (world)
-  (must-hold (proper-list-p (world-kicker-groups world)) "its list of kicker groups is circular")
+  (must-hold (proper-list-p (world-kicker-groups world)) "the world's list of kicker groups is
+circular")
   (mapc #'check-group (world-kicker-groups world))
   (must-hold (proper-list-of-p (lambda (attachment)
                                  (and (attachment-p attachment)
                                       (eq world (thing-world (attachment-thing attachment)))))
                                (world-due-kickers world))
-             "its due kickers are not kickers of its things"))
+             "the world's due kickers are not kickers of its things"))
 
 (defun check-world (world)
-  "Signal an error, CONTRADICTION where we check for it, unless WORLD, which was read from a file,
-is a state that a run can reach."
+  "Signal an error, usually CONTRADICTION, unless WORLD, which was read from a file, is in a state
+that a run can reach."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
-             "its dice are invalid")
+             "the world's dice are invalid")
   (check-thing-table (world-stock world))
   (check-cells world)
   (check-things world)
@@ -181,6 +184,7 @@ is a state that a run can reach."
   (check-kickers world))
 
 (defun world-invariant-violations (world)
-  "Return in a list what CHECK-WORLD says is wrong with WORLD, a string; NIL if nothing is."
+  "Return a list of the error message with which CHECK-WORLD rejects WORLD; NIL if WORLD is
+consistent."
   (handler-case (progn (check-world world) '())
     (error (condition) (list (princ-to-string condition)))))

@@ -17,16 +17,16 @@
 
 (define-kind (stock :constructor (make-stock (&optional (cells 0)
                                               &aux (firsts (make-tags cells)))))
-    "The things of a world, and which of them lie where on its floor."
+    "The things of a world, and the cells of the floor that they are in."
   (:state
    (things (make-array +least-stock+ :initial-element nil) simple-vector
            "the things by rank, in order of creation; NIL where one has been destroyed" :part)
-   (count 0 fixnum "how many ranks have been given")
+   (count 0 fixnum "the number of ranks in use")
    (firsts (make-tags 0) tags "by cell index, the tag of the first thing on the cell's floor")
    (nexts (make-tags +least-stock+) tags
-          "by rank, the tag of the thing that came next to where the thing lies")
+          "by rank, the tag of the thing that arrived next in the same cell")
    (marks (make-octets +least-stock+) octets
-          "by rank, the flags that the thing causes in the cell where it lies")))
+          "by rank, the flags that the thing causes in its cell")))
 
 ;;; Cells.
 
@@ -41,7 +41,7 @@
         do (funcall function (the thing (svref (stock-things stock) (1- tag))))))
 
 (defun append-to-cell (rank index stock)
-  "Put the thing with RANK, which is in no cell, last into the cell INDEX of STOCK."
+  "Append the thing with RANK, which is in no cell, to the things in the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock)) (first (aref firsts index)))
     (if (zerop first)
@@ -65,13 +65,13 @@
 
 (declaim (inline alone-in-cell-p))
 (defun alone-in-cell-p (rank index stock)
-  "True if nothing lies in the cell INDEX of STOCK but the thing with RANK, which does."
+  "True if the thing with RANK is the only thing in the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (and (= (1+ rank) (aref (stock-firsts stock) index))
        (zerop (aref (stock-nexts stock) rank))))
 
 (defun marks-of-cell (index stock)
-  "Return the flags of the cell INDEX that its things cause."
+  "Return the flags that the things in the cell INDEX of STOCK cause."
   (declare (type cell-index index) (type stock stock))
   (loop with flags of-type (unsigned-byte 8) = 0
         for tag of-type tag = (aref (stock-firsts stock) index)
@@ -83,13 +83,14 @@
 ;;; Things.
 
 (defun resize (vector size)
-  "Return a larger vector of SIZE with the contents of VECTOR, then 0 or NIL."
+  "Return a vector of SIZE elements, which begins with the elements of VECTOR and ends with 0 or
+NIL."
   (replace (make-array size :element-type (array-element-type vector)
                             :initial-element (if (simple-vector-p vector) nil 0))
            vector))
 
 (defun add-to-stock (thing stock)
-  "Give THING the next rank in STOCK, which grows to twice its size if it is full."
+  "Give THING the next rank in STOCK. A full STOCK grows to twice its size."
   (let ((rank (stock-count stock)))
     (when (= rank (length (stock-things stock)))
       (setf (stock-things stock) (resize (stock-things stock) (* 2 rank))
@@ -102,7 +103,8 @@
 ;; Ranks only get smaller, from the first to the last, so an updated tag in FIRSTS is never mistaken
 ;; for one yet to be updated.
 (defun close-gaps (stock index-of)
-  "Renumber the ranks in STOCK without gaps. INDEX-OF returns the cell of a thing, or NIL."
+  "Renumber the ranks in STOCK without gaps. INDEX-OF is a function that returns the cell index of a
+thing on the floor, else NIL."
   (let* ((old (stock-things stock)) (nexts (stock-nexts stock)) (count (stock-count stock))
          (ranks (make-array count :initial-element nil))
          (new (make-stock)))

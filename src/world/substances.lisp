@@ -10,8 +10,8 @@
 
 (addition substance-p)
 (define-record (substance (:constructor make-substance (name %parameter)))
-  "A type of substance."
-  (name nil symbol "the symbol that the substance is called" :addition)
+  "A type of substance, such as wood, with its default parameter."
+  (name nil symbol "the symbol that names the substance" :addition)
   (%parameter 0d0 double-float "the default parameter of things of the substance"))
 
 (defmethod print-object ((substance substance) stream)
@@ -27,14 +27,16 @@
                    "a number as the parameter of the substance, such as 60, from -1e15 to 1e15"))
 
   (defun check-parameter-form (name form)
-    "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, is no number at first sight."
+    "Signal MALFORMED-DEFINITION if FORM, the form for the parameter of the substance NAME, cannot
+have a number as its value."
     (when (and (atom form)
                (or (not (symbolp form)) (null form) (keywordp form))
                (not (quantity-p form)))
       (reject-parameter name form))))
 
 (defun define-substance (name parameter)
-  "Define or redefine the substance NAME; what DEFSUBSTANCE expands to. Return NAME."
+  "Define or redefine the substance NAME. DEFSUBSTANCE expands to a call of this function. Return
+NAME."
   (unless (quantity-p parameter) (reject-parameter name parameter))
   (register *substances* name (make-substance name (double parameter)))
   name)
@@ -43,7 +45,7 @@
 (define-user-macro defsubstance (&whole form name &optional parameter documentation
                                  &environment environment)
   "Define the type of substance NAME, a symbol: cameras see things whose :substance is NAME as
-PARAMETER, a number. The string DOCUMENTATION describes it. Our addition to manual 2.1 and 3.3.
+PARAMETER, a number. The string DOCUMENTATION describes it. An addition to manual 2.1 and 3.3.
 Return the name."
   (expand-definition form environment
                      (lambda ()
@@ -56,7 +58,7 @@ Return the name."
 
 (addition substance-parameter)
 (defun substance-parameter (substance)
-  "Return the parameter of SUBSTANCE: a SUBSTANCE or its name. An unknown one has 0."
+  "Return the parameter of SUBSTANCE, a SUBSTANCE or its name; 0 if the substance is unknown."
   (let ((substance (find-substance substance nil)))
     (if substance (substance-%parameter substance) 0d0)))
 
@@ -68,13 +70,15 @@ Return the name."
            (first value) (symbolp (first value)) (quantity-p (second value)))))
 
 (defun substance-value-type (value)
-  "Return the type, a symbol, that VALUE of a :substance attribute names, or NIL if none."
+  "Return the type, a symbol, that VALUE, the value of a :substance attribute, names; NIL if VALUE
+names no type."
   (cond ((realp value) nil)
         ((symbolp value) value)
         (t (first value))))
 
 (defun substance-value-parameter (value)
-  "Return the parameter, a double-float, of VALUE of a :substance attribute; 0 for NIL."
+  "Return the parameter, a double-float, of VALUE, the value of a :substance attribute; 0 if VALUE
+is NIL."
   (cond ((realp value) (double value))
         ((null value) 0d0)
         ((symbolp value) (substance-parameter value))

@@ -10,19 +10,21 @@
       (return-from attribute-present-p t))))
 
 (defun carried-name-like (key world)
-  "Return an undeclared attribute of a thing of WORLD that KEY may be a misspelling of, or NIL."
+  "Return an undeclared attribute of a thing of WORLD that KEY is probably a misspelling of, or
+NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
           when (and (not (attribute-of other)) (resembles-p key other))
             do (return-from carried-name-like other))))
 
 (defun known-likeness (key world)
-  "Return the name, declared or of a thing of WORLD, that the undeclared KEY may be meant for."
+  "Return the name of a declared attribute, or of an attribute of a thing of WORLD, that the
+undeclared KEY is probably a misspelling of; or NIL."
   (ensure-gethash key *likenesses* (or (declared-name-like key) (carried-name-like key world))))
 
 (defun note-slip (operator thing key &key read)
-  "Warn once if KEY, which OPERATOR was given for THING, is undeclared, of no thing, and resembles a
-declared attribute or, if KEY is READ, an attribute that a thing has."
+  "Warn once if KEY, an argument of OPERATOR with THING, is undeclared, no thing has it, and it
+resembles a declared attribute or, if READ is true, an attribute of some thing."
   (let ((world (thing-world thing)))
     (when (and world (not (attribute-of key)))
       (let ((like (known-likeness key world)))
@@ -38,10 +40,10 @@ declared attribute or, if KEY is READ, an attribute that a thing has."
 (public get-attribute)
 (settable get-attribute)
 (defun get-attribute (thing attribute)
-  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if it is unspecified. Can be set,
-which is SET-ATTRIBUTE (manual 5.3). A list is the thing's own: do not modify it, as SORT does. An
-ATTRIBUTE that may be a misspelling of one that is declared or that a thing has gets a warning, once
-in a run."
+  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if the value is unspecified. SETF of
+GET-ATTRIBUTE calls SET-ATTRIBUTE (manual 5.3). Do not modify a list that GET-ATTRIBUTE returns, as
+SORT would: the list belongs to THING. Warn once in a run if ATTRIBUTE is probably a misspelling of
+a declared attribute or of an attribute of some thing."
   (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let* ((key (attribute-key attribute))
          (entry (assoc key (thing-attributes thing) :test #'eq)))
@@ -49,7 +51,8 @@ in a run."
     (second entry)))
 
 (defun merge-descriptors (new old)
-  "Return the object descriptor OLD overridden by NEW; order as in OLD, then as in NEW."
+  "Return the object descriptor OLD with its values overridden by NEW, followed by the attributes
+that only NEW has."
   (append (loop for entry in old
                 collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
@@ -72,7 +75,7 @@ in a run."
 ;;; Setting.
 
 (defun change-attributes (thing descriptor)
-  "Give THING the attributes in DESCRIPTOR and update caches and flags."
+  "Give THING the attributes in DESCRIPTOR, and update its cached slots and the flags of its cell."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
   ;; What REFRESH-PHYSICS reads.
   (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
@@ -88,7 +91,8 @@ in a run."
     (list key (if (eq key :draw-function) (stored-draw-function value) value))))
 
 (defun normal-descriptor (operator descriptor)
-  "Return the object descriptor DESCRIPTOR with keywords as names, a copy. Signals WRONG-ARGUMENT."
+  "Return a copy of the object descriptor DESCRIPTOR with keywords as names. Signals
+WRONG-ARGUMENT."
   (unless (descriptor-p descriptor)
     (reject-argument operator "descriptor" descriptor
                      "a list of lists (attribute value), each attribute once"))
@@ -105,9 +109,9 @@ in a run."
 
 (public set-attribute)
 (defun set-attribute (thing attribute new-value)
-  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return that (manual 5.3). NIL means false
-or unspecified. Of lists, strings and vectors THING gets copies. Signals WRONG-ARGUMENT for a value
-that the attribute cannot have. Warns as GET-ATTRIBUTE does."
+  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return NEW-VALUE (manual 5.3). NIL means
+false or unspecified. Lists, strings and vectors are copied. Signals WRONG-ARGUMENT for a value that
+the attribute cannot have. Warns as GET-ATTRIBUTE does."
   (check-argument set-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (if (typep new-value '(or symbol number))
@@ -129,8 +133,8 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
 
 (public change-attribute)
 (defun change-attribute (thing descriptor)
-  "Set all attributes of THING that the object descriptor DESCRIPTOR gives; others stay
-(manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
+  "Set all attributes of THING that are in the object descriptor DESCRIPTOR; other attributes do not
+change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
     (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
@@ -149,8 +153,8 @@ that the attribute cannot have. Warns as GET-ATTRIBUTE does."
   '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
     (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
     (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
-  "Options of a thing beside its attributes: the option, and how to write it in a map and at run
-time.")
+  "The options of things that are not attributes. Each entry lists the option, and how to write it
+in a map and at run time.")
 
 (defun option-called (name)
   "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
@@ -159,28 +163,32 @@ time.")
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
 
 (defun slips-in (descriptor)
-  "Return lists (name like) for names in DESCRIPTOR that resemble LIKE, or (name NIL) for options."
+  "Return a list of probable mistakes in DESCRIPTOR: (name like) for a name that resembles the
+attribute LIKE, and (name NIL) for the name of an option."
   (loop for (name) in descriptor
         for like = (declared-name-like name)
         when (or like (option-of-things-p name))
           collect (list name like)))
 
 (defun option-of-things-p (name)
-  "True if NAME, an attribute's, is that of an option, and no attribute is declared so."
+  "True if NAME, used as an attribute, is the name of an option of things and of no declared
+attribute."
   (and (option-called name) (not (attribute-of (attribute-key name)))))
 
 (defun text-of-slip (thing-name slip &optional map-p)
-  "Return in words which attribute of the thing is probably a mistake, and how to write it."
+  "Return a text that says which attribute of the thing is probably a mistake, and what to write
+instead."
   (destructuring-bind (name like &aux (option (option-called name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
                 thing-name name like)
-        (format nil "~(~A~) has ~(~S~) among its attributes, where it does nothing; write ~@?"
+        (format nil "~(~A~) has ~(~S~) among its attributes, where it has no effect; write ~@?"
                 thing-name name (if map-p (second option) (third option))
                 (string-downcase thing-name)))))
 
 (defun warn-of-slips (definition name descriptor &key clause)
-  "Warn of probable misspellings in DESCRIPTOR of the thing NAME in DEFINITION, or a map's CLAUSE."
+  "Warn of probable misspellings in DESCRIPTOR of the thing NAME in DEFINITION. CLAUSE is the
+thing's clause in a map, or NIL."
   (dolist (slip (slips-in descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (or clause (assoc (first slip) descriptor)))
@@ -197,13 +205,14 @@ time.")
               (attribute-present-p key world))
     (warn-once key world
                (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
-                            ~]~:[~;: that is what a thing is made with, and no attribute~]"
+                            ~]~:[~;: it is an option for making things, and no attribute~]"
                        key (declared-name-like key) (option-of-things-p key)))))
 
 ;;; A redefined attribute may no longer accept the values that things have.
 
 (defun unfit-recipe (recipes key)
-  "Return the first of RECIPES and their contents with an invalid KEY, and what is wrong with it."
+  "Return the first recipe in RECIPES and their contents with an invalid value of the attribute KEY,
+and a text that says what is wrong."
   (find-recipe (lambda (recipe)
                  (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
                    (handler-case (progn (check-attribute-value 'defattribute key value) nil)

@@ -11,7 +11,7 @@
 
 (defgeneric location-contents (location)
   (:documentation "Return the list of things directly in LOCATION, a thing, hand or storage bin,
-in order of arrival. Can be set; the setter does not touch the things."))
+in order of arrival. SETF of LOCATION-CONTENTS does not change the things themselves."))
 
 (defgeneric (setf location-contents) (things location))
 
@@ -22,7 +22,8 @@ in order of arrival. Can be set; the setter does not touch the things."))
   (:documentation "Return the world that LOCATION is in, or NIL."))
 
 (defgeneric location-closed-p (location)
-  (:documentation "True if nothing gets into or out of LOCATION: a closed thing or storage bin."))
+  (:documentation "True if LOCATION is closed, such as a storage bin, so that nothing gets into or
+out of it."))
 
 (defgeneric location-full-p (location)
   (:documentation "True if LOCATION holds as many things as it can, whatever their size.")
@@ -31,16 +32,17 @@ in order of arrival. Can be set; the setter does not touch the things."))
     nil))
 
 (defgeneric location-name (location)
-  (:documentation "Return the symbol or string that LOCATION is called, for messages."))
+  (:documentation "Return the name of LOCATION for messages, a symbol or string."))
 
 (defgeneric location-words (location)
-  (:documentation "Return what LOCATION is called in the middle of a sentence, and whose it is.")
+  (:documentation "Return the name of LOCATION for the middle of a sentence, with the robot that
+LOCATION belongs to.")
   (:method (location) (location-name location)))
 
 (addition remaining-capacity)
 (defgeneric remaining-capacity (location)
-  (:documentation "Return, in units of size, how much can still be put into LOCATION: its capacity
-less the sizes of what is directly in it (a double-float, at least 0). Signals WRONG-ARGUMENT.")
+  (:documentation "Return the remaining capacity of LOCATION, in units of size: its capacity minus
+the sizes of the things directly in it (a double-float, at least 0). Signals WRONG-ARGUMENT.")
   (:method (location)
     (check-argument remaining-capacity location nil "a thing, hand or storage bin")))
 
@@ -77,14 +79,16 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
 
 (addition thing-p)
 (define-kind (thing :constructor (%make-thing (name serial world)))
-    "An object in a world, or a prototype of such."
+    "An object in a world, or a prototype from which such objects are made."
   (:fixed
-   (name nil symbol "the symbol that the thing is called; others may be called the same" :addition)
+   (name nil symbol "the symbol that names the thing; other things may have the same
+name" :addition)
    (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes" :addition)
    (world nil t "the world that the thing is in, or NIL for a prototype" :near :addition))
   (:state
    (location nil t
-             "where the thing is: :FLOOR, what holds it, or NIL if it is nowhere" :near :addition)
+             "where the thing is: :FLOOR, the holder of the thing, or NIL if the thing is
+nowhere" :near :addition)
    (x 0d0 double-float "the x coordinate in metres, now or when the thing was last on the floor"
       :near :addition)
    (y 0d0 double-float "the y coordinate in metres, now or when the thing was last on the floor"
@@ -103,7 +107,7 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
    (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container" :addition)
    (substance-parameter 0d0 double-float
                         "the parameter of the thing's :substance, 0 if unspecified" :addition)
-   (rank 0 fixnum "where in the vector of its world's things it is" :near)))
+   (rank 0 fixnum "the index of the thing in the vector of its world's things" :near)))
 
 (defmethod reference ((thing thing))
   (and (thing-world thing) (list :thing (thing-serial thing))))
@@ -116,14 +120,14 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
 ;;; Attributes.
 
 (defun value-like (value domain)
-  "Return the symbol in DOMAIN that VALUE may be a misspelling of, or NIL."
+  "Return the symbol in DOMAIN that VALUE is probably a misspelling of, or NIL."
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
 
 (defun check-attribute-value (operator key value)
-  "Signal WRONG-ARGUMENT unless the attribute KEY can be VALUE. NIL always can."
+  "Signal WRONG-ARGUMENT unless VALUE is valid for the attribute KEY. NIL is always valid."
   (when (typep value '(cons (eql quote)))
-    (reject-argument operator key value "a value that is not quoted, as it is not evaluated"))
+    (reject-argument operator key value "an unquoted value, because the value is not evaluated"))
   (let ((attribute (attribute-of key)))
     (flet ((reject (expected) (reject-argument operator key value expected)))
       (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
@@ -144,7 +148,8 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
              (reject (argument-type-text 'amount)))))))
 
 (defun note-unknown-substance (value)
-  "Warn if VALUE of a :substance names none: where that is defined, or else by a message."
+  "Warn if VALUE, the value of a :substance attribute, names an unknown substance. Warn about the
+current definition, or else by a message."
   (let ((type (substance-value-type value)))
     (when (and type (null (find-substance type nil)))
       (let ((text (format nil "No substance is called ~(~A~): its parameter counts as 0; see ~
@@ -164,7 +169,8 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
         finally (return thing)))
 
 (defun thing-holders-text (thing)
-  "Return in words what THING is in, and what that is in, or NIL if it is in nothing."
+  "Return a text that lists the holders that THING is in, from the innermost to the outermost; NIL
+if THING is in no holder."
   (let ((holders (loop for location = (thing-location thing) then (thing-location location)
                        while (and location (not (eq location :floor)))
                        collect (location-words location)
@@ -173,8 +179,8 @@ less the sizes of what is directly in it (a double-float, at least 0). Signals W
 
 (addition thing-position)
 (defun thing-position (thing)
-  "Return, as two values, the coordinates of THING or of what holds it, in metres. NIL and NIL
-if it is nowhere."
+  "Return, as two values, the coordinates of THING or of its outermost holder, in metres. Return NIL
+and NIL if THING is nowhere."
   (let* ((outermost (thing-outermost thing)) (location (thing-location outermost)))
     (case location
       (:floor (values (thing-x outermost) (thing-y outermost)))

@@ -21,7 +21,8 @@
           (aref (map-parameters map) index) parameter)))
 
 (defun build-line (map x0 y0 x1 y1 substance from to)
-  "Fill the cells of a line (Bresenham); the parameter goes from FROM to TO (reading 57)."
+  "Fill the cells of a line by Bresenham's algorithm; the parameter changes evenly from FROM to TO
+(reading 57)."
   (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
          (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
          (steps (max dx (- dy) 1))
@@ -39,7 +40,8 @@
               (substance-number map type) (double from) (double to)))
 
 (defun draw-rect (map corner opposite type p0 &optional (p1 p0) (p2 p0) (p3 p0))
-  "Draw the outline; the second corner is beside the first, the third opposite (readings 55, 56)."
+  "Draw the outline of a rectangle. P0 to P3 are the parameters at CORNER, at the corner beside it,
+at OPPOSITE, and at the last corner (readings 55, 56)."
   (let ((beside (list (first opposite) (second corner)))
         (last (list (first corner) (second opposite))))
     (draw-wall map corner beside type p0 p1)
@@ -48,7 +50,8 @@
     (draw-wall map last corner type p3 p0)))
 
 (defun build-circle (map center radius type parameter)
-  "Draw the digitised outline (midpoint algorithm), pressed against the map's edges (reading 22)."
+  "Draw the outline of a circle by the midpoint algorithm; parts outside the map are drawn at its
+edges (reading 22)."
   (let ((cx (floor (first center))) (cy (floor (second center))))
     (if (encloses-map-p map cx cy radius)
         (draw-rect map '(0 0) (list (map-width map) (map-height map)) type parameter)
@@ -76,7 +79,7 @@
 ;;; The clauses.
 
 (defun made-of-p (type parameters counts)
-  "True if TYPE can be a substance, and PARAMETERS are numbers, as many as one of COUNTS."
+  "True if TYPE can be a substance, and PARAMETERS are numbers, whose count is in the list COUNTS."
   (and type (symbolp type) (member (length parameters) counts) (every #'quantity-p parameters)))
 
 (define-map-clause wall (map start end type &rest parameters)
@@ -138,7 +141,8 @@ to 1e15"
                         (map-greatest-parameter map) greatest))))
 
 (defun note-walls (map)
-  "Record facts about the walls of MAP, once all are drawn. Return MAP."
+  "Record the range of the walls' parameters in MAP, and whether walls enclose MAP, after all walls
+are drawn. Return MAP."
   (note-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)

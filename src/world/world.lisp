@@ -11,28 +11,30 @@
 
 (addition world-p)
 (define-kind (world :constructor (%make-world (map)))
-    "Things, dice and kickers on a map, in the state that they have now."
+    "A world on a map: the current state of its things, dice and kickers."
   (:fixed
    (map nil map "the map that the world is of" :addition)
    (robots '() list "the list of the world's robots; the layer above keeps it" :part :addition)
-   (kicker-generation 0 fixnum "which definitions of kickers its groups were made by" :export)
+   (kicker-generation 0 fixnum "the value of *KICKER-GENERATION* when the kicker groups were
+made" :export)
    (timeline nil t "the timeline of the world, once there is one; the layer above keeps it" :export)
    (move-watchers '() list
                   "the list of functions (thing old-location new-location) called after a thing has
 moved, been made or been destroyed" :export))
   (:state
-   (seed 0 integer "the integer that all chance in the world comes from" :addition)
+   (seed 0 integer "the integer that seeds all dice of the world" :addition)
    (flags (make-octets 0) octets
           "the flags of the world's cells by index: walls, and things on the floor" :export)
-   (stock (make-stock) stock "its things, and which of them lie where on the floor" :part)
+   (stock (make-stock) stock "the things of the world, and the cells of the floor that they are
+in" :part)
    (live-count 0 fixnum "how many things are alive in the world" :export)
    (next-serial 1 fixnum "the serial number of the next thing to be made")
    (dice-set #() simple-vector "a vector of the world's dice, one for each purpose" :part :export)
-   (kicker-groups '() list "the groups of equal kickers" :part)
-   (kicker-tick 0 tick-count "how many ticks kickers were run in")
+   (kicker-groups '() list "the groups of kickers with the same probability" :part)
+   (kicker-tick 0 tick-count "the number of ticks in which kickers have run")
    (due-kickers '() list "the kickers to run in the next tick by request" :part))
   (:scratch
-   (noted-names '() list "the keys of warnings given, see FIRST-TIME-P")
+   (noted-names '() list "the keys of the warnings given so far; see FIRST-TIME-P")
    (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; While it is NIL, each tick checks.
   (:link
@@ -49,7 +51,7 @@ grip" :export)))
 
 (define-constant +dice-purposes+
     '(:motion :odometry :place :looking :tracking :handling :kickers :manipulations :user)
-  :test #'equal :documentation "The purposes of dice.")
+  :test #'equal :documentation "The purposes for which each world has dice.")
 
 (defmethod digest-state ((dice dice) digest)
   (digest-add digest (dice-state dice)))
@@ -58,9 +60,9 @@ grip" :export)))
 (addition world-dice)
 (defun world-dice (world purpose)
   "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling,
-:kickers, :manipulations or :user. Use those for :user, and only in code that runs within ticks:
-kickers, manipulations and events. Numbers drawn elsewhere, as in continuations and plans, are not
-repeated in a replay."
+:kickers, :manipulations or :user. Use only the dice for :user, and only in code that runs within
+ticks: kickers, manipulations and events. Numbers drawn elsewhere, as in continuations and plans,
+are not repeated in a replay."
   (the dice (svref (world-dice-set world)
                    (ecase purpose
                      (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
@@ -68,13 +70,14 @@ repeated in a replay."
 
 (addition *world*)
 (defvar *world* nil
-  "The world that code runs in: that of the current simulation, headless or live. NIL as long as
-there is none; then each map's resident world counts.")
+  "The world of the current simulation, headless or live. NIL without a simulation; then code works
+in the resident world of each map.")
 
 ;;; Things.
 
 (defmacro do-things ((thing world) &body body)
-  "Run BODY with THING bound to each thing alive in WORLD, older ones first, but no new ones."
+  "Run BODY with THING bound to each living thing in WORLD, in order of creation. Things that BODY
+makes are left out."
   `(call-with-things (lambda (,thing) ,@body) ,world))
 
 (defun call-with-things (function world)
@@ -85,7 +88,7 @@ there is none; then each map's resident world counts.")
         (when (and thing (thing-alive-p thing)) (funcall function thing))))))
 
 (defun world-rank-count (world)
-  "Return how many ranks the things of WORLD have, those of some that were destroyed among them."
+  "Return the number of ranks in WORLD, which includes the ranks of some destroyed things."
   (stock-count (world-stock world)))
 
 (defun thing-of-rank (rank world)
@@ -104,7 +107,7 @@ there is none; then each map's resident world counts.")
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
 (defun remove-thing (thing world)
-  "Remove THING; now and then, close the gaps of destroyed things."
+  "Remove THING from WORLD. If many things have been destroyed, renumber the ranks without gaps."
   (let ((stock (world-stock world)))
     (setf (svref (stock-things stock) (thing-rank thing)) nil)
     (decf (world-live-count world))
@@ -114,7 +117,7 @@ there is none; then each map's resident world counts.")
 
 (defmacro do-cell ((thing index world) &body body)
   "Run BODY with THING bound to each thing on the floor of the cell INDEX of WORLD, in order of
-arrival. BODY moves none."
+arrival. BODY must not move things."
   (with-gensyms (visit)
     `(flet ((,visit (,thing) ,@body))
        (declare (inline ,visit))
@@ -123,7 +126,7 @@ arrival. BODY moves none."
 (addition things-at)
 (defun things-at (world x y)
   "Return a fresh list of the things on the floor of the cell of WORLD that holds the point (X, Y),
-in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
+in order of arrival. Return NIL if the point is outside the map. Signals WRONG-ARGUMENT."
   (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)) (things '()))
@@ -138,9 +141,9 @@ in order of arrival. NIL outside the map. Signals WRONG-ARGUMENT."
 
 (defgeneric change-world (timeline world function operator arguments)
   (:documentation
-   "Make a change to WORLD, whose timeline is TIMELINE, by calling FUNCTION with no arguments, where
-and when that is allowed, and return its values. It is what the operator called OPERATOR, a symbol,
-does with the list ARGUMENTS.")
+   "Change WORLD, whose timeline is TIMELINE, by calling FUNCTION without arguments in the thread
+and at the time in which changes are allowed. Return the values of FUNCTION. The journal records the
+change as OPERATOR, a symbol, with the list ARGUMENTS.")
   (:method ((timeline null) world function operator arguments)
     (declare (ignore world operator arguments))
     (funcall function)))
@@ -152,23 +155,24 @@ does with the list ARGUMENTS.")
       (eq (world-writer (the world world)) (current-thread))))
 
 (defun call-writing (function world)
-  "Call FUNCTION, which may change WORLD. Called by its owner."
+  "Call FUNCTION, which may change WORLD. Only the thread that owns WORLD may call this function."
   (let ((before (world-writer world)))
     (setf (world-writer world) (current-thread))
     (unwind-protect (funcall function)
       (setf (world-writer world) before))))
 
 (defmacro writing ((world) &body body)
-  "Run BODY, in which this thread may change WORLD. Only its owner may do so."
+  "Run BODY, which may change WORLD. Only the thread that owns WORLD may use this macro."
   (form-calling 'call-writing body world))
 
 (defun world-of-living (thing)
-  "Return the world that a change of THING affects: NIL for prototypes and what was destroyed."
+  "Return the world that a change of THING affects: NIL if THING is a prototype or destroyed."
   (and (thing-alive-p thing) (thing-world thing)))
 
 (defmacro changing ((world operator &rest arguments) &body body)
-  "Run BODY, which changes WORLD, where that is allowed; WORLD is NIL for prototypes. BODY does what
-OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside ticks."
+  "Run BODY, which changes WORLD, in the thread and at the time in which changes are allowed. WORLD
+is NIL for prototypes. BODY does what OPERATOR, an unevaluated symbol, does with ARGUMENTS, which
+the journal records. Inside ticks, nothing is consed."
   (once-only (world)
     `(flet ((change-it () ,@body))
        (if (writing-p ,world)
@@ -191,24 +195,26 @@ OPERATOR, a symbol, unevaluated, does with ARGUMENTS. Conses nothing inside tick
     (and (member key (world-noted-names world) :test #'equal) t)))
 
 (defun first-time-p (key world)
-  "True if there was no warning about KEY yet in the run of WORLD; record that there is one."
+  "True if no warning about KEY has been given in the run of WORLD. Record that KEY has a warning
+now."
   (with-lock (*noted-names-lock*)
     (unless (member key (world-noted-names world) :test #'equal)
       (push key (world-noted-names world))
       t)))
 
 (defun note-looked-after (world)
-  "Note that the program has itself checked what is in progress in the run of WORLD."
+  "Record that the program itself has checked which commands are in progress in the run of WORLD."
   (first-time-p '(:looked-after) world))
 
 (defun looked-after-p (world)
-  "True if the program has itself checked what is in progress in the run of WORLD."
+  "True if the program itself has checked which commands are in progress in the run of WORLD."
   (said-p '(:looked-after) world))
 
 (defun warn-once (key world items &key (notable t))
-  "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had one about KEY,
-such as a list of a topic and a name. If it is not read, it is shown like an error, provided that
-NOTABLE is true, or is a function that then returns true. Return true if it was queued."
+  "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had a warning
+about KEY, such as a list of a topic and a name. If no program reads the warning, it is shown like
+an error, provided that NOTABLE is true or is a function that returns true at that time. Return true
+if the warning was queued."
   (when (first-time-p key world)
     (queue-items :warning (ensure-list items) :notable-p notable)
     t))
