@@ -43,7 +43,8 @@
                             told))))
            (multiple-value-bind (count told) (shown "step 5" "step 5" "step 5")
              (is (= 4 count))
-             (is (mentions-p told "Correct the kicker FAIL-OFTEN by DEFKICKER; or remove it: (put-"))
+             (is (mentions-p told
+                             "Correct the kicker FAIL-OFTEN by DEFKICKER; or remove it: (put-"))
              (is (mentions-p told "(thing (find-thing \"POT#1\"))). PAUSE stops time.")))
            (is (= 6 (shown "step 5"
                            (format nil "(defkicker ars-magna.tests::fail-often (it) () ~

@@ -29,49 +29,50 @@
                ("line 1: origin is [0.0, 0.0]; give a list" "origin: [0.0, 0.0]")
                ("line 1: origin is [0, x, 0]; give a list" "origin: [0, x, 0]")
                ("line 1: origin is [0, , 0]; give a list" "origin: [0,, 0]")
-               ("line 1: a list is written on one line" "origin: [0.0, 0.0")
-               ("line 1: a list is written on one line" "origin: [0.0, 0.0] 0")
+               ("line 1: a list must be complete on one line" "origin: [0.0, 0.0")
+               ("line 1: a list must be complete on one line" "origin: [0.0, 0.0] 0")
                ("line 1: negate is 2; give 0" "negate: 2")
                ("line 1: mode is triple; give trinary, scale or raw" "mode: triple")
                ("line 1: mode is [raw]; give trinary" "mode: [raw]")
                ("line 1: occupied_thresh is 1.5; give a probability" "occupied_thresh: 1.5")
                ("line 1: free_thresh is nan; give a probability" "free_thresh: nan")
                ("free_thresh, 0.9, is above occupied_thresh, 0.65; exchange" "free_thresh: 0.9")
-               ("line 1: a value that begins with { is not read" "image: {a: b}")
-               ("line 1: a value that begins with * is not read" "image: *other")
-               ("line 1: a value that begins with ! is not read" "image: !!python/object x")
-               ("line 1: the quotes are not closed" "image: 'floor.pgm")
-               ("line 1: there is more after the closing quote" "image: 'floor.pgm' x")
-               ("line 1: \\n in quotes is not known" "image: \"floor\\n.pgm\"")
+               ("line 1: a value that begins with { is not supported" "image: {a: b}")
+               ("line 1: a value that begins with * is not supported" "image: *other")
+               ("line 1: a value that begins with ! is not supported" "image: !!python/object x")
+               ("line 1: the closing quote is missing" "image: 'floor.pgm")
+               ("line 1: there is text after the closing quote" "image: 'floor.pgm' x")
+               ("line 1: \\n in quotes is not supported" "image: \"floor\\n.pgm\"")
                ("line 1: image is empty; give the name" "image: ''")
                ("no-such.pgm cannot be read: there is no such file" "image: no-such.pgm")
                ("cannot be read: it is a directory" "image: /")
-               ("only ~/, your home directory, is known" "image: ~root/floor.pgm"))
+               ("only in ~/, your home directory" "image: ~root/floor.pgm"))
         do (check-complaint words (floor-complaint (floor-text line) (pgm-text *corner*)))))
 
 (test description.damage-is-told
   (flet ((check (words text)
            (check-complaint words (floor-complaint text (pgm-text *corner*)))))
-    (check "there is no line with the key image; add one such as image: floor.pgm" "")
-    (check "the key resolution (is resolutoin meant to be it?); add one such as resolution: 0.05"
+    (check "there is no line with the key image; add a line such as image: floor.pgm" "")
+    (check "the key resolution (did you mean resolutoin?); add a line such as resolution: 0.05"
            (concatenate 'string "resolutoin: 3" (string #\Newline)
                         (remove-line "resolution: 0.05" (floor-text))))
     (check "line 7: negate is on line 4 already" (format nil "~Anegate: 1~%" (floor-text)))
-    (check "line 1: \"  negate: 0\" is no line such as resolution: 0.05"
+    (check "line 1: \"  negate: 0\" is not a key at the left edge"
            (format nil "  negate: 0~%~A" (floor-text)))
-    (check "line 2: \"floor\" is no line such as" (format nil "# x~%floor~%"))
+    (check "line 2: \"floor\" is not a key at" (format nil "# x~%floor~%"))
     (check "line 1: an item of a list has no key above it" (format nil "- 1~%~A" (floor-text)))
     (check "line 7: an item of a list has no key above it" (format nil "~A- 1~%" (floor-text)))
-    (check "floor.yaml, line 2: it has bytes that are not UTF-8. Save the file in UTF-8."
+    (check "floor.yaml, line 2: the file has bytes that are not UTF-8. Save the file in UTF-8."
            (format nil "# x~%# ~C~%~A" (code-char 255) (floor-text)))
     (check "it is an image; (import-map FILE) reads the .yaml that names it" (pgm-text *corner*))
-    (check "it has 70000 bytes, and the description of a floor at most 65536"
+    (check "the file has 70000 bytes, and the description of a floor has at most 65536"
            (make-string 70000 :initial-element #\Newline))))
 
 (test description.that-the-system-does-not-let-be-read-is-refused-in-plain-words
   (handler-case (progn (ars:import-map "/proc/self/mem") (fail))
     (ars:unusable-floor (condition)
-      (is (search "mem: the system does not let it be read." (princ-to-string condition))))))
+      (is (search "mem: the system does not allow reading the file."
+                  (princ-to-string condition))))))
 
 (test image.given-where-a-run-is-read-is-told-from-its-description
   (with-floor (yaml (pgm-text *corner*))
@@ -89,9 +90,10 @@
 
 (test image.damage-is-told
   (loop for (words . image)
-          in `(("the image is no PGM file" . "")
-               ("save it as one, as with: convert" . ,(format nil "~CPNG" (code-char #x89)))
-               ("the image is no PGM file" . "P6 1 1 255 aaa")
+          in `(("the first bytes of the image are not those of a PGM file" . "")
+               ("save it in such a format, for example by: convert"
+                . ,(format nil "~CPNG" (code-char #x89)))
+               ("the first bytes of the image are not those of a PGM file" . "P6 1 1 255 aaa")
                ("at byte 2 there is no number that could be the width" . "P5x1 1 255 a")
                ("no number that could be the height" . "P5 1 -1 255 a")
                ("the width has more than 9 digits" . "P5 1234567890 1 255 a")
@@ -101,12 +103,12 @@
                ("the greatest value of a pixel is 65536; save" . "P2 1 1 65536 0")
                ("a pixel has the value 256, above the greatest, 255" . "P2 1 1 255 256")
                ("a pixel has the value 101, above the greatest, 100" . ,(format nil "P5 1 1 100 e"))
-               ("the image has 3 of the 4 values that its head promises" . "P2 2 2 255 1 2 3")
-               ("goes on after the 4 values" . "P2 2 2 255 1 2 3 4 5")
+               ("the image has only 3 of the 4 values" . "P2 2 2 255 1 2 3")
+               ("continues after the 4 values" . "P2 2 2 255 1 2 3 4 5")
                ("no number that could be a value" . "P2 2 2 255 1 2 3 -4")
-               ("promises 4 bytes of pixels, but 3 follow" . "P5 2 2 255 abc")
-               ("promises 4 bytes of pixels, but 6 follow" . "P5 2 2 255 abcdef")
-               ("promises 8 bytes of pixels, but 4 follow" . "P5 2 2 256 abcd")
+               ("announces 4 bytes of pixels, but 3 follow" . "P5 2 2 255 abc")
+               ("announces 4 bytes of pixels, but 6 follow" . "P5 2 2 255 abcdef")
+               ("announces 8 bytes of pixels, but 4 follow" . "P5 2 2 256 abcd")
                ("the image has 99999 by 99999 pixels, and the limit is 25000000; cut out what you ~
                  need, or give IMPORT-MAP a higher :limit" . "P5 99999 99999 255 a"))
         do (check-complaint (format nil words) (complaint-of-image image)))
@@ -120,10 +122,10 @@
 
 (test options.mistakes-are-told
   (loop for (words . options)
-          in '(("pixels is 0; give how many pixels wide" :pixels 0)
-               ("cell is 0; give how many metres wide" :cell 0)
-               ("cell is 1; give how many metres wide" :cell 1 :pixels 2)
-               ("cell is 0.12; give a multiple of 0.05, the metres that a pixel is wide, such as"
+          in '(("pixels is 0; give the width of a cell in pixels" :pixels 0)
+               ("cell is 0; give the width of a cell in metres" :cell 0)
+               ("cell is 1; give the width of a cell in metres" :cell 1 :pixels 2)
+               ("cell is 0.12; give a multiple of 0.05, the width of a pixel in metres, such as"
                 :cell .12)
                ("share is 2; give a number from 0 to 1" :share 2)
                ("no substance called slat. Did you mean slate?" :substance slat)
@@ -186,19 +188,20 @@
                         (and (search words (princ-to-string condition))
                              (string= text (base:read-file-into-string file))))))))
            (put image "my drawing")
-           (is-true (refused-p "room.pgm: it is not the image of " image))
+           (is-true (refused-p "room.pgm: the file is not the image of " image))
            (is (null (base:existing-path description)))
            (put description (format nil "# mine~%image: other.pgm~%"))
-           (is-true (refused-p "room.yaml: it is not the description of " description))
+           (is-true (refused-p "room.yaml: the file is not the description of " description))
            (put description (format nil "# mine~%image: room.pgm~%"))
-           (is-true (refused-p "room.pgm: it is not a PGM or PNG image" image))
+           (is-true (refused-p "room.pgm: the file is not a PGM or PNG image" image))
            (dolist (beginning '("" "P2 1 1 255 0" "P5 "))
              (put image beginning)
              (is-true (ars:export-map 'plain-room description)))
            (is-true (ars:export-map 'plain-room description))
            (is-true (ars:export-map 'plain-room description))
            (put description "notes: none")
-           (is-true (refused-p "room.yaml: it is not the description of a map" description))))))))
+           (is-true (refused-p "room.yaml: the file is not the description of a map"
+                               description))))))))
 
 (test export.leaves-the-description-of-another-image
   "Though nothing is called as the new image: by its name, through a link, and if it names none."

@@ -23,7 +23,7 @@
 (test png.damage-is-told
   (let ((good (png-file 3 0 *three-pixels*)) (head (png-head-chunk 3 1 8 0)))
     (loop for (words image)
-            in `(("the image is no PGM file, P2 or P5, and no PNG file by its first bytes"
+            in `(("the first bytes of the image are not those of a PGM file (P2 or P5) or PNG file"
                   ,(damaged-at 5 good))
                  ("the chunk at byte 8 has a wrong name or check sum; copy or save it again"
                   ,(damaged-at 20 good))
@@ -32,12 +32,12 @@
                   ,(png-of-chunks head (png-chunk "I AT" "")))
                  ("ends before its last chunk, IEND" ,(subseq good 0 (- (length good) 1)))
                  ("ends before its last chunk, IEND" ,(subseq good 0 (- (length good) 12)))
-                 ("it has 9 bytes, and ends before its last chunk" ,(subseq good 0 9))
+                 ("the file has 9 bytes, and ends before its last chunk" ,(subseq good 0 9))
                  ("first chunk is IEND with 0 bytes, not IHDR with 13" ,(png-of-chunks))
                  ("first chunk is IHDR with 2 bytes, not" ,(png-of-chunks (png-chunk "IHDR" "ab")))
-                 ("has a chunk IHDR, which is not known here or out of place; convert"
+                 ("has a chunk IHDR, which is unknown or in the wrong position; convert"
                   ,(png-of-chunks head head))
-                 ("has a chunk CgBI, which is not known here"
+                 ("has a chunk CgBI, which is unknown"
                   ,(png-file 3 0 *three-pixels* :chunks (png-chunk "CgBI" "x"))))
           do (check-complaint words (complaint-of-image image)))
     (is (null (complaint-of-image good)))))
@@ -47,8 +47,8 @@
            (check-complaint (format nil words)
                             (complaint-of-image (png-of-chunks (apply #'png-head-chunk head)
                                                                (png-chunk "IDAT" "x"))))))
-    (check "the image has 0 by 4 pixels; save one" 0 4 8 0)
-    (check "the image has 4 by 0 pixels; save one" 4 0 8 0)
+    (check "the image has 0 by 4 pixels; save an image" 0 4 8 0)
+    (check "the image has 4 by 0 pixels; save an image" 4 0 8 0)
     (check "no PNG images of colour type 1 with 8 bits" 3 1 8 1)
     (check "no PNG images of colour type 3 with 16 bits" 3 1 16 3)
     (check "no PNG images of colour type 0 with 3 bits" 3 1 3 0)
@@ -57,44 +57,47 @@
     (check "compression, filter and interlace, 0, 0 and 2, do not exist" 3 1 8 0 '(0 0 2))
     (check "the image has 4294967295 by 4294967295 pixels, and the limit is 25000000"
            4294967295 4294967295 16 6)
-    (check "interlaced (Adam7), which is not read here; convert the image, as with: convert ~
-            floor.png -colorspace gray -depth 8 floor.pgm, and name that in the .yaml file"
+    (check "interlaced (Adam7), which is not supported; convert the image, for example by: convert ~
+            floor.png -colorspace gray -depth 8 floor.pgm, and name the converted image in the .yaml ~
+            file"
            3 1 8 0 '(0 0 1))))
 
 (test png.palettes-that-do-not-fit-are-told
   (flet ((check (words chunks &optional (colour 3))
            (check-complaint words (complaint-of-image
                                    (png-file 3 colour '((0 0 1 2)) :chunks chunks)))))
-    (check "its palette, PLTE, is missing" "")
-    (check "has a colour that its palette, of 2, lacks" (png-palette-chunk 0 0 0 255 255 255))
-    (check "a palette has 3 to 768 bytes, 3 for each colour, and this has 4"
+    (check "the palette, PLTE, is missing" "")
+    (check "has a colour that the palette, with 2 colours, does not have"
+           (png-palette-chunk 0 0 0 255 255 255))
+    (check "a palette has 3 to 768 bytes, 3 for each colour, and this palette has 4"
            (png-palette-chunk 0 0 0 255))
-    (check "and this has 0, or is the second one" (png-palette-chunk))
-    (check "and this has 771, or" (apply #'png-palette-chunk (make-list 771 :initial-element 1)))
-    (check "and this has 9, or is the second one"
+    (check "and this palette has 0 bytes, or is a second palette" (png-palette-chunk))
+    (check "and this palette has 771 bytes, or"
+           (apply #'png-palette-chunk (make-list 771 :initial-element 1)))
+    (check "and this palette has 9 bytes, or is a second palette"
            (let ((chunk (png-palette-chunk 0 0 0 1 1 1 2 2 2)))
              (concatenate 'string chunk chunk)))
     (check "the chunk tRNS has 1 bytes, not 2" (png-chunk "tRNS" "a") 0)
-    (check "stands for transparent (tRNS), which is read here of grey and of palettes only"
+    (check "stands for transparent (tRNS), which is supported only for grey images and palettes"
            (png-chunk "tRNS" "abcdef") 2)))
 
 (test png.pixels-that-do-not-fit-are-told
   (let ((data (stored-by-zlib (octets-as-string (first *three-pixels*)))))
     (loop for (words image)
-            in `(("its pixels end before the last row"
+            in `(("the pixels end before the last row"
                   ,(png-of-data (stored-by-zlib (octets-as-string '(0 0 205)))))
-                 ("its pixels go on after the last row"
+                 ("the pixels continue after the last row"
                   ,(png-of-data (stored-by-zlib (octets-as-string '(0 0 205 254 1)))))
-                 ("the check sum of its pixels is missing or wrong"
+                 ("the check sum of the pixels is missing or wrong"
                   ,(png-of-data (subseq data 0 (- (length data) 4))))
                  ("its pixels cannot be decompressed; convert" ,(png-of-data (damaged-at -1 data)))
                  ("its pixels cannot be decompressed; convert" ,(png-of-data (damaged-at 0 data)))
                  ("its pixels cannot be decompressed" ,(png-of-data (octets-as-string '(#x78 1 7))))
-                 ("its pixels end before the last row" ,(png-of-data (octets-as-string '(#x78 1))))
-                 ("0 bytes of compressed data are too few for that" ,(png-of-data ""))
+                 ("the pixels end before the last row" ,(png-of-data (octets-as-string '(#x78 1))))
+                 ("0 bytes of compressed data are too few for so many" ,(png-of-data ""))
                  ("0 bytes of compressed data are too few"
                   ,(png-of-chunks (png-head-chunk 3 1 8 0)))
-                 ("row 2 has the filter 5, and there are 0 to 4"
+                 ("row 2 has the filter 5, but filters are 0 to 4"
                   ,(png-file 3 0 '((0 1 2 3) (5 1 2 3)))))
           do (check-complaint words (complaint-of-image image)))))
 
@@ -104,7 +107,7 @@
     (check-complaint "the image has 4 by 3 pixels, and the limit is 11"
                      (complaint-of-image image :limit 11))
     (is (null (complaint-of-image image :limit 12))))
-  (check-complaint "its pixels take 200005000 bytes, and 11 bytes of compressed data are too few"
+  (check-complaint "the pixels take 200005000 bytes, and 11 bytes of compressed data are too few"
                    (complaint-of-image
                     (png-of-chunks (png-head-chunk 5000 5000 16 6)
                                    (png-chunk "IDAT" (stored-by-zlib ""))))))

@@ -275,7 +275,7 @@ one."
   (flet ((said (&rest lines)
            (with-floor (yaml (pgm-text '((0 254))) (apply #'floor-text lines))
              (warnings-of (lambda () (ars:import-map yaml))))))
-    (is (search "floor.yaml, line 1: the key moed is not read; did you mean mode?"
+    (is (search "floor.yaml, line 1: the key moed is unknown and ignored; did you mean mode?"
                 (first (said "moed: scale"))))
     (is (search "did you mean image?" (first (said "Image: other.pgm"))))
     (is (null (said "mode: trinary" "cost: 3" "map_id: 7" "width: 5" "free_cost: 1")))))

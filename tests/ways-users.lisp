@@ -219,7 +219,7 @@ cells; NIL if there is none."
   (let ((cost (ars:way-cost 'office '(62 38) '(108.5 70.5))))
     (handler-case (progn (ways::ensure-room (base:heap-bytes) 16) (fail))
       (base:misuse (condition)
-        (is (search "for which this Lisp has no room; start it with a larger --dynamic-space-size"
+        (is (search "more memory than this Lisp has; start SBCL with a larger --dynamic-space-size"
                     (princ-to-string condition)))))
     (is (= cost (ars:way-cost 'office '(62 38) '(108.5 70.5))))))
 

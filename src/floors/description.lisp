@@ -6,12 +6,13 @@
 ;;; nav2_map_server after it. All but mode are required. Other keys are ignored, with a warning if
 ;;; they resemble one of these.
 
-(defconstant +most-octets+ 65536 "How many bytes the description of a floor has at most.")
+(defconstant +most-octets+ 65536 "The largest size of a floor's description, in bytes.")
 
 (defstruct (description (:copier nil))
-  "The description of a floor: its IMAGE, a pathname; the metres of a pixel; ORIGIN, the lower left
-corner in metres and the rotation in radians counterclockwise; NEGATED-P, true if white is occupied;
-the probabilities above and below which a pixel is OCCUPIED or FREE; and the MODE."
+  "The description of a floor: its IMAGE, a pathname; RESOLUTION, the metres of a pixel; ORIGIN, the
+lower left corner in metres and the counterclockwise rotation in radians; NEGATED-P, true if white
+is occupied; the probabilities above which a pixel is OCCUPIED and below which it is FREE; and the
+MODE."
   (file nil :type pathname :read-only t)
   (image nil :type pathname :read-only t)
   (resolution 1 :type rational :read-only t)
@@ -24,16 +25,16 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
 (defparameter *example-lines*
   '(("image" . "floor.pgm") ("resolution" . "0.05") ("origin" . "[0.0, 0.0, 0.0]")
     ("negate" . "0") ("occupied_thresh" . "0.65") ("free_thresh" . "0.196"))
-  "The required keys, each with a value as map savers write it.")
+  "The required keys of a description, each with an example of a value.")
 
 (defun required-entry (file key entries)
-  "Return the entry for KEY. Signals UNUSABLE-FLOOR if there is none."
+  "Return the entry for KEY in ENTRIES. Signals UNUSABLE-FLOOR if there is no such entry."
   (or (find-entry key entries)
       (let ((slip (nearest-name key (set-difference (mapcar #'entry-key entries)
                                                     (mapcar #'car *example-lines*)
                                                     :test #'string=))))
-        (reject-floor file nil "there is no line with the key ~A~@[ (is ~A meant to be it?)~]; add ~
-                                one such as ~A: ~A"
+        (reject-floor file nil "there is no line with the key ~A~@[ (did you mean ~A?)~]; add a ~
+                                line such as ~A: ~A"
                       key slip key (cdr (assoc key *example-lines* :test #'string=))))))
 
 (defun reject-entry (file entry expected)
@@ -48,7 +49,7 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
     number))
 
 (defun resolution-in (file entry)
-  "Return the metres of a pixel in ENTRY, within the limits of a map's frame."
+  "Return the metres of a pixel that ENTRY gives, within the limits of a map's frame."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
          (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))
@@ -69,7 +70,8 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
   (let ((value (entry-value entry)))
     (cond ((member value '("0" "false") :test #'equalp) nil)
           ((member value '("1" "true") :test #'equalp) t)
-          (t (reject-entry file entry "0, if black is occupied, or 1, if white is")))))
+          (t (reject-entry file entry "0 if black pixels are occupied, or 1 if white pixels
+are")))))
 
 (defun mode-in (file entry)
   "Return the mode in ENTRY, or :TRINARY if ENTRY is NIL."
@@ -79,7 +81,8 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
         (t (reject-entry file entry "trinary, scale or raw"))))
 
 (defun image-path (file entry)
-  "Return the pathname of the image, perhaps missing, that ENTRY names relative to that of FILE."
+  "Return the pathname of the image that ENTRY of FILE names, relative to FILE. The image need not
+exist."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
@@ -95,13 +98,13 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
     image))
 
 (defun warn-of-key (file entry)
-  "Warn if the key of ENTRY, of FILE, is unknown and resembles a known one."
+  "Warn if the key of ENTRY, a line of FILE, is unknown and resembles a known key."
   (let* ((known (cons "mode" (mapcar #'car *example-lines*))) (key (entry-key entry))
          (like (unless (member key known :test #'string=)
                  (find-if (lambda (other) (or (string-equal key other) (resembles-p key other)))
                           known))))
     (when like
-      (warn-of-definition "~A, line ~D: the key ~A is not read; did you mean ~A?"
+      (warn-of-definition "~A, line ~D: the key ~A is unknown and ignored; did you mean ~A?"
                           (native-name file) (entry-line entry) key like))))
 
 (defun description-from (file entries)
@@ -112,8 +115,8 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
           (occupied (threshold-in file (entry "occupied_thresh"))))
       (when (< occupied free)
         (reject-floor file (entry-line (entry "free_thresh"))
-                      "free_thresh, ~A, is above occupied_thresh, ~A; exchange them, as savers ~
-                       write 0.196 and 0.65" (decimal free) (decimal occupied)))
+                      "free_thresh, ~A, is above occupied_thresh, ~A; exchange the two values: map ~
+                       savers write 0.196 and 0.65" (decimal free) (decimal occupied)))
       (make-description
        :file file
        :resolution (resolution-in file (entry "resolution"))
@@ -131,14 +134,15 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
                      "it is an image; (import-map FILE) reads the .yaml that names it"))
 
 (defun check-description-file (file)
-  "Signal UNUSABLE-FLOOR unless FILE looks like a description, by its size and first bytes."
+  "Signal UNUSABLE-FLOOR unless FILE looks like the description of a floor by its size and first
+bytes."
   (check-readable file)
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))
   (let ((size (file-size file)))
     (when (< +most-octets+ size)
-      (reject-floor file nil "it has ~D bytes, and the description of a floor at most ~D; give the ~
-                              .yaml file that names the image"
+      (reject-floor file nil "the file has ~D bytes, and the description of a floor has at most ~
+                              ~D; give the .yaml file that names the image"
                     size +most-octets+))))
 
 (defun description-text (file)
@@ -146,8 +150,8 @@ the probabilities above and below which a pixel is OCCUPIED or FREE; and the MOD
   (handler-case (file-text file)
     (illegible-file (condition)
       (reject-floor file (illegible-file-line condition)
-                    "it has bytes that are not UTF-8. Save the file in UTF-8"))
-    (stream-error () (reject-floor file nil "the system does not let it be read"))
+                    "the file has bytes that are not UTF-8. Save the file in UTF-8"))
+    (stream-error () (reject-floor file nil "the system does not allow reading the file"))
     (error (condition) (reject-floor file nil "~A" (one-line-text condition)))))
 
 (defun read-description (name)

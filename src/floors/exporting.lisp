@@ -9,7 +9,8 @@
   :documentation "The brightness, from 0 to 255, of pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+.")
 
 (defun number-of-substance (map substance)
-  "Return the number of SUBSTANCE in MAP, or NIL if no wall is of it. Signals UNKNOWN-NAME."
+  "Return the number of SUBSTANCE in MAP, or NIL if no wall is made of SUBSTANCE. Signals
+UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
         (unless (find-substance substance nil)
@@ -17,8 +18,8 @@
                        (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
-  "Return a predicate of a substance's number and a parameter, true if UNKNOWN, as for EXPORT-MAP,
-stands for such walls of MAP. Signals UNKNOWN-NAME."
+  "Return a function of a substance's number and a parameter that is true if EXPORT-MAP with UNKNOWN
+writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
@@ -28,7 +29,7 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
                  (or (null parameter) (= value parameter))))))))
 
 (defun map-grid (map unknown)
-  "Return the cells of MAP as a grid. UNKNOWN, as for EXPORT-MAP, says which walls are unknown."
+  "Return the cells of MAP as a grid. UNKNOWN says which walls are unknown, as in EXPORT-MAP."
   (let* ((grid (make-grid (map-width map) (map-height map)))
          (cells (grid-cells grid)) (unknown-p (unknown-wall-test map unknown)))
     (dotimes (index (length cells) grid)
@@ -50,14 +51,14 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
       (write-string row out))))
 
 (defun name-as-value (name)
-  "Return NAME, of a file, as a value of YAML, in quotes only if it needs them."
+  "Return the file name NAME as a value in YAML, in quotes only if YAML requires quotes."
   (if (and (alpha-char-p (char name 0))
            (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name))
       name
       (format nil "'~{~A~^''~}'" (uiop:split-string name :separator "'"))))
 
 (defun image-name (path)
-  "Return the name of the image PATH for a description in the same directory."
+  "Return the name of the image file PATH as a description in the same directory refers to it."
   (let ((name (name-in-directory path)))
     ;; Readers might take ~ for a home directory.
     (if (char= #\~ (char name 0))
@@ -71,47 +72,50 @@ stands for such walls of MAP. Signals UNKNOWN-NAME."
             (name-as-value image) (decimal size) (mapcar #'decimal origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
-  "Do as CALL-REPLACING-FILE does with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR."
+  "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR if FILE cannot be
+written."
   (handler-case (call-replacing-file function file :external-format format :check check)
     (unusable-floor (condition) (error condition))
     (error (condition)
-      (reject-floor file nil "it cannot be written, and is as it was: ~A. Give the name of a file ~
-                              that you may write"
+      (reject-floor file nil "the file cannot be written and is unchanged: ~A. Give the name of a ~
+                              file that you may write"
                     (unwritten-reason condition)))))
 
 (defun check-description-name (file path)
-  "Signal WRONG-ARGUMENT if PATH, that of FILE, is no possible name for EXPORT-MAP."
+  "Signal WRONG-ARGUMENT about FILE if its path PATH is no valid name for EXPORT-MAP."
   (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
     (reject-argument 'export-map 'file file
-                     "a name that ends in .yaml; the image goes beside it"))
+                     "a name that ends in .yaml; the image is written beside the file"))
   (unless (every #'graphic-char-p (name-in-directory path))
     (reject-argument 'export-map 'file file
-                     "a name without line ends and the like, which cannot stand in the file")))
+                     "a name of printable characters only, because the .yaml file must contain the
+name")))
 
 (defun linked-file (path)
-  "Return the truename of the file PATH, which may be a link; PATH if there is none."
+  "Return the truename of the file PATH, which may be a link; PATH if there is no such file."
   (or (ignore-errors (existing-path path)) path))
 
 (defun image-named-in (file)
-  "Return the path (the truename if it is there) of the image that FILE describes, or NIL."
+  "Return the path of the image that the description FILE names, as a truename if the image exists;
+NIL if FILE is no valid description."
   (ignore-errors
    (check-description-file file)
    (let ((entries (read-entries file (file-text file))))
      (linked-file (image-path file (required-entry file "image" entries))))))
 
 (defun unused-name-p (path)
-  "True if there is no file PATH, or an empty one."
+  "True if the file PATH does not exist or is empty."
   (let ((there (probe-file path)))
     (or (null there)
         (ignore-errors (and (plain-file-p there) (zerop (file-size there)))))))
 
 (defun check-pair (path image)
-  "Signal UNUSABLE-FLOOR if the files PATH and IMAGE may not be replaced: PATH does not describe
-IMAGE, or IMAGE is no image or not described by PATH."
+  "Signal UNUSABLE-FLOOR if the files PATH and IMAGE must not be replaced, because PATH does not
+describe IMAGE, or because IMAGE is no image."
   (let ((named (image-named-in path)))
     (flet ((reject (file what)
-             (reject-floor file nil "it is not ~A, and is left as it is. Give another name, or ~
-                                     remove it" what)))
+             (reject-floor file nil "the file is not ~A, and is left unchanged. Give another name, ~
+                                     or remove the file" what)))
       (cond ((unused-name-p path)
              (unless (unused-name-p image)
                (reject image (format nil "the image of ~A" (native-name path)))))
@@ -124,20 +128,18 @@ IMAGE, or IMAGE is no image or not described by PATH."
 (defun export-map (map file &key unknown)
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
 file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it a PGM image of the
-same name. Return the truenames of both. In a string ~/ is the home directory, and * ? [ and \\
-stand for themselves. A pixel is a cell, as wide as MAP-FRAME says; IMPORT-MAP makes the same cells
-of it. Substances and things are not written.
-
-UNKNOWN, as for IMPORT-MAP, is a substance whose walls are written as unknown, or a list of that and
-a parameter, such as (glass 5); NIL and :WALLS mean none. MAP need not have walls of it.
-
-An existing description of a map that names that image is replaced, and the image with it. If FILE
-is a link, both are written where it leads to, under that name. Signals UNUSABLE-FLOOR, for example
-if another file has one of these names, WRONG-ARGUMENT and UNKNOWN-NAME; then both files are as they
-were."
+same name. Return the truenames of both files. In a string ~/ is the home directory, and * ? [ and
+\\ stand for themselves. Each cell becomes a pixel, whose width is that of a cell in MAP-FRAME;
+IMPORT-MAP makes the same cells of the pixels. Substances and things are not written.
+UNKNOWN is a substance whose walls are written as unknown, or a list of a substance and a parameter,
+such as (glass 5); NIL and :WALLS mean no walls. MAP need not have walls of the substance.
+An existing description that names the same image is replaced, together with the image. If FILE is
+a link, both files are written beside the file that the link leads to, under the name of that file.
+Signals UNUSABLE-FLOOR, for example if another file has one of these names, WRONG-ARGUMENT and
+UNKNOWN-NAME; then both files are unchanged."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-option-p unknown)
-                  "the name of a substance, or a list of that and a parameter, as in (glass 5)")
+                  "the name of a substance, or a list of the name and a parameter, as in (glass 5)")
   (let ((map (map-from 'export-map map)) (path (linked-file (file-called file))))
     (check-description-name file path)
     (let* ((grid (map-grid map unknown))

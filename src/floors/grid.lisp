@@ -14,7 +14,8 @@
 (defstruct (grid (:constructor make-grid
                      (width height &optional (cells (make-octets (* width height)))))
                  (:copier nil))
-  "WIDTH by HEIGHT cells, row by row from the top: +FREE+, +OCCUPIED+ or +UNKNOWN+ each."
+  "A grid of WIDTH by HEIGHT cells, row by row from the top. Each cell is +FREE+, +OCCUPIED+ or
++UNKNOWN+."
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
@@ -23,7 +24,8 @@
   (count state (grid-cells grid)))
 
 (defun chance-of (description sample white)
-  "Return the probability that a pixel with the value SAMPLE is occupied, or NIL if it is unknown."
+  "Return the probability that a pixel with the value SAMPLE is occupied, or NIL if the pixel is
+unknown."
   (let ((brightness (/ sample white)))
     (cond ((eq :raw (description-mode description))
            (let ((percent (round (* 255 brightness))))
@@ -39,7 +41,8 @@
           (t +unknown+))))
 
 (defun state-table (description white)
-  "Return a vector of the states of pixels by their values, from 0 to WHITE; WHITE + 1 is unknown."
+  "Return a vector of the states of pixels, indexed by the pixel's value from 0 to WHITE. The value
+WHITE + 1 stands for unknown."
   (let ((table (make-octets (+ 2 white))))
     (setf (aref table (1+ white)) +unknown+)
     (dotimes (sample (1+ white) table)
@@ -49,14 +52,16 @@
 ;;; row and the last column may have fewer pixels.
 
 (defun state-of-block (free occupied unknown share)
-  "Return the state of a cell with so many pixels: occupied if at least one and SHARE of them are,
-else unknown if more pixels are unknown than free."
+  "Return the state of a cell with these numbers of FREE, OCCUPIED and UNKNOWN pixels. The cell is
+occupied if at least one pixel and at least the share SHARE of all pixels are occupied, else unknown
+if more pixels are unknown than free."
   (cond ((and (plusp occupied) (<= (* share (+ free occupied unknown)) occupied)) +occupied+)
         ((< free unknown) +unknown+)
         (t +free+)))
 
 (defun count-states (image table left top right bottom)
-  "Return how many of the pixels of IMAGE in this rectangle are free, occupied, unknown, by TABLE."
+  "Return the numbers of free, occupied and unknown pixels of IMAGE in a rectangle. TABLE maps
+values of pixels to states."
   (let ((samples (image-samples image)) (width (image-width image))
         (counts (make-array 3 :initial-element 0)))
     (declare (type samples samples) (type octets table) (dynamic-extent counts))
@@ -104,8 +109,9 @@ else unknown if more pixels are unknown than free."
   (make-array size :element-type '(signed-byte 32) :initial-element initial))
 
 (defstruct (runs (:constructor make-runs (step cells of)) (:copier nil))
-  "The COUNT runs of a grid along its rows or columns. STEP leads from a cell to the next. OF has
-the number of each cell's run, or -1; STARTS and LENGTHS the first cell and length of each run."
+  "The COUNT runs of a grid along its rows or columns. STEP is the difference of the indices of two
+neighbouring cells of a run. OF has the number of each cell's run, or -1. STARTS and LENGTHS have
+the first cell and the length of each run."
   (step 1 :type fixnum :read-only t)
   (cells (make-octets 0) :type octets :read-only t)
   (of (make-numbers 0) :type numbers :read-only t)
@@ -114,8 +120,9 @@ the number of each cell's run, or -1; STARTS and LENGTHS the first cell and leng
   (lengths (make-numbers 0) :type numbers))
 
 (defun number-runs (runs lines per-line line-step allowed)
-  "Number the runs of cells in a state ALLOWED, a bit for each state, in RUNS: in LINES of PER-LINE
-cells, with LINE-STEP from a line to the next."
+  "Number the runs of cells whose state has its bit set in ALLOWED, and store the numbers in RUNS.
+The grid has LINES lines of PER-LINE cells; LINE-STEP is the difference of the indices of two
+neighbouring lines."
   (declare #.*hot* (type fixnum lines per-line line-step allowed))
   (let ((cells (runs-cells runs)) (of (runs-of runs)) (step (runs-step runs)) (count 0))
     (declare (type octets cells) (type numbers of) (type fixnum step count))
@@ -142,11 +149,12 @@ cells, with LINE-STEP from a line to the next."
     runs))
 
 (defun states-mask (states)
-  "Return a bit for each of the list STATES."
+  "Return an integer with a bit set for each state in the list STATES."
   (reduce #'logior states :key (lambda (state) (ash 1 state))))
 
 (defun find-runs (grid allowed along)
-  "Return the runs of GRID ALONG its :ROWS or :COLUMNS through cells in states ALLOWED, a list."
+  "Return the runs of GRID along its rows or columns, as ALONG is :ROWS or :COLUMNS. The cells of
+runs are in a state of the list ALLOWED."
   (let* ((width (grid-width grid)) (height (grid-height grid)) (rows (eq along :rows))
          (runs (make-runs (if rows 1 width) (grid-cells grid) (make-numbers (* width height)))))
     (number-runs runs (if rows height width) (if rows width height) (if rows width 1)
@@ -154,7 +162,8 @@ cells, with LINE-STEP from a line to the next."
     (measure-runs runs)))
 
 (defun run-ends (runs run width)
-  "Return a list of the first and the last cell of RUN, a number, in a grid of WIDTH: lists (x y)."
+  "Return a list of the first and the last cell of the run with the number RUN, as lists (x y), in a
+grid that is WIDTH cells wide."
   (flet ((place (index) (nreverse (multiple-value-list (floor index width)))))
     (let ((start (aref (runs-starts runs) run)))
       (list (place start)
@@ -172,10 +181,10 @@ cells, with LINE-STEP from a line to the next."
 (defstruct (cover (:constructor %make-cover
                       (rows columns needed row-mate column-mate layer reached))
                   (:copier nil))
-  "The matching so far of the runs ROWS and COLUMNS: the ROW-MATE of each row is a column, the
-COLUMN-MATE of each column a row, or -1. Cells in states NEEDED, a bit for each, are ties. In a
-round, LAYER has for each row the number of pairs to a row without a mate, or -1 if there is no way;
-REACHED how many of its cells it has tried."
+  "The current matching of the runs ROWS and COLUMNS: the ROW-MATE of each row is a column or -1,
+the COLUMN-MATE of each column a row or -1. Cells whose state has its bit set in NEEDED are ties. In
+a round of the algorithm, LAYER has for each row the number of pairs on the way to a row without a
+mate, or -1 if there is no way; REACHED has for each row the number of its cells tried."
   (rows nil :type runs :read-only t)
   (columns nil :type runs :read-only t)
   (needed 0 :type (unsigned-byte 8) :read-only t)
@@ -191,7 +200,8 @@ REACHED how many of its cells it has tried."
 
 (declaim (inline tie-at))
 (defun tie-at (cover row place)
-  "Return the column that the cell at PLACE of ROW ties that to, or -1 if the cell is not needed."
+  "Return the column to which the cell at the index PLACE of ROW ties ROW, or -1 if the cell is not
+needed."
   (declare (type fixnum row place))
   (let* ((rows (cover-rows cover))
          (index (+ (aref (runs-starts rows) row) place)))
@@ -201,14 +211,14 @@ REACHED how many of its cells it has tried."
         -1)))
 
 (defmacro do-ties ((column cover row) &body body)
-  "Run BODY with each COLUMN that needed cells tie ROW to."
+  "Run BODY with COLUMN bound to each column to which a needed cell ties ROW."
   (with-gensyms (place)
     `(dotimes (,place (aref (runs-lengths (cover-rows ,cover)) ,row))
        (let ((,column (tie-at ,cover ,row ,place)))
          (unless (minusp ,column) ,@body)))))
 
 (defun find-layers (cover)
-  "Set the layers of all rows. True if a way leads to a column without a mate."
+  "Compute the layers of all rows of COVER. Return true if a way leads to a column without a mate."
   (declare #.*hot*)
   (let* ((count (runs-count (cover-rows cover))) (layer (cover-layer cover))
          (queue (make-numbers count)) (end 0) (found nil))
@@ -232,8 +242,8 @@ REACHED how many of its cells it has tried."
     found))
 
 (defun next-tie (cover row)
-  "Return the next column that ROW has not tried in this round and that has no mate, or one in the
-next layer. NIL if there is none."
+  "Return the next column that ROW has not tried in this round, and that has no mate or a mate in
+the next layer. Return NIL if there is no such column."
   (declare #.*hot* (type fixnum row))
   (let ((reached (cover-reached cover)) (layer (cover-layer cover))
         (length (aref (runs-lengths (cover-rows cover)) row)))
@@ -247,8 +257,8 @@ next layer. NIL if there is none."
                      (return column))))))))
 
 (defun find-mate (cover row)
-  "Find a mate for ROW, which has none, by a way in this round's layers, if there is one. Pair each
-row of the way with its column there; some get other mates."
+  "Find a mate for ROW, a row without a mate, by a way through the layers of this round, if there is
+a way. Pair each row of the way with its column on the way, so that some rows change their mates."
   (let ((way (list (cons row nil))) (column-mate (cover-column-mate cover)) (done nil))
     (loop until (or done (null way))
           do (let ((column (next-tie cover (car (first way)))))
@@ -262,7 +272,8 @@ row of the way with its column there; some get other mates."
                    (aref column-mate column) row))))
 
 (defun match-runs (cover)
-  "Find a maximum matching for COVER. Its layers are then those of a last round without a way."
+  "Find a maximum matching for COVER. Afterwards the layers of COVER are those of the last round,
+which has found no way."
   (loop while (find-layers cover)
         do (dotimes (row (runs-count (cover-rows cover)))
              (when (minusp (aref (cover-row-mate cover) row))
@@ -270,7 +281,8 @@ row of the way with its column there; some get other mates."
   cover)
 
 (defun columns-to-take (cover)
-  "Return a bit for each column of COVER: 1 if a row that the last round reached is tied to it."
+  "Return a bit vector with a bit for each column of COVER: 1 if a row that the last round reached
+is tied to the column."
   (let ((taken (make-array (runs-count (cover-columns cover))
                            :element-type 'bit :initial-element 0)))
     (dotimes (row (runs-count (cover-rows cover)) taken)
@@ -279,9 +291,9 @@ row of the way with its column there; some get other mates."
           (setf (sbit taken column) 1))))))
 
 (defun fewest-lines (grid needed allowed)
-  "Return as few straight lines as possible, along rows and columns, that cover all cells of GRID in
-a state of the list NEEDED and only cells in a state of the list ALLOWED: lists of two ends (x y),
-those along rows first, from the top."
+  "Return a list of as few straight lines as possible that cover all cells of GRID in a state of the
+list NEEDED, and only cells in a state of the list ALLOWED. Each line is a list of two ends (x y).
+Lines along rows come first, from the top, then lines along columns."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (match-runs (make-cover rows columns (states-mask needed))))
          (taken (columns-to-take cover)) (width (grid-width grid)))

@@ -17,8 +17,8 @@
 
 (addition map-to-frame)
 (defun map-to-frame (map x y &optional (direction 0))
-  "Convert the point (X, Y) of MAP, a map or its name, and DIRECTION, radians clockwise, to that
-map's frame (see MAP-FRAME). Return x and y in metres and the angle in radians counterclockwise:
+  "Convert the point (X, Y) of MAP, a map or its name, and DIRECTION, radians clockwise, to the
+frame of MAP (see MAP-FRAME). Return x and y in metres and the angle in radians counterclockwise:
 three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-place 'map-to-frame x y direction)
   (let ((map (map-from 'map-to-frame map)))
@@ -50,7 +50,7 @@ UNKNOWN-NAME."
 ;;; at replay if the files have changed.
 
 (define-constant +most-pixels+ 25000000
-  :documentation "How many pixels an image has at most, unless :limit says otherwise.")
+  :documentation "The largest number of pixels of an image, unless :limit gives another number.")
 
 ;;; The options.
 
@@ -58,11 +58,11 @@ UNKNOWN-NAME."
   (unless test (reject-argument 'import-map option value expected)))
 
 (defun plain-number (value)
-  "Return VALUE, as an integer if it is whole."
+  "Return VALUE, converted to an integer if VALUE is a whole number."
   (if (= value (round value)) (round value) value))
 
 (defun substance-option-p (value)
-  "True if VALUE is a symbol, or a list of one and a number."
+  "True if VALUE is a symbol, or a list of a symbol and perhaps a number."
   (or (symbolp value)
       (and (proper-list-p value) (first value) (symbolp (first value))
            (or (null (rest value))
@@ -71,15 +71,15 @@ UNKNOWN-NAME."
 (defun wall-substance (option value)
   "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME."
   (check-option option (and value (substance-option-p value)) value
-                "the name of a substance, or a list of that and a parameter, as in (bricks 20)")
+                "the name of a substance, or a list of the name and a parameter, as in (bricks 20)")
   (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
     (let ((substance (find-substance name)))
       (list (substance-name substance)
             (if given parameter (plain-number (substance-parameter substance)))))))
 
 (defun map-name-for (name file)
-  "Return the name of the map from FILE: the symbol NAME or, if that is NIL, one made of the letters
-and digits of the name of FILE, with dashes between, in the current package."
+  "Return the name of the map from FILE: the symbol NAME or, if NAME is NIL, a symbol of the current
+package made of the letters and digits of the name of FILE, with dashes for other characters."
   (let* ((words (substitute-if #\Space (complement #'alphanumericp)
                                (string-upcase (or (pathname-name file) ""))))
          (own (substitute #\- #\Space (one-line (string-trim " " words)))))
@@ -88,21 +88,22 @@ and digits of the name of FILE, with dashes between, in the current package."
                   name
                   (if name
                       "a symbol, but no keyword"
-                      "a symbol, as the name of the file has no letters"))
+                      "a symbol, because the name of the file has no letters"))
     (or name (intern own))))
 
 (defun side-in-pixels (description pixels cell)
-  "Return the width of a cell in pixels, by PIXELS or by CELL, in metres; 1 if both are NIL."
+  "Return the width of a cell in pixels: PIXELS, or the width CELL in metres converted to pixels; 1
+if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
-                "how many pixels wide a cell is, an integer from 1 to 32767")
+                "the width of a cell in pixels, an integer from 1 to 32767")
   (check-option :cell (or (null cell) (and (within-reason-p cell) (plusp cell) (null pixels))) cell
-                "how many metres wide a cell is, or :pixels instead, not both")
+                "the width of a cell in metres, and not :pixels as well")
   (if (null cell)
       (or pixels 1)
       (let* ((resolution (description-resolution description))
              (exact (/ (rational cell) resolution)) (side (max 1 (round exact))))
         (check-option :cell (and (<= side 32767) (< (abs (- exact side)) 1/1000)) cell
-                      (format nil "a multiple of ~A, the metres that a pixel is wide, such as ~A"
+                      (format nil "a multiple of ~A, the width of a pixel in metres, such as ~A"
                               (decimal resolution) (decimal (* (min side 32767) resolution))))
         side)))
 
@@ -112,7 +113,8 @@ and digits of the name of FILE, with dashes between, in the current package."
   (loop for (start end) in lines collect `(:wall ,start ,end ,@sort)))
 
 (defun grid-clauses (grid walls unknown)
-  "Return clauses of DEFMAP for GRID: of WALLS for occupied cells, of UNKNOWN for unknown ones."
+  "Return clauses of DEFMAP for GRID: walls of WALLS for occupied cells, and walls of UNKNOWN for
+unknown cells. Both are lists (substance parameter)."
   (flet ((clauses (sort needed &optional (allowed needed))
            (wall-clauses (fewest-lines grid needed allowed) sort)))
     (cond ((null unknown) (clauses walls (list +occupied+)))
@@ -126,17 +128,17 @@ and digits of the name of FILE, with dashes between, in the current package."
   (let ((most (ceiling (max (image-width image) (image-height image)) side)))
     (when (< 32767 most)
       (reject-floor (description-image description) nil
-                    "it would make a map of ~D cells in a row or column, and maps have at most ~
-                     32767; give IMPORT-MAP :pixels ~D or more"
+                    "the image would make a map of ~D cells in a row or column, and maps have at ~
+                     most 32767; give IMPORT-MAP :pixels ~D or more"
                     most (ceiling (max (image-width image) (image-height image)) 32767)))))
 
 (defun warn-of-nothing-free (description grid)
   "Warn if no cell of GRID is free though DESCRIPTION has the mode :SCALE."
   (when (and (eq :scale (description-mode description))
              (zerop (count-of +free+ grid)))
-    (warn-of-definition "~A: no cell is free. In the mode scale a shade is the chance that ~
-                         something is there, and a pixel is free below ~A (free_thresh); if ~
-                         lighter pixels are meant to be free, give a higher free_thresh."
+    (warn-of-definition "~A: no cell is free. In the mode scale a shade is the probability that ~
+                         the pixel is occupied, and a pixel is free below ~A (free_thresh); if ~
+                         light pixels should be free, give a higher free_thresh."
                         (native-name (description-file description))
                         (decimal (description-free description)))))
 
@@ -148,8 +150,8 @@ and digits of the name of FILE, with dashes between, in the current package."
 (addition imported-map-form)
 (defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
                                  (unknown :walls) clauses cache (limit +most-pixels+))
-  "Return the DEFMAP form that IMPORT-MAP would evaluate, given the same arguments, and its
-report. Nothing is defined. Signals the same."
+  "Return the DEFMAP form that IMPORT-MAP would evaluate with the same arguments, and its report.
+Define nothing. Signals the same errors as IMPORT-MAP."
   (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")
@@ -176,24 +178,24 @@ report. Nothing is defined. Signals the same."
 (addition import-map)
 (defun import-map (file &rest options &key name pixels cell share substance unknown clauses cache
                                         limit)
-  "Define a map from an occupancy grid as ROS's map_server keeps it. FILE, a string or pathname, is
-the YAML file that names the image: PGM or PNG (not interlaced), by its first bytes. In a string ~/
-is the home directory, and * ? [ and \\ stand for themselves. NAME is the map's name, by default
-the file's name as a symbol of the current package. OPTIONS:
+  "Define a map from an occupancy grid in the format of ROS's map_server. FILE, a string or
+pathname, is the YAML file that names the image: PGM or PNG (not interlaced), by its first bytes. In
+a string ~/ is the home directory, and * ? [ and \\ stand for themselves. NAME is the map's name, by
+default the file's name as a symbol of the current package. OPTIONS:
   :pixels -- width of a cell in pixels, by default 1; or :cell -- its width in metres
-  :share -- share of its pixels that must be occupied to make a cell a wall; by default 0: any one
-  :substance -- that of the walls, by default bricks, or a list such as (bricks 20)
+  :share -- share of occupied pixels from which a cell becomes a wall; by default 0: any pixel
+  :substance -- the substance of the walls, by default bricks, or a list such as (bricks 20)
   :unknown -- what unknown cells become: :walls, the default, NIL for nothing, a substance, or a
 list such as (glass 5)
   :clauses -- more clauses of DEFMAP, such as things
   :cache -- as for DEFMAP
   :limit -- the largest number of pixels accepted, by default 25000000
 Return the map and a plist: :width and :height in cells, the width of a :cell in real metres, the
-numbers of cells that are :free, :occupied and :unknown, and of :walls, which is as small as
-possible. A robot's metre is the side of a cell, whatever that is in reality; MAP-TO-FRAME and
+numbers of :free, :occupied and :unknown cells, and the number of :walls, which is as small as
+possible. A robot's metre is the side of a cell, whatever its real width; MAP-TO-FRAME and
 FRAME-TO-MAP convert. Colours become grey as in ROS's nav2_map_server: the average of red, green and
-blue. If the image has alpha, the mode trinary averages that in as a fourth channel, in the mode
-scale a pixel that is not fully opaque is unknown, and the mode raw ignores it. Signals
+blue. If the image has alpha, the mode trinary averages alpha in as a fourth channel; in the mode
+scale a pixel that is not fully opaque is unknown; the mode raw ignores alpha. Signals
 UNUSABLE-FLOOR, with the file and line, WRONG-ARGUMENT, UNKNOWN-NAME for a substance, and
 MALFORMED-DEFINITION."
   (declare (ignore name pixels cell share substance unknown clauses cache limit))

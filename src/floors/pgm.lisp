@@ -9,15 +9,15 @@
   (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
 
 (defstruct (image (:constructor make-image (width height white samples)) (:copier nil))
-  "An image in grey of WIDTH by HEIGHT pixels, whose SAMPLES, row by row from the top, go from 0,
-black, to WHITE. WHITE + 1 stands for an unknown pixel."
+  "A grey image of WIDTH by HEIGHT pixels. SAMPLES has their values, row by row from the top: from
+0, black, to WHITE, and WHITE + 1 for an unknown pixel."
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (white 255 :type (integer 1 65535) :read-only t)
   (samples (make-array 0 :element-type '(unsigned-byte 16)) :type samples :read-only t))
 
 (defstruct (input (:constructor make-input (file octets)) (:copier nil))
-  "The OCTETS of FILE, read up to POSITION."
+  "The OCTETS of FILE. The octets before POSITION have been read."
   (file nil :type pathname :read-only t)
   (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
   (position 0 :type fixnum))
@@ -26,11 +26,12 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
   (reject-floor (input-file input) nil "~?" control arguments))
 
 (defparameter *conversion* "convert floor.png -colorspace gray -depth 8 floor.pgm"
-  "A shell command that converts an image into one that can be read.")
+  "A shell command that converts an image into a PGM image, which IMPORT-MAP reads.")
 
 (defun check-pixels (input width height limit)
   (unless (and (plusp width) (plusp height))
-    (reject-image input "the image has ~D by ~D pixels; save one that has some" width height))
+    (reject-image input "the image has ~D by ~D pixels; save an image that has ~
+                         pixels" width height))
   (when (< limit (* width height))
     (reject-image input "the image has ~D by ~D pixels, and the limit is ~D; cut out what you ~
                          need, or give IMPORT-MAP a higher :limit"
@@ -62,7 +63,7 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
   (or (= octet 32) (<= 9 octet 13)))
 
 (defun skip-blanks (input)
-  "Go on to the next word of INPUT, past blanks and comments."
+  "Move the position of INPUT to the next word, past blanks and comments."
   (let* ((octets (input-octets input)) (end (length octets)) (position (input-position input)))
     (declare (type octets octets) (type fixnum end position))
     (loop while (< position end)
@@ -74,7 +75,8 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
     (setf (input-position input) position)))
 
 (defun next-number (input what)
-  "Return the next number in INPUT, at most 9 digits. WHAT names it in errors."
+  "Return the next number in INPUT, of at most 9 digits. The string WHAT names the number in
+errors."
   (skip-blanks input)
   (let ((octets (input-octets input)) (start (input-position input)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
@@ -86,7 +88,7 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
     (when (and (= 9 (- (input-position input) start))
                (< (input-position input) (length octets))
                (digit-char-p (code-char (aref octets (input-position input)))))
-      (reject-image input "the image says at byte ~D that ~A has more than 9 digits; save one of a ~
+      (reject-image input "at byte ~D of the image, ~A has more than 9 digits; save an image of a ~
                            size that a map can have" start what))
     (when (or (= start (input-position input))
               (and (< (input-position input) (length octets))
@@ -104,32 +106,34 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
                          save it again" sample white)))
 
 (defun read-text-samples (input count white)
-  "Return the next COUNT values of INPUT, which are written in text."
+  "Return a vector of the next COUNT values of INPUT, which are written as text, each at most
+WHITE."
   (let ((samples (make-array count :element-type '(unsigned-byte 16))))
     (dotimes (index count)
       (skip-blanks input)
       (when (= (input-position input) (length (input-octets input)))
-        (reject-image input "the image has ~D of the ~D values that its head promises; save it ~
-                             again" index count))
+        (reject-image input "the image has only ~D of the ~D values that its header announces; ~
+                             save it again" index count))
       (let ((sample (next-number input "a value")))
         (check-sample input sample white)
         (setf (aref samples index) sample)))
     (skip-blanks input)
     (unless (= (input-position input) (length (input-octets input)))
-      (reject-image input "the image goes on after the ~D values that its head promises; save one ~
-                           image only" count))
+      (reject-image input "the image continues after the ~D values that its header announces; save ~
+                           only one image in the file" count))
     samples))
 
 (defun check-octets-left (input needed)
-  "Signal UNUSABLE-FLOOR unless NEEDED octets are left in INPUT, perhaps with a line end."
+  "Signal UNUSABLE-FLOOR unless exactly NEEDED octets are left in INPUT, or one more, a line end."
   (let* ((end (length (input-octets input))) (left (- end (input-position input))))
     (unless (or (= left needed)
                 (and (= left (1+ needed)) (= 10 (aref (input-octets input) (1- end)))))
-      (reject-image input "the head of the image promises ~D bytes of pixels, but ~D follow; copy ~
-                           or save it again, as bytes and not as text" needed left))))
+      (reject-image input "the header of the image announces ~D bytes of pixels, but ~D follow; ~
+                           copy or save the image again, as bytes and not as text" needed left))))
 
 (defun read-binary-samples (input count white)
-  "Return the next COUNT values of INPUT, which are bytes or pairs of them."
+  "Return a vector of the next COUNT values of INPUT, each at most WHITE. A value is a byte or, if
+WHITE is above 255, a pair of bytes."
   (incf (input-position input))
   (let ((wide (< 255 white)))
     (check-octets-left input (if wide (* 2 count) count))
@@ -158,8 +162,8 @@ black, to WHITE. WHITE + 1 stands for an unknown pixel."
     (check-pixels input width height limit)
     (let ((white (next-number input "the greatest value")) (count (* width height)))
       (unless (<= 1 white 65535)
-        (reject-image input "the greatest value of a pixel is ~D; save the image with one from 1 ~
-                             to 65535, usually 255" white))
+        (reject-image input "the greatest value of a pixel is ~D; save the image with a greatest ~
+                             value from 1 to 65535, usually 255" white))
       (make-image width height white
                   (if (= 2 (pgm-kind input))
                       (read-text-samples input count white)

@@ -9,12 +9,12 @@
 ;;; Others may be left out if their name begins with a small letter. (www.w3.org/TR/png-3)
 
 (define-constant +png-signature+ (coerce #(137 80 78 71 13 10 26 10) 'octets) :test 'equalp
-  :documentation "The octets that each PNG file begins with.")
+  :documentation "The octets with which each PNG file begins.")
 
 (defstruct (png (:copier nil))
   "The chunks of a PNG file: WIDTH by HEIGHT pixels with CHANNELS of DEPTH bits. If PALETTE-P is
 true, the only channel is an index in PALETTE, which has three octets for each colour. TRANSPARENCY
-is the content of tRNS, or NIL. PIXELS are compressed."
+is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
   (input nil :type input :read-only t)
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
@@ -30,18 +30,19 @@ is the content of tRNS, or NIL. PIXELS are compressed."
     (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
 
 (defun reject-png (input control &rest arguments)
-  "Signal UNUSABLE-FLOOR about the PNG file INPUT, which has to be converted."
-  (reject-image input "~?; convert the image, as with: ~A, and name that in the .yaml file"
+  "Signal UNUSABLE-FLOOR about the PNG file INPUT. The message says how to convert the file."
+  (reject-image input "~?; convert the image, for example by: ~A, and name the converted image in ~
+                       the .yaml file"
                 control arguments *conversion*))
 
 (defun reject-damaged (input control &rest arguments)
-  "Signal UNUSABLE-FLOOR about the PNG file INPUT, which is damaged."
+  "Signal UNUSABLE-FLOOR with the message that the PNG file INPUT is damaged."
   (reject-image input "the image is damaged: ~?; copy or save it again" control arguments))
 
 ;;; Numbers and check sums.
 
 (defun number-at (octets start &optional (count 4))
-  "Return the number in COUNT OCTETS from START, the high one first."
+  "Return the number in COUNT octets of OCTETS from START on, the highest octet first."
   (declare (type octets octets))
   (loop with number = 0
         for index from start below (+ start count)
@@ -56,7 +57,7 @@ is the content of tRNS, or NIL. PIXELS are compressed."
         (loop repeat 8
               do (setf crc (logxor (if (oddp crc) #xEDB88320 0) (ash crc -1))))
         (setf (aref table octet) crc))))
-  "What each octet adds to a CRC-32.")
+  "The contribution of each octet to a CRC-32, by octet.")
 
 (defun crc-32 (octets start end)
   "Return the check sum of OCTETS from START to before END: the CRC-32 of ISO 3309."
@@ -71,7 +72,8 @@ is the content of tRNS, or NIL. PIXELS are compressed."
 ;;; Chunks.
 
 (defun chunk-name (octets start)
-  "Return the name of a chunk at START of OCTETS, or NIL if there are no letters."
+  "Return the name of a chunk, the four characters at START of OCTETS, or NIL if they are not all
+letters."
   (let ((name (map 'string #'code-char (subseq octets start (+ start 4)))))
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
@@ -81,7 +83,7 @@ is the content of tRNS, or NIL. PIXELS are compressed."
   (let* ((octets (input-octets input)) (start (+ 8 (input-position input)))
          (end (and (<= start (length octets)) (+ start (number-at octets (- start 8))))))
     (unless (and end (<= (+ end 4) (length octets)))
-      (reject-damaged input "it has ~D bytes, and ends before its last chunk, IEND"
+      (reject-damaged input "the file has ~D bytes, and ends before its last chunk, IEND"
                       (length octets)))
     (let ((name (chunk-name octets (- start 4))))
       (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
@@ -93,19 +95,20 @@ is the content of tRNS, or NIL. PIXELS are compressed."
 
 (define-constant +png-colours+ '((0 1 1 2 4 8 16) (2 3 8 16) (3 1 1 2 4 8) (4 2 8 16) (6 4 8 16))
   :test 'equal
-  :documentation "For each type of colour, how many channels it has, and what depths. 0 and 4 are
+  :documentation "A list (type channels depth...) for each colour type of PNG. The types 0 and 4 are
 grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is alpha.")
 
 (defun check-encoding (input compression filter interlace)
-  "Signal UNUSABLE-FLOOR if this encoding of pixels is not supported."
+  "Signal UNUSABLE-FLOOR if INPUT has an unsupported COMPRESSION, FILTER or INTERLACE."
   (when (= 1 interlace)
-    (reject-png input "the image is interlaced (Adam7), which is not read here"))
+    (reject-png input "the image is interlaced (Adam7), which is not supported"))
   (unless (= 0 compression filter interlace)
     (reject-damaged input "compression, filter and interlace, ~D, ~D and ~D, do not exist in PNG"
                     compression filter interlace)))
 
 (defun png-of-head (input octets limit)
-  "Return a PNG by OCTETS, the content of IHDR, of at most LIMIT pixels."
+  "Return a PNG for INPUT from OCTETS, the content of the chunk IHDR. Signals UNUSABLE-FLOOR if
+there are more than LIMIT pixels."
   (let ((width (number-at octets 0)) (height (number-at octets 4)))
     (check-pixels input width height limit)
     (destructuring-bind (depth colour . encoding) (coerce (subseq octets 8) 'list)
@@ -118,10 +121,11 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
                   :palette-p (= 3 colour))))))
 
 (defun read-head (input limit)
-  "Return a PNG by the first chunk of INPUT, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
+  "Return a PNG from the first chunk of INPUT. Signals UNUSABLE-FLOOR if the chunk is invalid or
+there are more than LIMIT pixels."
   (multiple-value-bind (name start end) (next-chunk input)
     (unless (and (string= "IHDR" name) (= 13 (- end start)))
-      (reject-damaged input "its first chunk is ~A with ~D bytes, not IHDR with 13"
+      (reject-damaged input "the first chunk is ~A with ~D bytes, not IHDR with 13"
                       name (- end start)))
     (png-of-head input (subseq (input-octets input) start end) limit)))
 
@@ -130,18 +134,20 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
 (defun check-palette (png content)
   (unless (and (null (png-palette png)) (zerop (mod (length content) 3))
                (<= 1 (floor (length content) 3) 256))
-    (reject-damaged (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this has ~
-                                     ~D, or is the second one" (length content))))
+    (reject-damaged (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this ~
+                                     palette has ~D bytes, or is a second ~
+                                     palette" (length content))))
 
 (defun check-transparency (png content)
   (when (= 3 (png-channels png))
-    (reject-png (png-input png) "one of the image's colours stands for transparent (tRNS), which ~
-                                 is read here of grey and of palettes only"))
+    (reject-png (png-input png) "a colour of the image stands for transparent (tRNS), which is
+supported only for grey images and palettes"))
   (unless (or (png-palette-p png) (= 2 (length content)))
     (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
 (defun keep-chunk (png name content)
-  "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown but needed."
+  "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown and must not be
+ignored."
   (cond ((and (string= "PLTE" name) (png-palette-p png))
          (check-palette png content)
          (setf (png-palette png) content))
@@ -149,11 +155,12 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
          (check-transparency png content)
          (setf (png-transparency png) content))
         ((and (upper-case-p (char name 0)) (string/= "PLTE" name))
-         (reject-png (png-input png) "the image has a chunk ~A, which is not known here or out of ~
-                                      place" name))))
+         (reject-png (png-input png) "the image has a chunk ~A, which is unknown or in the wrong ~
+                                      position" name))))
 
 (defun join-pieces (octets pieces)
-  "Return the octets of OCTETS in PIECES, conses of start and end, the last one first."
+  "Return the concatenation of pieces of OCTETS. PIECES lists pairs (start . end), the last piece
+first."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
          (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces
@@ -171,6 +178,6 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
               ((string= "IEND" name) (return))
               (t (keep-chunk png name (subseq octets start end))))))
     (when (and (png-palette-p png) (null (png-palette png)))
-      (reject-damaged input "its palette, PLTE, is missing"))
+      (reject-damaged input "the palette, PLTE, is missing"))
     (setf (png-pixels png) (join-pieces octets pieces))
     png))

@@ -6,14 +6,14 @@
 ;;; large. All of them mean the same.
 
 (defstruct (inflater (:constructor make-inflater (octets)) (:copier nil))
-  "Decompresses OCTETS in zlib's format; those before POSITION have been read."
+  "The state of decompressing OCTETS, in zlib's format. The octets before POSITION have been read."
   (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
   (position 0 :type fixnum)
   (state (chipz:make-dstate 'chipz:zlib) :read-only t))
 
 (defun inflate-into (buffer end inflater)
-  "Decompress INFLATER into BUFFER, up to END. Return the number of octets, fewer if there are no
-more; NIL if the data are damaged."
+  "Let INFLATER decompress its octets into BUFFER, up to END. Return the number of octets written,
+less than END only at the end of the data; NIL if the data are damaged."
   (ignore-errors
    (multiple-value-bind (used made)
        (chipz:decompress buffer (inflater-state inflater) (inflater-octets inflater)
@@ -29,18 +29,19 @@ more; NIL if the data are damaged."
 ;;; (www.w3.org/TR/png-3, 9)
 
 (defun png-step (png)
-  "Return how many octets there are to a pixel of PNG, at least 1."
+  "Return the number of octets of a pixel of PNG, at least 1."
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))
 
 (defun png-row-size (png)
-  "Return how many octets the pixels of a row of PNG take."
+  "Return the number of octets of the pixels in a row of PNG."
   (ceiling (* (png-width png) (png-channels png) (png-depth png)) 8))
 
 ;;; Filters.
 
 (declaim (inline likeliest-of))
 (defun likeliest-of (left above corner)
-  "Return the nearest of LEFT, ABOVE and CORNER (above LEFT) to LEFT + ABOVE - CORNER."
+  "Return LEFT, ABOVE or CORNER, the octet above LEFT, whichever is nearest to LEFT + ABOVE -
+CORNER."
   (declare (type (unsigned-byte 8) left above corner))
   (let ((from-left (abs (- above corner))) (from-above (abs (- left corner)))
         (from-corner (abs (- (+ left above) (* 2 corner)))))
@@ -49,8 +50,9 @@ more; NIL if the data are damaged."
           (t corner))))
 
 (defmacro add-to-row ((row above step left over corner) expected)
-  "Add EXPECTED to each octet of ROW after the first STEP ones. LEFT, OVER and CORNER are bound to
-the octets to the left of it, in ABOVE, and to the left of that."
+  "Add the value of EXPECTED to each octet of ROW after the first STEP octets. LEFT is bound to the
+octet STEP to the left, OVER to the octet at the same index of the row ABOVE, and CORNER to the
+octet STEP to the left of OVER."
   (with-gensyms (index)
     `(loop for ,index of-type fixnum from ,step below (length ,row)
            do (let ((,left (aref ,row (- ,index ,step))) (,over (aref ,above ,index))
@@ -59,7 +61,8 @@ the octets to the left of it, in ABOVE, and to the left of that."
                 (setf (aref ,row ,index) (logand 255 (+ (aref ,row ,index) ,expected)))))))
 
 (defun undo-filter (filter row above step)
-  "Undo FILTER of ROW; that of the row ABOVE is undone. Return NIL if there is no such filter."
+  "Undo FILTER in ROW, after the filter of the row ABOVE has been undone. Return NIL if there is no
+such filter."
   (declare (type octets row above) (type (integer 1 8) step) #.*hot*)
   (case filter
     (0)
@@ -74,27 +77,27 @@ the octets to the left of it, in ABOVE, and to the left of that."
 ;;; whatever is in the file.
 
 (defun check-pixels-there (png needed)
-  "Signal UNUSABLE-FLOOR if the compressed data of PNG cannot give NEEDED octets."
+  "Signal UNUSABLE-FLOOR if the compressed data of PNG are too few for NEEDED octets."
   ;; From one octet zlib makes 1032 at most.
   (when (< (* 1032 (length (png-pixels png))) needed)
-    (reject-damaged (png-input png) "its pixels take ~D bytes, and ~D bytes of compressed data are ~
-                                     too few for that" needed (length (png-pixels png)))))
+    (reject-damaged (png-input png) "the pixels take ~D bytes, and ~D bytes of compressed data are ~
+                                     too few for so many" needed (length (png-pixels png)))))
 
 (defun fill-with-rows (png inflater buffer size)
-  "Put the next SIZE octets that INFLATER, of PNG, decompresses into BUFFER."
+  "Fill BUFFER with the next SIZE octets that INFLATER decompresses from PNG."
   (let ((made (inflate-into buffer size inflater)))
     (cond ((null made)
-           (reject-png (png-input png) "the image is damaged, or compressed in a way that is not ~
-                                        known here: its pixels cannot be decompressed"))
+           (reject-png (png-input png) "the image is damaged, or its compression is unknown: its
+pixels cannot be decompressed"))
           ((< made size)
-           (reject-damaged (png-input png) "its pixels end before the last row")))))
+           (reject-damaged (png-input png) "the pixels end before the last row")))))
 
 (defun check-all-inflated (png inflater)
-  "Signal UNUSABLE-FLOOR unless INFLATER, of PNG, ends after the last row."
+  "Signal UNUSABLE-FLOOR unless the data of INFLATER end after the last row of PNG."
   (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
-    (reject-damaged (png-input png) "its pixels go on after the last row"))
+    (reject-damaged (png-input png) "the pixels continue after the last row"))
   (unless (ignore-errors (chipz:finish-dstate (inflater-state inflater)))
-    (reject-damaged (png-input png) "the check sum of its pixels is missing or wrong")))
+    (reject-damaged (png-input png) "the check sum of the pixels is missing or wrong")))
 
 (defun call-with-row (function png buffer start y row above)
   "Copy the row of PNG at START of BUFFER into ROW, unfiltered, and call FUNCTION with Y and ROW."
@@ -102,13 +105,13 @@ the octets to the left of it, in ABOVE, and to the left of that."
   (let ((step (png-step png)))
     (replace row buffer :start1 step :start2 (1+ start))
     (unless (undo-filter (aref buffer start) row above step)
-      (reject-damaged (png-input png) "row ~D has the filter ~D, and there are 0 to 4"
+      (reject-damaged (png-input png) "row ~D has the filter ~D, but filters are 0 to 4"
                       (1+ y) (aref buffer start)))
     (funcall function y row)))
 
 (defun call-with-rows (function png)
-  "Call FUNCTION with the number of each row of PNG, from the top, and the octets of its pixels,
-after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
+  "Call FUNCTION for each row of PNG, from the top, with the number of the row and a vector that has
+the octets of its pixels after PNG-STEP other octets. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
          (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))
@@ -142,7 +145,8 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 
 (declaim (inline shade-of-colour))
 (defun shade-of-colour (red green blue alpha rule)
-  "Return the sample for a pixel of these channels, 0 to 255 each, with RULE for alpha."
+  "Return the sample for a pixel with the channels RED, GREEN, BLUE and ALPHA, from 0 to 255. RULE
+says how alpha counts."
   (declare (type (unsigned-byte 8) red green blue alpha))
   (case rule
     (:averaged (+ red green blue alpha))
@@ -150,11 +154,11 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
     (t (+ red green blue))))
 
 (defun plain-grey-p (png)
-  "True if PNG has a channel of grey and nothing else."
+  "True if grey is the only channel of PNG."
   (not (or (< 1 (png-channels png)) (png-palette-p png) (png-transparency png))))
 
 (defun white-of (png rule)
-  "Return the greatest possible sample of PNG, with RULE for alpha."
+  "Return the greatest possible sample of PNG. RULE says how alpha counts."
   (cond ((plain-grey-p png) (1- (ash 1 (png-depth png))))
         ((eq :averaged rule) 1020)
         (t 765)))
@@ -162,7 +166,7 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 ;;; One channel: a table has the sample for each of its values.
 
 (defun shade-of-place (png place rule)
-  "Return the sample for the colour at PLACE of the palette of PNG."
+  "Return the sample for the colour at the index PLACE of the palette of PNG."
   (let ((palette (png-palette png)) (alphas (png-transparency png)) (start (* 3 place)))
     (if (< start (length palette))
         (shade-of-colour (aref palette start) (aref palette (+ 1 start)) (aref palette (+ 2 start))
@@ -171,7 +175,8 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
         +no-colour+)))
 
 (defun shade-of-grey (png value rule)
-  "Return the sample for VALUE of the grey image PNG, in which one value may be transparent."
+  "Return the sample for a pixel with the value VALUE in the grey image PNG, in which one value may
+be transparent."
   (if (plain-grey-p png)
       value
       (let ((grey (if (= 16 (png-depth png))
@@ -188,7 +193,7 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 
 (declaim (inline value-in-row))
 (defun value-in-row (row start x depth)
-  "Return value X, of DEPTH bits, of the octets of ROW from START on."
+  "Return the value of the pixel X in the octets of ROW from START on. Each value has DEPTH bits."
   (declare (type octets row) (type (unsigned-byte 30) start x) (type (integer 1 16) depth))
   (case depth
     (8 (aref row (+ start x)))
@@ -197,22 +202,25 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
          (ldb (byte depth 0) (ash (aref row (+ start octet)) (- (+ bit depth) 8)))))))
 
 (defun shade-row-by-table (row table depth step samples start width)
-  "Set WIDTH of SAMPLES from START by TABLE and the values of ROW, after STEP octets."
+  "Set WIDTH elements of SAMPLES, from START on, to the elements of TABLE for the values in ROW,
+which begin after STEP octets."
   (declare (type octets row) (type samples table samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 1 16) depth) #.*hot*)
   (dotimes (x width)
     (setf (aref samples (+ start x)) (aref table (value-in-row row step x depth)))))
 
 (defun check-places (png samples)
-  "Signal UNUSABLE-FLOOR if a pixel of PNG has a colour that its palette lacks."
+  "Signal UNUSABLE-FLOOR if a pixel of PNG has a colour that is not in its palette."
   (when (and (png-palette-p png) (find +no-colour+ (the samples samples)))
-    (reject-damaged (png-input png) "a pixel has a colour that its palette, of ~D, lacks"
+    (reject-damaged (png-input png) "a pixel has a colour that the palette, with ~D colours, does ~
+                                     not have"
                     (floor (length (png-palette png)) 3))))
 
 ;;; Several channels. Of two octets the high one is the first.
 
 (defun shade-row-by-sums (row channels octets step samples start width rule)
-  "Set WIDTH of SAMPLES from START by ROW, after STEP octets, with CHANNELS of OCTETS each."
+  "Set WIDTH elements of SAMPLES, from START on, by the pixels in ROW, which begin after STEP
+octets. A pixel has CHANNELS channels of OCTETS octets each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 2 4) channels) (type (integer 1 2) octets)
            #.*hot*)
@@ -229,7 +237,8 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
 ;;; The image.
 
 (defun row-shader (png samples rule)
-  "Return a function of y and a row of PNG that sets the SAMPLES of that row."
+  "Return a function of a row number and a row of PNG that sets the samples of this row in SAMPLES.
+RULE says how alpha counts."
   (let ((width (png-width png)) (depth (png-depth png)) (step (png-step png))
         (channels (png-channels png)))
     (if (= 1 channels)
@@ -240,8 +249,8 @@ after PNG-STEP other ones. Signals UNUSABLE-FLOOR."
           (shade-row-by-sums row channels (floor depth 8) step samples (* y width) width rule)))))
 
 (defun read-png (input limit mode)
-  "Return the PNG image in INPUT, of at most LIMIT pixels, in grey. MODE says how alpha counts.
-Signals UNUSABLE-FLOOR."
+  "Return the PNG image in INPUT, of at most LIMIT pixels, as a grey image. MODE says how alpha
+counts. Signals UNUSABLE-FLOOR."
   (let* ((png (read-chunks input limit)) (rule (alpha-rule png mode)))
     (check-pixels-there png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))
@@ -251,10 +260,11 @@ Signals UNUSABLE-FLOOR."
       (make-image (png-width png) (png-height png) (white-of png rule) samples))))
 
 (defun read-image (file limit mode)
-  "Return the image in FILE, of at most LIMIT pixels, for MODE: PGM or PNG, by its first bytes.
-Signals UNUSABLE-FLOOR."
+  "Return the image in FILE, of at most LIMIT pixels, read in MODE. The first bytes of FILE decide
+whether it is PGM or PNG. Signals UNUSABLE-FLOOR."
   (let ((input (make-input file (read-octets file limit))))
     (cond ((png-begins-p input) (read-png input limit mode))
           ((pgm-kind input) (read-pgm input limit))
-          (t (reject-image input "the image is no PGM file, P2 or P5, and no PNG file by its first ~
-                                  bytes; save it as one, as with: ~A" *conversion*)))))
+          (t (reject-image input "the first bytes of the image are not those of a PGM file (P2 or ~
+                                  P5) or PNG file; save it in such a format, for example by: ~
+                                  ~A" *conversion*)))))

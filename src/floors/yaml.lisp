@@ -16,22 +16,23 @@
   (:documentation "A file that IMPORT-MAP was to read, or EXPORT-MAP to write, cannot be used."))
 
 (setf (documentation 'unusable-floor-file 'function)
-      "Return the file that an UNUSABLE-FLOOR is about, a pathname or string."
+      "Return the file that an UNUSABLE-FLOOR error is about, a pathname or string."
       (documentation 'unusable-floor-line 'function)
-      "Return the number of the line that an UNUSABLE-FLOOR is about, or NIL."
+      "Return the number of the line that an UNUSABLE-FLOOR error is about, or NIL."
       (documentation 'unusable-floor-reason 'function)
       "Return a text that says what is wrong with the file, and what to do about it.")
 
 (defun reject-floor (file line control &rest arguments)
-  "Signal UNUSABLE-FLOOR about LINE, perhaps NIL, of FILE. The text names the remedy."
+  "Signal UNUSABLE-FLOOR about LINE of FILE, or about FILE if LINE is NIL. The format string CONTROL
+says what is wrong and names the remedy."
   (error 'unusable-floor :file file :line line :reason (apply #'format nil control arguments)))
 
 (defun file-called (name)
   "Return the pathname for NAME, a string or pathname, which may begin with ~/. Signals
 UNUSABLE-FLOOR for ~user."
   (when (and (stringp name) (starts-with-subseq "~" name) (not (starts-with-subseq "~/" name)))
-    (reject-floor name nil "of names that begin with ~~ only ~~/, your home directory, is known ~
-                            here; write the whole name of the file"))
+    (reject-floor name nil "~~ is supported only in ~~/, your home directory; write the whole name
+of the file"))
   (path-called name))
 
 (defun check-readable (file)
@@ -42,17 +43,18 @@ UNUSABLE-FLOOR for ~user."
 
 ;;;; Decimals
 
-(defconstant +longest-decimal+ 60 "How many characters a number has at most.")
+(defconstant +longest-decimal+ 60 "The largest number of characters in a number.")
 (defconstant +largest-exponent+ 330
-  "How large the exponent of a number is at most: no double-float's is larger.")
+  "The largest exponent of a number: no double-float has a larger exponent.")
 
 (defun digits-end (text start)
-  "Return where the decimal digits that begin in TEXT at START end."
+  "Return the end of the decimal digits that begin at START in TEXT."
   (or (position-if-not (lambda (char) (find char "0123456789")) text :start start)
       (length text)))
 
 (defun sign-at (text start)
-  "Return 1 or -1 for the sign in TEXT at START, and where that ends; 1 and START without one."
+  "Return 1 or -1 for the sign at START in TEXT, and the end of the sign. Return 1 and START if
+there is no sign."
   (case (and (< start (length text)) (char text start))
     (#\+ (values 1 (1+ start)))
     (#\- (values -1 (1+ start)))
@@ -62,7 +64,8 @@ UNUSABLE-FLOOR for ~user."
   (if (< start end) (parse-integer text :start start :end end) 0))
 
 (defun exponent-at (text start)
-  "Return the exponent in TEXT from START to its end, 0 if TEXT ends at START; NIL if it is none."
+  "Return the exponent that TEXT has from START to its end, 0 if TEXT ends at START, or NIL if there
+is no valid exponent."
   (cond ((= start (length text)) 0)
         ((char-equal #\e (char text start))
          (multiple-value-bind (sign digits) (sign-at text (1+ start))
@@ -71,7 +74,8 @@ UNUSABLE-FLOOR for ~user."
                (and (<= size +largest-exponent+) (* sign size))))))))
 
 (defun decimal-at (text start)
-  "Return the exact number without a sign in TEXT from START on, or NIL."
+  "Return the exact value of the unsigned number in TEXT from START on, or NIL if there is no
+number."
   (let* ((point (digits-end text start))
          (pointed (and (< point (length text)) (char= #\. (char text point))))
          (end (if pointed (digits-end text (1+ point)) point))
@@ -83,7 +87,8 @@ UNUSABLE-FLOOR for ~user."
          (expt 10 exponent)))))
 
 (defun read-decimal (text)
-  "Return the exact number in TEXT, such as -12.5, .5 or 1e-2, or NIL."
+  "Return the exact value of the number TEXT, such as -12.5, .5 or 1e-2, or NIL if TEXT is no
+number."
   (when (<= (length text) +longest-decimal+)
     (multiple-value-bind (sign start) (sign-at text 0)
       (let ((number (decimal-at text start)))
@@ -105,7 +110,7 @@ UNUSABLE-FLOOR for ~user."
 ;;; are strings; nothing is evaluated.
 
 (defstruct (entry (:constructor make-entry (key line value)) (:copier nil))
-  "KEY on LINE of a file, with VALUE, a string or a list of strings."
+  "An entry of a YAML file: KEY on the line LINE, with VALUE, a string or a list of strings."
   (key "" :type string :read-only t)
   (line 1 :type (integer 1) :read-only t)
   (value "" :type (or string list)))
@@ -117,7 +122,7 @@ UNUSABLE-FLOOR for ~user."
   (string-trim '(#\Space #\Tab #\Return) text))
 
 (defun without-comment (text)
-  "Return TEXT without a comment, which begins at its start or after a blank."
+  "Return TEXT without a comment. A comment begins at the start of TEXT or after a blank."
   (loop for start = (position #\# text) then (position #\# text :start (1+ start))
         while start
         when (or (zerop start) (blank-p (char text (1- start))))
@@ -125,8 +130,8 @@ UNUSABLE-FLOOR for ~user."
         finally (return (trim text))))
 
 (defun end-of-quoted (file line text)
-  "Return where the quotes that TEXT begins with are closed. A quote that is doubled in single
-quotes, or after a backslash in double ones, does not close them."
+  "Return the position of the closing quote of TEXT, which begins with a quote. In single quotes a
+doubled quote, and in double quotes a quote after a backslash, belongs to the text."
   (loop with quote = (char text 0)
         for i from 1 below (length text)
         for char = (char text i)
@@ -135,10 +140,10 @@ quotes, or after a backslash in double ones, does not close them."
                  ((and (char= #\' quote) (< (1+ i) (length text)) (char= #\' (char text (1+ i))))
                   (incf i))
                  (t (return i)))
-        finally (reject-floor file line "the quotes are not closed; add a ~C at the end" quote)))
+        finally (reject-floor file line "the closing quote is missing; add a ~C at the end" quote)))
 
 (defun unquoted (file line text end)
-  "Return the text between the quotes of TEXT, which are closed at END."
+  "Return the text between the quotes of TEXT, whose closing quote is at END."
   (with-output-to-string (out)
     (loop with quote = (char text 0) and i = 1
           while (< i end)
@@ -147,36 +152,37 @@ quotes, or after a backslash in double ones, does not close them."
                          (and (char= #\" quote) (char= #\\ char)))
                  (setf char (char text (incf i)))
                  (unless (find char "'\"\\")
-                   (reject-floor file line "\\~C in quotes is not known here; write the text in ~
-                                            'single quotes', where a backslash is one" char)))
+                   (reject-floor file line "\\~C in quotes is not supported; write the text in
+'single quotes', where a backslash stands for itself" char)))
                (write-char char out)
                (incf i)))))
 
 (defun read-quoted (file line text)
   (let ((end (end-of-quoted file line text)))
     (unless (string= "" (without-comment (concatenate 'string " " (subseq text (1+ end)))))
-      (reject-floor file line "there is more after the closing quote; leave that out"))
+      (reject-floor file line "there is text after the closing quote; leave that text out"))
     (unquoted file line text end)))
 
 (defun read-list (file line text)
   (let ((text (without-comment text)))
     (unless (eql (position #\] text) (1- (length text)))
-      (reject-floor file line "a list is written on one line and ends it, as in [0.0, 0.0, 0.0]"))
+      (reject-floor file line "a list must be complete on one line, with nothing after it, as in
+[0.0, 0.0, 0.0]"))
     (mapcar #'trim (uiop:split-string (subseq text 1 (1- (length text))) :separator ","))))
 
 (defun value-at (file line text)
-  "Return the value that TEXT, the rest of LINE of FILE, stands for: a string or list of strings."
+  "Return the value in TEXT, the rest of LINE of FILE: a string or a list of strings."
   (case (if (string= "" text) #\Space (char text 0))
     ((#\" #\') (read-quoted file line text))
     (#\[ (read-list file line text))
     ((#\& #\* #\! #\| #\> #\{ #\% #\@ #\`)
-     (reject-floor file line "a value that begins with ~C is not read here; write a number, a name ~
-                              of a file, or a list [a, b, c]"
+     (reject-floor file line "a value that begins with ~C is not supported; write a number, a name
+of a file, or a list [a, b, c]"
                    (char text 0)))
     (t (without-comment text))))
 
 (defun key-end (text)
-  "Return the position of the colon after the key that TEXT begins with, or NIL."
+  "Return the position of the colon after the key at the beginning of TEXT, or NIL."
   (let ((end (position-if-not (lambda (char) (or (alphanumericp char) (find char "_-"))) text)))
     (and end
          (plusp end)
@@ -185,25 +191,26 @@ quotes, or after a backslash in double ones, does not close them."
          end)))
 
 (defun read-entry (file line text entries)
-  "Return the entry in TEXT, LINE of FILE. Its key may not be among ENTRIES."
+  "Return the entry in TEXT, which is LINE of FILE. Signals UNUSABLE-FLOOR if ENTRIES have its key
+already."
   (let* ((end (key-end text)) (key (subseq text 0 end)) (other (find-entry key entries)))
     (unless end
-      (reject-floor file line "~S is no line such as resolution: 0.05, a key at the left edge, a ~
-                               colon, a blank and a value"
+      (reject-floor file line "~S is not a key at the left edge, a colon, a blank and a value, as ~
+                               in resolution: 0.05"
                     (cut text 60)))
     (when other
-      (reject-floor file line "~A is on line ~D already; leave one of the two out"
+      (reject-floor file line "~A is on line ~D already; leave one of the two lines out"
                     key (entry-line other)))
     (make-entry key line (value-at file line (trim (subseq text (1+ end)))))))
 
 (defun item-p (text)
-  "True if TEXT is an item of a list below its key."
+  "True if TEXT is an item of a list that is written below its key."
   (let ((text (trim text)))
     (and (starts-with-subseq "-" text)
          (or (= 1 (length text)) (blank-p (char text 1))))))
 
 (defun add-item (file line text entry)
-  "Append the item in TEXT, on LINE of FILE, to the list of ENTRY above it."
+  "Append the item in TEXT, which is LINE of FILE, to the list of ENTRY, the entry above the item."
   (unless (and entry (or (consp (entry-value entry)) (string= "" (entry-value entry))))
     (reject-floor file line "an item of a list has no key above it; write the list after its key, ~
                              as in origin: [0.0, 0.0, 0.0]"))

@@ -8,16 +8,16 @@
 (addition chart)
 (addition chart-p)
 (define-record (chart (:constructor %make-chart (terrain)))
-  "A map as one robot knows it: a terrain, and which of its cells are barred or cost more."
-  (terrain nil terrain "the terrain of the chart, which it shares with others of its map" :addition)
+  "A map as one robot knows it: a terrain, and the cells that are barred or cost more."
+  (terrain nil terrain "the terrain of the chart, which other charts of the map share" :addition)
   (barred '() list "pairs (node . cost): the extra cost of a metre" :writable)
-  (field nil (or null field) "a field in which cells are barred, or NIL" :writable)
+  (field nil (or null field) "the chart's own field, with its barred cells, or NIL" :writable)
   (changed '() list "the nodes whose cost has changed since the field was updated" :writable))
 (declaim-final chart)
 
 (addition chart-map)
 (defun chart-map (chart)
-  "Return the map that CHART is of."
+  "Return the map of which CHART is a chart."
   (terrain-map (chart-terrain chart)))
 
 (defmethod print-object ((chart chart) stream)
@@ -28,7 +28,7 @@
 ;;; Making one.
 
 (defun costs-p (costs)
-  "True if COSTS is a list of (name cost), each name being that of a place type."
+  "True if COSTS is a list of (name cost) in which each name is the name of a place type."
   (and (proper-list-p costs)
        (every (lambda (entry)
                 (and (proper-list-p entry) (= 2 (length entry))
@@ -43,9 +43,10 @@
 
 (addition make-chart)
 (defun make-chart (map &key (clearance 3/4) (costs '((doorway 2))))
-  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1;
-nearer to a wall than CLEARANCE, from 0 to 10 metres, it costs 4. In places of the types in COSTS, a
-list of (name cost), it costs that, from 1 to 1000. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1,
+or 4 if it is nearer to a wall than CLEARANCE, from 0 to 10 metres. In places of the types in COSTS,
+a list of (name cost), a metre costs the given cost, from 1 to 1000. Signals WRONG-ARGUMENT and
+UNKNOWN-NAME."
   (check-argument make-chart clearance (and (realp clearance) (<= 0 clearance 10))
                   "a number of metres, from 0 to 10")
   (check-argument make-chart costs (costs-p costs)
@@ -68,8 +69,8 @@ list of (name cost), it costs that, from 1 to 1000. Signals WRONG-ARGUMENT and U
   (cell-node (chart-terrain chart) (truncate x) (truncate y)))
 
 (defun node-of-point (operator chart point)
-  "Return the number of the cell with POINT. Signals WRONG-ARGUMENT, by OPERATOR, unless it is a
-point inside the map."
+  "Return the number of the cell of CHART with POINT. Signals WRONG-ARGUMENT about an argument of
+OPERATOR unless POINT is inside the map."
   (unless (and (point-p point) (in-map-p (chart-map chart) (point-x point) (point-y point)))
     (reject-argument operator 'point point
                      (let ((map (chart-map chart)))
@@ -97,11 +98,11 @@ point inside the map."
 (addition bar-cell)
 (defun bar-cell (chart point &optional cost)
   "Mark the cell of CHART with POINT, a PT or a list (x y), as one that cannot be crossed. With
-COST, from 0 to 1e6, a metre in it costs so much more instead. This replaces earlier marks of that
-cell. Return CHART. Signals WRONG-ARGUMENT."
+COST, from 0 to 1e6, the cell can be crossed, but a metre in it costs COST more. The new mark
+replaces earlier marks of the cell. Return CHART. Signals WRONG-ARGUMENT."
   (check-argument bar-cell chart (chart-p chart) "a chart")
   (check-argument bar-cell cost (or (null cost) (and (realp cost) (<= 0 cost 1000000)))
-                  "a cost from 0 to 1e6, or NIL for what cannot be crossed")
+                  "a cost from 0 to 1e6, or NIL for a cell that cannot be crossed")
   (set-extra-cost chart (node-of-point 'bar-cell chart point)
                   (cond ((null cost) +barred+)
                         ((zerop cost) nil)
@@ -126,7 +127,7 @@ CHART. Signals WRONG-ARGUMENT."
 (addition barred-cells)
 (defun barred-cells (chart)
   "Return a list of (x y cost) for the cells that were barred on CHART, newest first. COST is the
-extra cost of a metre, or NIL if the cell cannot be crossed."
+extra cost of a metre in the cell, or NIL if the cell cannot be crossed."
   (loop with terrain = (chart-terrain chart)
         for (node . cost) in (chart-barred chart)
         collect (list (node-column terrain node) (node-row terrain node)
@@ -135,26 +136,27 @@ extra cost of a metre, or NIL if the cell cannot be crossed."
 (addition crossing-cost)
 (defun crossing-cost (chart point)
   "Return the cost of a metre in the cell of CHART with POINT, a PT or a list (x y): 1 or more, or
-NIL if it cannot be crossed. Signals WRONG-ARGUMENT."
+NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT."
   (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
     (if (< cost +barred+) cost nil)))
 
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
 (defconstant +nodes-kept+ 2000000
-  "How many nodes the fields that a terrain keeps may have in all; it keeps at least two fields.")
+  "The largest total number of nodes in the fields that a terrain keeps, if it keeps more than two
+fields.")
 
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
 
 (defun forget-older-fields (terrain)
-  "Discard the oldest fields of TERRAIN, so that there is room for another."
+  "Discard the oldest fields of TERRAIN, so that there is room for another field."
   (let ((fields (terrain-fields terrain))
         (most (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50)))
     (setf (terrain-fields terrain) (subseq fields 0 (min (length fields) (1- most))))))
 
 (defun shared-field (terrain goal)
-  "Return the field of TERRAIN with its goal in the node GOAL, which all threads share."
+  "Return the field of TERRAIN with its goal in the node GOAL. All threads share this field."
   (or (known-field terrain goal)
       (with-lock ((terrain-lock terrain))
         (or (known-field terrain goal)

@@ -15,8 +15,8 @@
 
 (declaim (inline piece-cost))
 (defun piece-cost (cells columns i j narrow)
-  "Return what a metre costs in the half cell (I J) of CELLS, half as wide and high as a cell.
-NARROW is true for a line that only needs free cells."
+  "Return the cost of a metre in (I J), a square half as wide and high as a cell of CELLS. NARROW is
+true for a line that needs only free cells, and no distance from walls."
   (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
   (flet ((cell (column row) (aref cells (the node (+ 1 column row))))
          (row (j) (* columns (1+ (ash j -1)))))
@@ -32,8 +32,8 @@ NARROW is true for a line that only needs free cells."
 ;; Allocated on the stack and passed to functions instead of floats, which would have to be boxed.
 (declaim (inline make-line))
 (defstruct (line (:constructor make-line (x y end-x end-y limit)) (:copier nil) (:predicate nil))
-  "A straight line from (X,Y) to (END-X,END-Y), which is to cost no more than LIMIT, and what it
-costs."
+  "A straight line from (X,Y) to (END-X,END-Y), the largest cost LIMIT that it may have, and its
+COST."
   (x 0d0 :type metres :read-only t)
   (y 0d0 :type metres :read-only t)
   (end-x 0d0 :type metres :read-only t)
@@ -43,8 +43,9 @@ costs."
 (declaim-final line)
 
 (defun measure-line (line cells columns leaving)
-  "Set the cost of LINE, +BARRED+ if it is not free or costs more than its limit. CELLS are those of
-a terrain or field, COLUMNS in a row. LEAVING is true if LINE may begin near a wall."
+  "Compute and store the cost of LINE: +BARRED+ if LINE is not free or costs more than its limit.
+CELLS are the cells of a terrain or field, COLUMNS in each row. LEAVING is true if LINE may begin
+near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
          (du (- (* 2 (line-end-x line)) u)) (dv (- (* 2 (line-end-y line)) v))
@@ -92,7 +93,8 @@ a terrain or field, COLUMNS in a row. LEAVING is true if LINE may begin near a w
 (defconstant +least-drop+ 0.125d0 "By how much each step must lower the cost to the goal.")
 
 (defstruct (descent (:constructor make-descent (field x y value)) (:copier nil))
-  "A position (X,Y) on the way down FIELD, from where the goal costs VALUE."
+  "A position (X,Y) on the way down FIELD to its goal. VALUE is the cost from this position to the
+goal."
   (field nil :type field :read-only t)
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
@@ -109,8 +111,9 @@ a terrain or field, COLUMNS in a row. LEAVING is true if LINE may begin near a w
 
 (declaim (inline best-on-side))
 (defun best-on-side (ahead aside drop cost)
-  "Return how far along a side, from 0 to 1, its best point is, seen from AHEAD metres before it and
-ASIDE from its start. On the way to it a metre costs COST; at its end the goal costs DROP less."
+  "Return the position, from 0 to 1, of the best point of a side of a square, for a start that is
+AHEAD metres in front of the side and ASIDE metres along it. A metre on the way to the side costs
+COST. The cost to the goal is lower by DROP at the end of the side than at its beginning."
   (declare (type double-float ahead aside drop cost))
   (cond ((<= drop 0d0) (clamp aside 0d0 1d0))
         ((>= drop cost) 1d0)
@@ -131,7 +134,7 @@ ASIDE from its start. On the way to it a metre costs COST; at its end the goal c
 ;;; metres along it. PART of a side, from 0 to 1, is how far along it a point lies.
 
 (defun step-down (descent)
-  "Take a step down. True if there was one."
+  "Move DESCENT one step down to lower costs. Return true if there was such a step."
   (declare #.*hot* (type descent descent))
   (let* ((field (descent-field descent)) (node (descent-node descent))
          (x (descent-x descent)) (y (descent-y descent))
@@ -180,10 +183,12 @@ ASIDE from its start. On the way to it a metre costs COST; at its end the goal c
 ;;;; Drawing a way
 
 (defconstant +dearer-if-straight+ 1.02d0
-  "How many times the cost of its steps a straight piece may have, as it saves turns.")
+  "The largest ratio of the cost of a straight piece to the cost of the steps that it replaces.
+Straight pieces save turns.")
 
 (defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
-  "The way so far: its last vertex (X,Y), its end (END-X,END-Y), and the cost SINCE that vertex."
+  "A way that is being extended: its last vertex (X,Y), its end (END-X,END-Y), the cost SINCE the
+last vertex, and its POINTS."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (end-x x :type double-float)
@@ -201,8 +206,9 @@ ASIDE from its start. On the way to it a metre costs COST; at its end the goal c
 
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
-  "Return what the straight line from (X,Y) to (END-X,END-Y) costs on the cells of FIELD; +BARRED+
-if it is not free, or costs more than LIMIT. LEAVING is true if it may begin near a wall."
+  "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD; +BARRED+
+if the line is not free, or costs more than LIMIT. LEAVING is true if the line may begin near a
+wall."
   (let ((line (make-line x y end-x end-y limit)))
     (declare (dynamic-extent line))
     (measure-line line (field-cells field) (field-columns field) leaving)
@@ -215,14 +221,16 @@ if it is not free, or costs more than LIMIT. LEAVING is true if it may begin nea
 (declaim (inline go-straight-p extend-polyline))
 (defun go-straight-p (polyline field x y limit last)
   "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
-The LAST line of a way may end as near to a wall as the first may begin."
+If LAST, the line is the last line of a way, which may end as near to a wall as the first line may
+begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
     (or (< (free-line-cost field from-x from-y x y limit (first-line-p polyline)) +barred+)
         (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
 
 (defun extend-polyline (polyline field x y cost last)
-  "Extend POLYLINE to (X,Y) by a free step that costs COST, straight on if that is as good."
+  "Extend POLYLINE to (X,Y) by a free step that costs COST, without a turn if a straight line is as
+good."
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let ((since (+ (polyline-since polyline) cost)))
     (unless (or (zerop (polyline-since polyline))
@@ -249,8 +257,8 @@ The LAST line of a way may end as near to a wall as the first may begin."
     (extend-polyline polyline field x y (min cost true-cost) last)))
 
 (defun trace-way (polyline descent goal-x goal-y until turns)
-  "Extend POLYLINE down DESCENT to (GOAL-X,GOAL-Y), to a cell for which UNTIL is true, or to vertex
-number TURNS."
+  "Extend POLYLINE along DESCENT to (GOAL-X,GOAL-Y), to a cell for which the function UNTIL returns
+true, or until POLYLINE has TURNS vertices."
   (let* ((field (descent-field descent)) (goal (field-goal field))
          (node (descent-node descent)))
     (loop until (or (= node goal)

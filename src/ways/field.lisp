@@ -9,7 +9,7 @@
 (deftype nodes () '(simple-array (unsigned-byte 31) (*)))
 
 (defstruct (queue (:constructor make-queue ()) (:copier nil))
-  "Nodes with their keys, double-floats. The least key comes first."
+  "A priority queue of nodes with their keys, double-floats. The least key comes first."
   (keys (make-amounts 64 0d0) :type amounts)
   (nodes (make-array 64 :element-type '(unsigned-byte 31)) :type nodes)
   (count 0 :type (unsigned-byte 40)))
@@ -45,7 +45,7 @@
     nil))
 
 (defun queue-drop (queue)
-  "Take out the node with the least key."
+  "Remove the node with the least key from QUEUE."
   (declare #.*hot*)
   (let* ((keys (queue-keys queue)) (nodes (queue-nodes queue))
          (count (1- (queue-count queue)))
@@ -88,8 +88,9 @@
 (declaim (inline crossing-by))
 (defun crossing-by (straight diagonal edge square)
   "Return the cost to the goal from a node through the opposite side of a square. STRAIGHT and
-DIAGONAL are the costs from the ends of that side, EDGE and SQUARE the costs of a metre on the line
-to the first, and in the square. The result exceeds the costs it depends on by at least a third."
+DIAGONAL are the costs to the goal from the first and the second end of that side. EDGE is the cost
+of a metre on the line to the first end, SQUARE the cost of a metre in the square. The result
+exceeds each cost that it depends on by at least a third."
   (declare (type double-float straight diagonal edge square))
   (let ((drop (- straight diagonal)) (along (+ edge straight)))
     (if (or (<= drop 0d0) (>= square +barred+))
@@ -115,8 +116,8 @@ to the first, and in the square. The result exceeds the costs it depends on by a
 ;;; field serves all starts.
 
 (defstruct (field (:constructor %make-field (goal columns cells totals drafts)) (:copier nil))
-  "The costs to get to the node GOAL. If there is a lock, threads share the field and CELLS are
-the terrain's: totals are found in it, but no cell changes."
+  "A field: the costs from all nodes to the node GOAL. If there is a LOCK, threads share the field,
+and CELLS are the cells of the terrain, which must not change."
   (goal 0 :type node)
   (columns 0 :type (integer 0 40000) :read-only t)
   (cells nil :type amounts)
@@ -127,7 +128,8 @@ the terrain's: totals are found in it, but no cell changes."
 (declaim-final field)
 
 (defun make-field (terrain goal)
-  "Return a new field of TERRAIN with its goal in the node GOAL. No other total is known yet."
+  "Return a new field of TERRAIN with its goal in the node GOAL. No total of another node is known
+yet."
   (ensure-room (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
@@ -182,7 +184,7 @@ the terrain's: totals are found in it, but no cell changes."
 
 (declaim (inline best-draft))
 (defun best-draft (field node)
-  "Return the cost to the goal from NODE, by those from its neighbours."
+  "Return the cost to the goal from NODE, computed from the costs of its neighbours."
   (declare (type field field) (type node node))
   (with-field (field)
     (if (= node (field-goal field))
@@ -209,7 +211,7 @@ the terrain's: totals are found in it, but no cell changes."
       (unless (= draft (aref (field-drafts field) node)) (note-draft field node draft)))))
 
 (defun lower-neighbours (field node)
-  "Update the drafts of the neighbours of NODE, whose total has become known."
+  "Update the drafts of the neighbours of NODE, after the total of NODE has become known."
   (declare #.*hot* (type field field) (type node node))
   (with-field (field)
     (flet ((lower (other draft)
@@ -241,7 +243,7 @@ the terrain's: totals are found in it, but no cell changes."
         (diagonal -1 (- columns))))))
 
 (defun update-neighbours (field node least)
-  "Compute anew the drafts of neighbours of NODE that may depend on it: those above LEAST."
+  "Recompute the drafts of the neighbours of NODE that may depend on NODE: the drafts above LEAST."
   (declare #.*hot* (type field field) (type node node) (type double-float least))
   (let ((columns (field-columns field)) (drafts (field-drafts field)))
     (flet ((look (offset)
@@ -255,7 +257,7 @@ the terrain's: totals are found in it, but no cell changes."
 ;;; Totals.
 
 (defun settle-node (field node)
-  "Update the total of NODE, the first of the queue of FIELD, by its draft."
+  "Update the total of NODE, the first node in the queue of FIELD, by its draft."
   (declare #.*hot* (type field field) (type node node))
   (let* ((totals (field-totals field))
          (total (aref totals node)) (draft (aref (field-drafts field) node)))
@@ -270,7 +272,8 @@ the terrain's: totals are found in it, but no cell changes."
              (note-draft field node draft)))))
 
 (defun settle (field node)
-  "Find the total of NODE, and all that are less. Return it, +BARRED+ if there is no way."
+  "Compute the total of NODE in FIELD, and all lesser totals. Return the total of NODE, +BARRED+ if
+there is no way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))

@@ -1,9 +1,9 @@
 ;;;; package.lisp -- the ways layer: how to get from one point of a map to another.
 
 (ars-magna.host:define-package :ars-magna.ways
-  (:documentation "Ways through a map, at any angle: away from walls where there is room, round
-cells found barred, repaired at little cost. Field D* of Ferguson and Stentz (2006). Uses walls and
-places, but neither robots nor things.")
+  (:documentation "Search of ways through a map, at any angle, which keep away from walls and avoid
+barred cells. Changed cells are repaired at little cost. The algorithm is Field D* of Ferguson and
+Stentz (2006). The layer uses walls and places, but neither robots nor things.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :ars-magna.geometry #:pt #:pt-p #:make-pt #:pt-x #:pt-y)
   (:shadowing-import-from :ars-magna.world #:map)

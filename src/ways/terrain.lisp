@@ -11,10 +11,11 @@
 ;;; for its middle too, and is called a node then.
 
 (defconstant +barred+ 1d100
-  "More than any way costs: for cells that cannot be crossed, and where no way is known.")
+  "A cost above that of any way, for cells that cannot be crossed and for nodes without a known
+way.")
 
 (defconstant +close-to-wall+ 4d0
-  "What a metre costs nearer to a wall than the clearance.")
+  "The cost of a metre in cells nearer to a wall than the clearance.")
 
 (deftype node () '(unsigned-byte 31))
 (deftype amounts () '(simple-array double-float (*)))
@@ -25,16 +26,16 @@
 
 (addition terrain-p)
 (define-record (terrain (:constructor %make-terrain (map places clearance costs columns cells)))
-  "A map and what a metre costs in each of its cells, for one clearance and one table of the costs
-of places. It does not change, so all threads and copies of runs share it."
-  (map nil map "the map that the terrain is of" :addition)
-  (places nil simple-array "what the map's places were")
-  (clearance 0 real "how near to walls the terrain's cells cost more, in metres" :addition)
+  "A map and the cost of a metre in each of its cells, for one clearance and one table of costs of
+places. A terrain does not change, so all threads and copies of runs share it."
+  (map nil map "the map whose costs the terrain has" :addition)
+  (places nil simple-array "the vector of the map's places when the terrain was made")
+  (clearance 0 real "the distance from walls, in metres, within which cells cost more" :addition)
   (costs '() list "the costs of places")
   (columns 0 (integer 0 40000) "how many cells a row has, with its margin")
   (cells nil amounts)
-  (fields '() list "the fields of goals that were asked for, newest first; replaced, never
-altered" :writable)
+  (fields '() list "a list of the fields of requested goals, newest first; the list is replaced,
+never modified" :writable)
   (lock (make-lock "terrain") t))
 (declaim-final terrain)
 
@@ -47,26 +48,27 @@ altered" :writable)
 ;;; Keeping them.
 
 (define-global **terrains** (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "Lists of terrains by their maps, newest first. All threads share them.")
+  "A table from maps to lists of their terrains, newest first. All threads share the table.")
 
 (define-global **terrains-lock** (make-lock "terrains")
-  "Held while a terrain is made, so that no other thread makes the same one.")
+  "A lock that is held while a terrain is made, so that no other thread makes the same terrain.")
 
 (defconstant +terrains-kept+ 8
-  "How many terrains of one map are kept, with different clearances and costs.")
+  "The number of terrains of one map, with different clearances and costs, that are kept.")
 
 (defun forget-fields ()
-  "Discard the fields of all terrains. They can be computed again."
+  "Discard the fields of all terrains. Fields can be computed again."
   (dolist (terrains (hash-table-values **terrains**))
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
 (defun ensure-room (cells octets)
-  "Signal MISUSE unless there is memory for OCTETS times CELLS bytes; discard fields if needed."
+  "Signal MISUSE unless there is memory for OCTETS bytes for each of CELLS cells. Discard all fields
+if this frees enough memory."
   (let ((all (* cells octets)))
     (unless (or (room-p all)
                 (progn (forget-fields) (room-p all)))
-      (reject-use "Ways on a map of ~D cells need ~D MB, for which this Lisp has no room; start it ~
-                   with a larger --dynamic-space-size."
+      (reject-use "Ways on a map of ~D cells need ~D MB, more memory than this Lisp has; start ~
+                   SBCL with a larger --dynamic-space-size."
                   cells (ceiling all 1000000)))))
 
 ;;; Cells.
@@ -92,7 +94,8 @@ altered" :writable)
 ;;; Making one.
 
 (defun open-ground (map columns)
-  "Return the cells of MAP: 1 where they are free."
+  "Return a vector of costs for the cells of MAP and a margin around it: 1 for free cells, +BARRED+
+for walls."
   (let ((cells (make-amounts (* columns (+ 2 (map-height map))) +barred+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))
@@ -101,8 +104,8 @@ altered" :writable)
         (incf index)))))
 
 (defun offsets-within (clearance columns)
-  "Return how the number of a cell differs from that of a wall, for all cells whose middles are
-nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
+  "Return a list of (dx offset) for the cells around a wall whose middles are nearer to the wall's
+cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of the wall's cell."
   (flet ((gap (d) (max 0 (- (abs d) 1/2))))
     (loop with radius = (ceiling clearance)
           for dy from (- radius) to radius
@@ -111,7 +114,7 @@ nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
                          collect (list dx (+ dx (* dy columns)))))))
 
 (defun beside-free-p (cells columns node)
-  "True if a cell next to NODE, straight or diagonally, is free."
+  "True if any of the eight cells around NODE is free."
   (declare (type amounts cells))
   (loop for row in (list (- columns) 0 columns)
         thereis (loop for offset from (1- row) to (1+ row)
@@ -171,7 +174,8 @@ nearer than CLEARANCE to the wall's cell: a list of lists (dx offset)."
 
 (defun terrain-of (map clearance costs)
   "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
-cost), in which the cost is a double-float. It is shared: equal arguments give the same one."
+cost), in which the cost is a double-float. Equal arguments return the same terrain, as long as it
+is kept."
   (or (known-terrain map clearance costs)
       (with-lock (**terrains-lock**)
         (or (known-terrain map clearance costs)

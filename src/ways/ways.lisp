@@ -4,7 +4,8 @@
 
 ;;; Points in walls.
 
-(defconstant +near+ 5 "How many cells away a point in a wall may be from a free one.")
+(defconstant +near+ 5 "The largest distance, in columns or rows, from a point in a wall to the free
+cell that replaces it.")
 
 (defun free-node-p (chart x y)
   "True if the cell (X Y) is on the map of CHART and can be crossed."
@@ -12,8 +13,8 @@
        (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
 
 (defun nearest-free-middle (chart x y)
-  "Return the middle, nearest to (X,Y), of a cell that can be crossed, as two values; NIL if none is
-near."
+  "Return, as two values, the middle of the cell nearest to (X,Y) that can be crossed; NIL if there
+is no such cell within +NEAR+ columns and rows."
   (loop with least = nil and best-x = nil and best-y = nil
         for column from (- (floor x) +near+) to (+ (floor x) +near+)
         do (loop for row from (- (floor y) +near+) to (+ (floor y) +near+)
@@ -23,13 +24,15 @@ near."
         finally (return (and least (values best-x best-y)))))
 
 (defun free-coordinates (chart x y)
-  "Return X and Y if the cell there can be crossed, or else the nearest middle of one, or NIL."
+  "Return X and Y if the cell at (X,Y) can be crossed, or else the middle of the nearest cell that
+can be crossed, or NIL."
   (if (free-node-p chart (floor x) (floor y))
       (values x y)
       (nearest-free-middle chart x y)))
 
 (defun chart-from (operator chart)
-  "Return the chart that CHART, an argument of OPERATOR, means: itself, or a new one of a map."
+  "Return CHART, an argument of OPERATOR, if it is a chart, or a new chart if CHART is a map or the
+name of a map."
   (if (chart-p chart)
       chart
       (make-chart (map-of operator chart))))
@@ -45,19 +48,21 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
     (and x (make-pt x y))))
 
 (defun end-of-way (operator chart point)
-  "Return the coordinates of POINT, or of a free point near it. Signals WRONG-ARGUMENT."
+  "Return the coordinates of POINT or, if POINT is in a wall, of a free point near it. Signals
+WRONG-ARGUMENT."
   (node-of-point operator chart point)
   (multiple-value-bind (x y) (free-coordinates chart (point-x point) (point-y point))
     (unless x
       (reject-argument operator 'point point
-                       (format nil "a point of ~A within ~D cells of one that can be crossed"
+                       (format nil "a point of ~A within ~D cells of a cell that can be crossed"
                                (map-name (chart-map chart)) +near+)))
     (values x y)))
 
 ;;; Ways between points that are free.
 
 (defun place-test (chart name)
-  "Return a function that is true of the column and row of a place of the type called NAME."
+  "Return a function of a column and a row that returns true if the cell is a place of the type
+named NAME."
   (let* ((map (chart-map chart)) (places (map-places map)) (width (map-width map))
          (number (place-type-index map (find-place-type name))))
     (declare (type (simple-array (unsigned-byte 8) (*)) places))
@@ -66,8 +71,8 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
       (eql number (aref places (+ x (* y width)))))))
 
 (defun points-of-way (chart x y goal-x goal-y until turns)
-  "Return the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without the
-first: () if there is none. UNTIL and TURNS are as for TRACE-WAY."
+  "Return a list of the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without
+its first point; () if there is no way. UNTIL and TURNS are arguments of TRACE-WAY."
   (let* ((field (field-to chart (node-at chart goal-x goal-y)))
          (total (find-total field (node-at chart x y))))
     (when (< total +barred+)
@@ -86,8 +91,8 @@ first: () if there is none. UNTIL and TURNS are as for TRACE-WAY."
 (addition find-way)
 (defun find-way (chart start goal &key until)
   "Return the way on CHART from START to GOAL: a list of the points, PTs, where it begins, turns and
-ends; () if there is none. START and GOAL are PTs or lists (x y). For one in a wall the nearest free
-point is taken, up to five cells away. CHART may be a map or the name of one, which stands for
+ends; () if there is no way. START and GOAL are PTs or lists (x y). A point in a wall stands for the
+nearest free point, up to five cells away. CHART may be a map or the name of a map, which stands for
 (make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the first cell, after
 that of START, that is a place of the type named UNTIL, or for whose column and row the function
 UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
@@ -101,17 +106,17 @@ UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (addition next-point)
 (defun next-point (chart start goal)
-  "Return the point, a PT, to go to in a straight line from START, on the way to GOAL on CHART:
-where the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. See FIND-WAY."
+  "Return the first point after START, a PT, on the way from START to GOAL on CHART: the point where
+the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (chart-from 'next-point chart)))
     (with-ends (next-point chart start goal)
       (first (points-of-way chart x y goal-x goal-y nil 1)))))
 
 (addition way-cost)
 (defun way-cost (chart start goal)
-  "Return the cost of the way from START to GOAL on CHART, between the middles of their cells: its
-metres, each times the cost of a metre there. NIL if there is no way. Signals WRONG-ARGUMENT.
-See FIND-WAY."
+  "Return the cost of the way from START to GOAL on CHART, between the middles of their cells: the
+sum of its metres, each times the cost of a metre in its cell. Return NIL if there is no way.
+Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (chart-from 'way-cost chart)))
     (with-ends (way-cost chart start goal)
       (let ((total (find-total (field-to chart (node-at chart goal-x goal-y))
@@ -130,9 +135,10 @@ See FIND-WAY."
 
 (addition straight-cost)
 (defun straight-cost (chart start goal)
-  "Return the cost of the straight line from START to GOAL on CHART: its metres, each times the cost
-of a metre there. NIL if it is not free: it comes nearer than half a metre to a wall, or goes
-through a cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
+  "Return the cost of the straight line from START to GOAL on CHART: the sum of its metres, each
+times the cost of a metre in its cell. Return NIL if the line is not free, because it comes nearer
+than half a metre to a wall or goes through a cell that cannot be crossed. Signals WRONG-ARGUMENT.
+See FIND-WAY."
   (let ((chart (chart-from 'straight-cost chart)))
     (with-ends (straight-cost chart start goal)
       (let ((cost (free-line-cost (field-to chart (node-at chart goal-x goal-y))
