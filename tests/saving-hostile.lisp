@@ -194,7 +194,8 @@ the command that the function ISSUE gives. It must be said of the others that th
                                                    (format nil "::~A|" step) file)
                                (load-and-run file))
           if (eq :ran outcome) collect (symbol-name step)
-          else do (is-true (says-p "would continue with a step that does not fit it" outcome) "~A" step))))
+          else do (is-true (says-p "would continue with a step that does not fit it" outcome)
+                           "~A" step))))
 
 (test saved-forgery.of-steps-is-found
   "Each step that there is, in place of that of a command of each kind of resource."
