@@ -180,7 +180,7 @@ midst of a replay."
 (defun kind-of-refusal (text)
   "Return what TEXT, why a run is not saved, has in common with others; or TEXT."
   (or (find-if (lambda (words) (search words text))
-               '("is under way" "an event of SCHEDULE waits" "was asked for" "withdrawn"
+               '("is under way" "an event of SCHEDULE waits" "was requested" "withdrawn"
                  "its journal has" "has been defined anew"))
       text))
 

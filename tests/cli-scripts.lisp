@@ -47,7 +47,7 @@ written."
            (nth-value 2 (run-script (joined lines)))))
     (let ((begin "(begin-plan (interp-lambda () (wait-time 50)))"))
       (dolist (said (list (told begin) (told "turn 90 deg" begin) (told begin "step 3")))
-        (is-true (has-words-p said "the plan" "STEP N lets N ticks pass"))
+        (is-true (has-words-p said "the plan" "STEP N passes N ticks"))
         (is (null (search "with-simulation" said)))
         (is (null (search "run-ticks" said))))
       (is (string= "" (told begin "step 60"))))))

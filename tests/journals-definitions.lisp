@@ -102,18 +102,18 @@
 (test fingerprint.names-what-has-changed
   (let ((journal (mown *lawn*)))
     (loop for (old new words)
-            in '((".5" ".6" "kicker prod is not as it was")
-                 ("(crate :kickers" "(tin :kickers" "map lawn is not as it was")
-                 ("(2 2) 0)" "(2 3) 0)" "robot mower is not as it was")
-                 ("(,length 0)" "(,(1+ length) 0)" "map clause hedge is not as it was")
-                 ("push-length () .1" "push-length () .2" "file lawn.lisp is not as it was")
+            in '((".5" ".6" "kicker prod has changed since")
+                 ("(crate :kickers" "(tin :kickers" "map lawn has changed since")
+                 ("(2 2) 0)" "(2 3) 0)" "robot mower has changed since")
+                 ("(,length 0)" "(,(1+ length) 0)" "map clause hedge has changed since")
+                 ("push-length () .1" "push-length () .2" "file lawn.lisp has changed since")
                  ("(world:defkicker spare (thing) () thing)" "" "kicker spare is not loaded")
-                 ("jelly 44" "jelly 45" "substance jelly is not as it was")
-                 ("(values nil it)" "(values nil nil)" "manipulation polish is not as it was")
-                 (":noticed 1" ":noticed .5" "attribute shape is not as it was"))
+                 ("jelly 44" "jelly 45" "substance jelly has changed since")
+                 ("(values nil it)" "(values nil nil)" "manipulation polish has changed since")
+                 (":noticed 1" ":noticed .5" "attribute shape has changed since"))
           for differences = (differences-with journal (lawn-with old new))
           do (is (member words differences :test #'string=) "~A: ~A" words differences)
-             (is (subsetp differences (list words "file lawn.lisp is not as it was")
+             (is (subsetp differences (list words "file lawn.lisp has changed since")
                           :test #'string=)))
     (with-world-loaded ((lawn-with ".5" ".6"))
       (is (integerp (replay-outcome journal :anyway t)))
@@ -135,7 +135,7 @@
   (with-world-loaded (*lawn*)
     (let ((journal (mow (lambda ()
                           (eval '(world:defkicker prod (thing) (:prob .1) thing))))))
-      (is-true (says-p "kicker prod was defined anew while it was recorded"
+      (is-true (says-p "kicker prod was defined anew during the recorded run"
                        (replay-outcome journal))))))
 
 (test fingerprint.does-not-mind-the-unrelated
@@ -163,7 +163,7 @@
         (eval '(world:defkicker nobody-has-it (thing) () thing))
         (is (integerp (replay-outcome journal)))
         (eval '(world:defkicker nudge (thing) (:prob .5) (world:kick-thing thing .2 0 nil)))
-        (is (says-p "kicker nudge is not as it was" (replay-outcome journal)))))))
+        (is (says-p "kicker nudge has changed since" (replay-outcome journal)))))))
 
 (defparameter *two-files*
   '("(world:defsubstance jelly 44)
@@ -193,9 +193,9 @@
       (flet ((outcome (kickers)
                (mow-two-files kickers (lambda () (replay-outcome journal)))))
         (is (integerp (outcome (first *two-files*))))
-        (is (says-p "kickers.lisp is not as it was"
+        (is (says-p "kickers.lisp has changed since"
                     (outcome (substitute #\3 #\1 (first *two-files*)))))
-        (is (says-p "kicker prod is not as it was"
+        (is (says-p "kicker prod has changed since"
                     (outcome (substitute #\6 #\5 (first *two-files*)))))))))
 
 (test form-digests.tell-forms-apart

@@ -182,7 +182,7 @@ be signalled is not caught."
         (is-true (says-entry-3-p (append (subseq lines 0 4) (list fourth third) (nthcdr 6 lines))))
         (is-true (says-entry-3-p (append (subseq lines 0 4) (list fourth) (nthcdr 5 lines))))
         (is-true (says-entry-3-p (append (subseq lines 0 4) (list (subseq third 0 9)))))
-        (is-true (says-p "end is missing"
+        (is-true (says-p "end of the file is missing"
                          (progn (write-lines (butlast lines) file) (replay-outcome file))))
         (is-true (says-p "head is damaged"
                          (progn (write-lines (cons (format nil "(ars-magna-journal 2 (map")
@@ -204,10 +204,10 @@ be signalled is not caught."
 
 (test files.that-are-none
   (with-temporary-file (file)
-    (loop for (text words) in `(("" "begin like one") ("hello" "begin like one")
-                                (,(make-string 3 :initial-element #\Nul) "begin like one")
-                                (,(make-string 2000000 :initial-element #\() "begin like one")
-                                ("; nothing" "begin like one")
+    (loop for (text words) in `(("" "begin like a journal") ("hello" "begin like a journal")
+                                (,(make-string 3 :initial-element #\Nul) "begin like a journal")
+                                (,(make-string 2000000 :initial-element #\() "begin like a journal")
+                                ("; nothing" "begin like a journal")
                                 ("(:ARS-MAGNA-JOURNAL 1 (:MAP \"A\"))" "repeat the run")
                                 ("(ars-magna-journal 3 ())" "head is damaged"))
           do (write-text text file)

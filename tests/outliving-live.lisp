@@ -124,7 +124,7 @@
   (with-shrew ()
     (turn-and shrew (lambda () (run:run-ticks 1)))
     (is (= 20 (run:run-ticks 20)))
-    (is-true (told-p "time cannot pass inside it"))))
+    (is-true (told-p "no time can pass here"))))
 
 (test simulator.is-refused-while-it-starts
   "A continuation that is called because another run starts cannot start one itself."
@@ -139,7 +139,7 @@
                                   (run:simulator 'shrew :rate :free :display nil)))
       (run:simulator 'shrew :rate :free :display nil)
       (is (equal '(:interrupt) codes))
-      (is-true (told-p "is being started already"))
+      (is-true (told-p "is already starting the same world"))
       (is-true (goes-on-p (live-shrew))))))
 
 (test simulator.from-many-threads-leaves-one-that-works

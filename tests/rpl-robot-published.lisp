@@ -143,7 +143,7 @@ that breaks is stopped there until the semaphore is signalled."
         (host:unwrap-function 'world:warn-once 'test))
       (is (= 1 said))
       (is-true (has-words-p (format nil "~{~A~}" (mapcar #'base:message-text (base:take-messages)))
-                            "run-plan waits, as the run is paused" "(resume)")))))
+                            "run-plan waits, because the run is paused" "(resume)")))))
 
 (test threads-of-plans.that-leave-end-what-was-closed-meanwhile
   "Who closes plans leaves that to their thread, if there is one: it may just be leaving."

@@ -109,7 +109,7 @@
                                 (ars:save-run-picture svg :journal journal :anyway t))
                               (lambda (journal) (ars:save-animation journal svg :anyway t))))
             (is-true (funcall save journal))
-            (is (mentions-p (uiop:read-file-string svg) "Repeated with other definitions")))
+            (is (mentions-p (uiop:read-file-string svg) "is repeated with definitions")))
           (is (null (ars:journal-moments journal :anyway t)))
           (delete-file svg)
           (is-true (ars:save-trajectory svg :journal journal :anyway t)))))))

@@ -34,8 +34,8 @@ FILE as it is."
       (run:with-simulation (hermit :journal t)
         (robot:make-robot (robot:find-blueprint 'hermit) world:*world*)
         (run:run-ticks 1)
-        (check-refused #'run:save-simulation "it names a robot twice" file)
-        (check-refused #'run:save-journal "it names a robot twice" file)))))
+        (check-refused #'run:save-simulation "the head names a robot twice" file)
+        (check-refused #'run:save-journal "the head names a robot twice" file)))))
 
 (test saving.a-world-without-its-robot-is-refused
   (with-hermits ()
@@ -43,7 +43,7 @@ FILE as it is."
       (let ((simulation (run:robot-simulation (symbol-value 'hermit))))
         (base:undefine 'robot 'hermit)
         (check-refused (lambda (file) (run:save-simulation file simulation))
-                       "it names no robots" file)))))
+                       "the head names no robots" file)))))
 
 (test saving.a-thing-that-is-in-itself-is-refused
   "A state that no command leads to, but that a fault of the simulator might."

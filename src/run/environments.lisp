@@ -17,7 +17,7 @@ undone at its end and do not affect other simulations.")
 (pushnew '*noise-before-cleaning* *simulation-variables*)
 
 (defun fork-p (simulation)
-  "True if SIMULATION is a fork of another."
+  "True if SIMULATION is a fork of another simulation."
   (timeline-fork-p (simulation-timeline simulation)))
 
 (defun environment-in-this-thread (simulation)
@@ -35,12 +35,13 @@ undone at its end and do not affect other simulations.")
 ;;; variables of the one that is current outside are restored.
 
 (defvar *outer-globals* nil
-  "In a headless simulation, a list. Its rest is (run (symbol . value)...): the live run that is
-current outside and its *SIMULATION-VARIABLES* before another was started here; or ().")
+  "In a headless simulation, a list whose rest saves global values. The rest is (run (symbol .
+value)...) if another live run was started in the simulation: RUN is the live run that was current
+outside, and the values are those of its *SIMULATION-VARIABLES*. Otherwise the rest is empty.")
 
 (defun note-outer-globals (simulation)
-  "Store the global values of *SIMULATION-VARIABLES* if SIMULATION, inside a headless one, is about
-to set them while another live run is current outside."
+  "Save the global values of *SIMULATION-VARIABLES* if SIMULATION, started inside a headless
+simulation, is about to set them while another live run is current outside."
   (let ((current (global-value '*simulation*)))
     (when (and *outer-globals*
                (null (rest *outer-globals*))
@@ -52,27 +53,27 @@ to set them while another live run is current outside."
                                 collect (cons symbol (global-value symbol))))))))
 
 (defun restore-outer-globals ()
-  "Restore the global values of *SIMULATION-VARIABLES* from before a live run was started here."
+  "Restore the global values of *SIMULATION-VARIABLES* that NOTE-OUTER-GLOBALS has saved, if any."
   (destructuring-bind (&optional run &rest values) (rest *outer-globals*)
     (when (and run (eq run (global-value '*simulation*)))
       (loop for (symbol . value) in values
             do (setf (global-value symbol) value)))))
 
 (defun publish-variables (simulation)
-  "Set *SIMULATION-VARIABLES* globally to their values here, for all threads of the live SIMULATION.
-A headless simulation around it may have bound them."
+  "If SIMULATION is live, set the global values of *SIMULATION-VARIABLES* to their values in this
+thread, for all threads of SIMULATION. A headless simulation around it may have bound them."
   (when (live-p simulation)
     (note-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
       (setf (global-value symbol) (symbol-value symbol)))))
 
 (defun note-environment (simulation)
-  "Store the current values of its variables in SIMULATION, in which this thread works."
+  "Store in SIMULATION, in which this thread works, the current values of its variables."
   (setf (simulation-environment simulation) (environment-in-this-thread simulation))
   (publish-variables simulation))
 
 (defun environment-of (simulation)
-  "Return a list (symbol . value) of the variables of SIMULATION, wherever this is called. It has
+  "Return a list (symbol . value) of the variables of SIMULATION, in any thread. The list includes
 the dice that SIMULATION was loaded with, if any."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
@@ -90,8 +91,8 @@ the dice that SIMULATION was loaded with, if any."
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
 
 (defun call-in-environment (simulation function)
-  "Call FUNCTION with the variables of SIMULATION, in which this thread does not work, bound. Store
-their last values in SIMULATION, or globally if that is live."
+  "Call FUNCTION with bindings for the variables of SIMULATION, in which this thread does not work.
+Store the last values of the variables in SIMULATION, or globally if SIMULATION is live."
   (let* ((environment (environment-of simulation)) (symbols (mapcar #'car environment)))
     (progv symbols (mapcar #'cdr environment)
       (in-any-case
@@ -113,8 +114,8 @@ their last values in SIMULATION, or globally if that is live."
       (when around (adopt-environment around)))))
 
 (defun call-inside (simulation function)
-  "Call FUNCTION with SIMULATION as the current one, with its world and message queue. If it is not
-the current one already, also with its parameters and variables."
+  "Call FUNCTION with SIMULATION as the current simulation, with its world and message queue. If
+another simulation was current, also bind the parameters and variables of SIMULATION."
   (flet ((call ()
            (let ((*simulation* simulation)
                  (*world* (simulation-world simulation))

@@ -20,7 +20,8 @@
         (cons :map-clause *map-clauses*) (cons :place-type *place-types*)
         (cons :attribute *attributes*) (cons :substance *substances*)
         (cons :part *object-kinds*) (cons :command *commands*))
-  "The kinds of definitions, and the registry of each. Manipulations have methods instead.")
+  "An alist of the kinds of definitions and their registries. Manipulations are not in the list:
+their methods are compared instead.")
 
 (defun qualified-name (symbol)
   "Return a string that names SYMBOL with its package, for FIND-ROBOT and similar functions."
@@ -30,7 +31,8 @@
 ;;; Definitions in use, as lists (kind name).
 
 (defun names-on-things (simulation name entries)
-  "Return the NAMEs of all ENTRIES of things in SIMULATION, each once. Both are functions."
+  "Return the names of the entries of all things in SIMULATION, without duplicates. The function
+ENTRIES returns the list of entries of a thing, the function NAME the name of an entry."
   (let ((names '()))
     (do-things (thing (simulation-world simulation))
       (dolist (entry (funcall entries thing))
@@ -38,7 +40,8 @@
     names))
 
 (defun elements-in-use (numbers elements)
-  "Return the elements of the vector ELEMENTS, except the first, whose indices are in NUMBERS."
+  "Return a list of the elements of the vector ELEMENTS whose indices are in NUMBERS. Index 0 is
+ignored."
   (let ((used (make-array (length elements) :element-type 'bit :initial-element 0)))
     (loop for number across numbers do (setf (sbit used number) 1))
     (loop for index from 1 below (length elements)
@@ -49,7 +52,7 @@
     (and journal (journal-newest-first journal))))
 
 (defun journalled-arguments (operator position simulation)
-  "Return the arguments at POSITION of the entries for OPERATOR in the journal of SIMULATION."
+  "Return the arguments at POSITION in all journal entries of SIMULATION for OPERATOR."
   (remove-duplicates
    (loop for entry in (entries-so-far simulation)
          when (eq operator (second entry)) collect (nth (+ 2 position) entry))))
@@ -98,13 +101,13 @@
     (and registry (lookup-entry (second definition) registry))))
 
 (defun methods-of (definition)
-  "Return the methods of DEFINITION if that is a manipulation."
+  "Return the methods of DEFINITION if it defines a manipulation."
   (let ((manipulation (and (same-name-p :manipulation (first definition))
                            (find-manipulation (second definition) nil))))
     (and manipulation (manipulation-methods manipulation))))
 
 (defun sources-of (definitions)
-  "Return the sources of DEFINITIONS that are files, without duplicates."
+  "Return the sources of DEFINITIONS, without duplicates and only those that are files."
   (remove-duplicates
    (loop for definition in definitions
          for entry = (definition-entry definition)
@@ -114,7 +117,7 @@
    :test #'equal))
 
 (defun definitions-from (sources)
-  "Return all definitions from SOURCES, except maps and robots."
+  "Return all definitions in the files SOURCES, except maps and robots."
   (append (loop for (kind . registry) in *definition-kinds*
                 unless (member kind '(:map :robot))
                   append (loop for entry in (registry-entries registry)
@@ -135,8 +138,8 @@
   (ldb (byte 64 0) (reduce #'+ numbers)))
 
 (defun current-digest (definition sources)
-  "Return the digest of DEFINITION as it is now, and true if it is defined. SOURCES are those of all
-definitions that are compared."
+  "Return the current digest of DEFINITION, and true if it is defined. SOURCES are the source files
+of all definitions that are compared."
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
     (let ((entry (definition-entry definition))
@@ -160,7 +163,7 @@ definitions that are compared."
        (string= (second a) (second b))))
 
 (defun undefined-attributes (simulation)
-  "Return, as definitions, the attributes of things in SIMULATION that are not defined."
+  "Return the undefined attributes of things in SIMULATION, in the form of definitions."
   (loop for name in (names-in-use :attribute simulation)
         unless (lookup-entry name *attributes*)
           collect (list :attribute (name-string name) :undefined)))
@@ -182,14 +185,14 @@ definitions that are compared."
 ;;; How they differ.
 
 (defun unchanged-p (definition now)
-  "True if DEFINITION is in NOW, the current definitions, or is still undefined as before."
+  "True if DEFINITION is among the current definitions NOW, or was and still is undefined."
   (if (undefined-p definition)
       (not (member definition now :test #'same-definition-p))
       (member definition now :test #'equal)))
 
 (defun merge-definitions (before after)
-  "Return the definitions BEFORE, and those AFTER that are not among them. The number of a changed
-one is :CHANGED."
+  "Return the definitions BEFORE, followed by the definitions AFTER that are not among BEFORE. The
+number of a definition that has changed becomes :CHANGED."
   (let ((now (current-definitions before)))
     (append (loop for definition in before
                   for (kind name number) = definition
@@ -207,17 +210,19 @@ one is :CHANGED."
               (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
-  "Return a text about how DEFINITION, (kind name number), differs from that in OTHERS, or NIL."
+  "Return a text about how DEFINITION, (kind name number), differs from the definition of the same
+name in OTHERS, or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
     (cond ((undefined-p definition)
-           (and other (format nil "~A has been defined since" (definition-words definition))))
+           (and other (format nil "~A has been defined since the recording"
+                              (definition-words definition))))
           ((null other)
            (format nil "~A is not loaded" (definition-words definition)))
           ((and number (symbolp number))
-           (format nil "~A was defined anew while it was recorded" (definition-words definition)))
+           (format nil "~A was defined anew during the recorded run" (definition-words definition)))
           ((and number (third other) (/= number (third other)))
-           (format nil "~A is not as it was" (definition-words definition))))))
+           (format nil "~A has changed since the recording" (definition-words definition))))))
 
 (defun differences (definitions)
   "Return a list of texts about how DEFINITIONS of a journal differ from the current ones."

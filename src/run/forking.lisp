@@ -9,10 +9,10 @@
 ;;; is bound while code works in the fork.
 
 (defvar *fork-asker* 'fork-simulation
-  "The operator that the user has called and that makes a fork; error messages begin with it.")
+  "The operator called by the user that makes the fork, as named in error messages.")
 
 (defun refuse-fork (reason &rest arguments)
-  "Signal MISUSE with the message REASON, a format control for ARGUMENTS: no fork can be made."
+  "Signal MISUSE: no fork can be made. The message is REASON, a format control for ARGUMENTS."
   (reject-use "~(~A~): ~?" *fork-asker* reason arguments))
 
 (defmethod copy-plan-value ((simulation simulation) fork)
@@ -26,7 +26,8 @@
       timeline))
 
 (defun copy-of-run (simulation copier)
-  "Return a copy of SIMULATION by COPIER, with the participants in its options, without a journal."
+  "Return a copy of SIMULATION made by COPIER, with the participants in the options of COPIER and
+without a journal."
   (let ((copy (copying (copier)
                 (forked (simulation-world simulation) copier)
                 (let ((copy (forked simulation copier)))
@@ -46,8 +47,9 @@
     copy))
 
 (defun fork-options (simulation continuations decisions)
-  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS is true, it copies those
-of commands in progress. DECISIONS is an alist of replacements for values that cannot be copied."
+  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS is true, it also copies
+the continuations of commands in progress. DECISIONS is an alist of replacements for values that
+cannot be copied."
   (list :simulation simulation
         :world (simulation-world simulation)
         :participants (simulation-participants simulation)
@@ -64,8 +66,8 @@ of commands in progress. DECISIONS is an alist of replacements for values that c
     (copy-of-run simulation copier)))
 
 (defun environment-of-fork (simulation)
-  "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If that has no
-dice, as a live run where each thread has its own, they are made."
+  "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
+has no dice for CL:RANDOM, which is so if it is live, new dice are made."
   (let ((environment (environment-of simulation)))
     (if (assoc *lisps-dice* environment)
         environment
@@ -75,7 +77,7 @@ dice, as a live run where each thread has its own, they are made."
 
 ;; If a continuation makes a fork, other continuations and plans have not acted yet in that tick.
 (defun finish-tick (fork phase)
-  "Do in FORK what remains of the tick in which it was made, in PHASE of that."
+  "Pass the rest of the tick in which FORK was made, in the phase PHASE."
   (when (<= (phase-number :continuations) phase (phase-number :observers))
     (call-inside fork (lambda ()
                         (deliver-notifications (simulation-timeline fork))
@@ -111,15 +113,15 @@ PARTICIPANTS. Return its value."
 (defconstant +patience+ 2000 "How many times a fork is tried, once a tick or some milliseconds.")
 
 (defun keep-trying-to-fork (simulation try)
-  "Return a fork of SIMULATION as soon as the function TRY does not return :BUSY. Signals MISUSE if
-that takes too long."
+  "Call the function TRY until it returns a fork of SIMULATION instead of :BUSY; return the fork.
+Signals MISUSE after +PATIENCE+ attempts."
   (loop with moment = (make-semaphore "fork")
         repeat +patience+
         for fork = (funcall try)
         unless (eq :busy fork) return fork
         do (wait-a-while moment 0.002)
-        finally (refuse-fork "plans of ~A do not come to rest. Let them wait between long calls of ~
-                              Lisp functions, or (end-plan :all)."
+        finally (refuse-fork "the plans of ~A are still working. Let plans wait between long calls ~
+                              of Lisp functions, or end them by (end-plan :all)."
                              (simulation-name simulation))))
 
 (defun await-fork (simulation continuations decisions)
@@ -138,8 +140,8 @@ FORK-NOW."
 ;; The restarts are established here, in the thread that asked for the fork: another thread may own
 ;; the run.
 (defun decide-on-fork (condition)
-  "Signal CONDITION, a CANNOT-FORK. Return the replacement for its value in the fork, and true; or
-NIL and false if no fork is to be made."
+  "Signal CONDITION, a CANNOT-FORK, with restarts. Return the replacement in the fork for the value
+that cannot be copied, and true; or NIL and false if the user wants no fork."
   (restart-case (error condition)
     (share-value ()
       :report "Let both runs have the same one."
@@ -159,7 +161,8 @@ NIL and false if no fork is to be made."
             (push (cons (cannot-fork-value condition) replacement) decisions)))))))
 
 (defun fork-arguments (arguments)
-  "Return the simulation in ARGUMENTS, those of FORK-SIMULATION, and the plist of options."
+  "Parse ARGUMENTS, the arguments of FORK-SIMULATION. Return the simulation and the plist of
+options."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
       (values (if arguments
@@ -182,16 +185,15 @@ NIL and false if no fork is to be made."
   "Return a headless copy of a run at the same tick, with its own world, robots, agenda, parameters,
 dice, messages and journal, and the plans in progress. The copy continues exactly as the original
 would, given the same requests. ARGUMENTS are the simulation, by default the current one, and
-  :seed           an integer from which all further randomness is drawn instead
+  :seed           an integer that seeds all further randomness in the copy
   :continuations  true to copy the continuations of commands in progress, too, with the values
-                  they close over; by default only those of plans are called in the fork
-- Each run has its own state of a fluent and a valve, also of one in a global variable. WITH-FORK
+                  they close over; by default only continuations of plans are called in the fork
+- Each run has its own state of fluents and valves, even of those in global variables. WITH-FORK
   binds the robots' names; other global variables are shared.
 - Changing or commanding the original run from inside the fork is MISUSE: COUNTERPART returns the
   fork's own objects.
-- A live run is forked between two ticks. Numbers that plans and programs of a live run draw by
-  CL:RANDOM come from their thread, and a fork draws new ones; all else continues as in the
-  original.
+- A live run is forked between two ticks. In a live run, CL:RANDOM uses the dice of each thread; in
+  the fork it draws other numbers. All else continues as in the original.
 - Observers stay with the original.
 Signals MISUSE inside a tick, in which no continuation runs, and inside a plan's own step. Signals
 CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
@@ -210,9 +212,9 @@ CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL.
 
 (addition release-fork)
 (defun release-fork (fork)
-  "End FORK, a simulation that FORK-SIMULATION returned. Nothing of it continues and no continuation
-is called; unread errors go to the error output. Return nothing. Signals WRONG-ARGUMENT if it is no
-fork."
+  "End FORK, a simulation that FORK-SIMULATION returned. Commands and plans in FORK do not continue,
+and no continuation is called; unread errors go to the error output. Return nothing. Signals
+WRONG-ARGUMENT if FORK is no fork."
   (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (let ((fork (latest fork)))
@@ -232,17 +234,17 @@ fork."
 
 (addition with-fork)
 (define-user-macro with-fork ((&key seed continuations) &body body)
-  "Run BODY in a fork of the current simulation, see FORK-SIMULATION: there the current one is the
-fork, and the robots' names are those of the fork. When BODY has ended the fork is over. Return the
-values of BODY; NIL if the fork was given up. Errors in users' code are dealt with as in the run
-that it is a fork of: see WITH-SIMULATION."
+  "Run BODY in a fork of the current simulation, see FORK-SIMULATION. In BODY, the fork is the
+current simulation, and the robots' names mean the robots of the fork. The fork ends with BODY.
+Return the values of BODY, or NIL if no fork could be made. Errors in users' code are treated as in
+the original run, see WITH-SIMULATION."
   `(call-with-fork (lambda () ,@body) :seed ,seed :continuations ,continuations))
 
 (addition call-in-fork)
 (defun call-in-fork (fork function)
   "Call FUNCTION, without arguments, with FORK as the current simulation and robots bound as in
-WITH-FORK. Return its values. May be called repeatedly. A fork that was rewound stands for its
-successor."
+WITH-FORK. Return the values of FUNCTION. You can call CALL-IN-FORK several times for the same FORK.
+If FORK was rewound, its successor is used."
   (check-argument call-in-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (check-argument call-in-fork function (functionp function) "a function of no arguments")
@@ -251,8 +253,8 @@ successor."
 ;;; The copy of an object in a fork.
 
 (defgeneric counterpart-in-current-run (object)
-  (:documentation "Return the copy of OBJECT, of another run, in the current simulation, a fork of
-that run; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
+  (:documentation "Return the copy, in the current simulation, of OBJECT, which belongs to the run
+that was forked; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
   (:method (object)
     (reject-argument 'counterpart "object" object
                      (one-line "a robot, a part of one, a thing, a designator, an odometer, a
@@ -278,10 +280,11 @@ task, a fluent or a valve"))))
 
 (addition counterpart)
 (defun counterpart (object &optional (fork (current-simulation)))
-  "Return the copy of OBJECT in FORK, a fork of its run or of a fork of it, or in the run that
-replaced its run on REWIND; the default is the current one. OBJECT may be a robot, a part, a thing,
-a designator, an odometer, a task, a fluent or a valve. NIL if FORK does not have it: the thing is
-destroyed there, the designator invalid, the task over. Signals WRONG-ARGUMENT."
+  "Return the copy of OBJECT in FORK, by default the current simulation. FORK is a direct or
+indirect fork of the run of OBJECT, or the run that replaced that run on REWIND. OBJECT may be a
+robot, a part, a thing, a designator, an odometer, a task, a fluent or a valve. The value is NIL if
+FORK has no such copy: the thing is destroyed there, the designator invalid, or the task over.
+Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
                   (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")

@@ -8,14 +8,14 @@
 
 (defun fresh-simulation (robots &key (seed 0) journal (thinking :free))
   "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
-ROBOTS, a list of names or robots of one map. With JOURNAL it keeps one. THINKING is its thinking
-mode."
+ROBOTS, a list of names or robots of one map. If JOURNAL is true, the simulation keeps a journal.
+THINKING is the thinking mode."
   (let* ((blueprints (mapcar (lambda (robot)
                                (if (robot-p robot) (robot-blueprint robot) (find-blueprint robot)))
                              robots))
          (maps (remove-duplicates (mapcar #'find-map (mapcar #'blueprint-map blueprints)))))
     (unless (= (length maps) 1)
-      (reject-use "One simulation has one map, and these robots are defined in ~
+      (reject-use "All robots of a simulation must be defined in one map, but these are defined in ~
                    ~:[none~;~:*~{~A~^, ~}~]."
                   maps))
     (let ((world (make-world (first maps) :seed seed)))
@@ -48,8 +48,8 @@ further symbols, of any package, that name some of the ROBOTS in FUNCTION."
 
 (defun call-as-headless (function simulation &key variables keep)
   "Call FUNCTION with the headless SIMULATION as the current one and its robots as the values of
-their names and of VARIABLES, symbols that name some of them. The run keeps forks as KEEP says, see
-KEEP-FORKS, and is over at the end."
+their names and of VARIABLES, symbols that name some of them. KEEP says how many forks the run
+keeps, see KEEP-FORKS. The run is over at the end."
   (when *simulation* (note-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
@@ -97,8 +97,9 @@ error policy of its message queue."
       (signal-trouble queue))))
 
 (defun warn-at-end (simulation left-p)
-  "Warn if SIMULATION, which ends, has passed no ticks or too few for its requests. Do not if it is
-LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have passed in the fork."
+  "Warn if SIMULATION, which ends, has passed no ticks or too few for its requests. Do not warn if
+LEFT-P is true, that is, after a non-local exit such as an error. Do not warn either if SIMULATION
+was forked, because ticks may have passed in the fork."
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
@@ -109,7 +110,8 @@ LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have p
                      (simulation-messages simulation)))))
 
 (define-event *rewound-end-hooks*
-  "Functions of a headless run that was rewound, and of its last successor, which is over now.")
+  "Functions that are called when a headless run that was rewound has ended, with this run and its
+last successor.")
 
 (defun end-headless (simulation)
   "End SIMULATION or, if it was rewound, its successor."
@@ -125,7 +127,7 @@ LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have p
                  (ensure-list names)))
 
 (defun robots-named (names)
-  "Return the robots of the current simulation that are called NAMES, symbols of any package."
+  "Return the robots of the current simulation that have the names NAMES, symbols of any package."
   ;; Their definitions may no longer exist.
   (loop with robots = (world-robots *world*)
         for name in names
@@ -139,7 +141,7 @@ LEFT-P, by a non-local exit such as an error, or was forked, as ticks may have p
 (defun simulation-errors (&optional (simulation (current-simulation)))
   "Return the errors in user code called by SIMULATION, and the failures of its plans, as
 USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they were signalled,
-shown or read. A run that was rewound stands for its successor. When a simulator starts, the errors
+shown or read. If SIMULATION was rewound, its successor is used. When a simulator starts, the errors
 of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest (resolve-simulation simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
@@ -152,8 +154,8 @@ of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION.
   (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
 (defun robots-form-p (form environment)
-  "True if FORM, the robots of WITH-SIMULATION, is an expression that returns them: no name or list
-of names."
+  "True if FORM, the robots argument of WITH-SIMULATION, is an expression that returns robots, not a
+name or a list of names."
   (typecase form
     (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
     (cons (let ((head (first form)))
@@ -164,7 +166,8 @@ of names."
                      (known-function-p head environment)))))))
 
 (defun warn-of-used-values (body)
-  "Warn about each form in BODY, that of a WITH-SIMULATION, that uses the value of a command."
+  "Warn about each form in BODY, the body of a WITH-SIMULATION form, that uses the value of a
+command."
   (map-calls (lambda (form)
                (let ((call (find-if (lambda (used)
                                       (and (typep used '(cons symbol))
@@ -177,7 +180,8 @@ of names."
              body))
 
 (defun unquoted-settings-p (form)
-  "True if FORM, to be evaluated to a list of settings, is itself such a list or a setting."
+  "True if FORM, which should evaluate to a list of settings, is itself a setting or a list of
+settings without a quote."
   (and (consp form)
        (let ((head (first form)))
          (if (consp head)
@@ -189,7 +193,7 @@ of names."
   (when (unquoted-settings-p form)
     (reject-clause "with-simulation" (list :parameters form)
                    (let ((*print-case* :downcase))
-                     (format nil "a quote: :parameters '~S"
+                     (format nil "a list with a quote, as in :parameters '~S"
                              (abridged (if (consp (first form)) form (list form)))))))
   form)
 
@@ -199,28 +203,33 @@ of names."
                                     &body body &environment environment)
   "Run BODY with ROBOTS bound to fresh robots in a fresh world, headless: ticks pass only when BODY
 calls RUN-TICKS or RUN-UNTIL. Return the values of BODY. ROBOTS is the name of a robot or a list of
-names, of any package, or an expression that returns such, as (list 'a 'b) or a variable that is no
-robot's. Options:
+names, of any package, or an expression that returns a name or a list of names, such as (list 'a 'b)
+or a variable that is not the name of a robot. Options:
 - SEED, an integer, determines all randomness.
 - PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
-- CLEAN calls CLEAN-SIMULATION afterwards, which also removes noise that PARAMETERS asks for.
-- JOURNAL keeps a journal; KEEP keeps forks, so that the run can be rewound, see KEEP-FORKS.
+- CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so that it removes noise set by
+  them, too.
+- JOURNAL, if true, makes the run keep a journal. KEEP makes the run keep forks, so that it can be
+  rewound, see KEEP-FORKS.
 - THINKING says how much time thinking costs, see SET-THINKING.
-- ERRORS says how errors in user code and failures of plans are reported, see below.
-Only the thread of BODY sees the bindings. In another thread a name means the robot at top level, so
-pass it the robot; a command to the robot at top level warns if that has no run. Messages go to a
-queue of the run. When BODY ends, the run is over: commands in progress are interrupted, and the
-robots take no more commands.
+- ERRORS says how errors in user code and failures of plans are reported: :REPORT, :SIGNAL or
+  :COLLECT, see below.
+Only the thread of BODY sees the bindings. In another thread, a robot's name means the robot at top
+level, so pass the robot itself to the thread; a command to a robot at top level that is in no run
+queues a warning. Messages go to the message queue of the run. When BODY ends, the run is over:
+commands in progress are interrupted, and the robots take no more commands.
 
-ERRORS; the run continues in each case:
-- :REPORT makes them messages. Those unread at the end of BODY are written to the error output. So
-  are unread warnings given once in a run, for example about degrees for radians or commands issued
-  after the last tick, and other unread errors, except those of commands with a continuation.
-- :SIGNAL signals the first as a USER-CODE-ERROR, by RUN-TICKS at the end of its tick, or by
-  WITH-SIMULATION at the end.
-- :COLLECT only makes them messages; SIMULATION-ERRORS returns them.
-In each case a line on the error output says so if no ticks have passed although something was
-requested, or if a plan waits for what nothing in the run will bring about."
+After an error in user code or a failure of a plan, the run continues. ERRORS says how it is
+reported:
+- :REPORT queues a message. Messages that are unread at the end of BODY are written to the error
+  output. So are unread warnings that are given once in a run, for example about degrees for radians
+  or about commands issued after the last tick, and other unread errors, except errors of commands
+  with a continuation.
+- :SIGNAL signals the first error or failure as a USER-CODE-ERROR. RUN-TICKS signals it at the end
+  of the tick, or WITH-SIMULATION at its own end.
+- :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.
+With each of the three, a warning goes to the error output if no ticks have passed although
+something was requested, or if a plan waits for an event that nothing in the run can cause."
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (strip-quote robots)))
          (variables (if form-p '() (variables-among robots))))

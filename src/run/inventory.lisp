@@ -7,8 +7,8 @@
 ;;; must be defined where it is loaded.
 
 (defgeneric outer-name (object)
-  (:documentation "Return the name of OBJECT for OUTER-OBJECT, a list (KIND argument...) of a
-keyword and plain data, if it does not belong to one run; else NIL.")
+  (:documentation "If OBJECT does not belong to one run, return its name, by which OUTER-OBJECT
+finds it: a list (KIND argument...) of a keyword and plain data. Otherwise return NIL.")
   (:method (object) (declare (ignore object)) nil)
   (:method ((map map)) (list :map (qualified-name (map-name map))))
   (:method ((blueprint blueprint)) (list :robot (qualified-name (blueprint-name blueprint))))
@@ -32,13 +32,14 @@ keyword and plain data, if it does not belong to one run; else NIL.")
          (list :double-float (double-to-bits number)))))
 
 (defun method-at (position name)
-  "Return the method at POSITION of the manipulation called NAME."
+  "Return the method at POSITION of the manipulation NAME."
   (check-type position unsigned-byte)
   (or (nth position (manipulation-methods (find-manipulation name)))
-      (error "~(~A~) has not so many methods" name)))
+      (error "~(~A~) has fewer methods than that" name)))
 
 (defun outer-object (kind argument &optional more)
-  "Return the object named (KIND ARGUMENT [MORE]) here. Signals an error if there is none."
+  "Return the object with the outer name (KIND ARGUMENT [MORE]). Signals an error if there is no
+such object."
   (or (typecase argument
         (string (case kind
                   (:map (find-map argument))
@@ -53,11 +54,11 @@ keyword and plain data, if it does not belong to one run; else NIL.")
                    (:double-float (bits-to-double (the (unsigned-byte 64) argument)))))
         (symbol (and (eq :function kind)
                      (or (lasting-function argument)
-                         (error "~A is no function that objects of a run hold" argument)))))
-      (error "~A is nothing that a run uses" (short-text kind))))
+                         (error "~A is not a function that a saved run may refer to" argument)))))
+      (error "~A is not a kind of object that a saved run may refer to" (short-text kind))))
 
 (defun current-outer-name (object)
-  "Return the OUTER-NAME of OBJECT, and true if that no longer means OBJECT."
+  "Return the OUTER-NAME of OBJECT, and true if this name no longer means OBJECT."
   (let ((name (outer-name object)))
     (values name
             (and name
@@ -76,14 +77,14 @@ keyword and plain data, if it does not belong to one run; else NIL.")
 (defconstant +room-of-object+ 300000 "About the most characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
-  "Objects of one SHAPE. FIELDS are the slots of structures."
+  "Objects of the same SHAPE. If they are structures, FIELDS are their slots."
   (shape '() :type list :read-only t)
   (fields '() :type list :read-only t)
   (members (make-array 4 :adjustable t :fill-pointer 0) :type vector :read-only t))
 
 (defstruct (inventory (:constructor make-inventory ()) (:copier nil))
-  "The objects of a run. STATES maps each object found to :FOUND or :NUMBERED and, at the end, the
-latter to their numbers."
+  "The objects of a run that is to be saved. STATES is a hash table from each object that was found
+to :FOUND or :NUMBERED. At the end, :NUMBERED is replaced by the number of the object."
   (states (make-hash-table :test 'eql) :type hash-table :read-only t)
   (outer '() :type list)
   (batches (make-hash-table :test 'equal) :type hash-table :read-only t)
@@ -98,9 +99,10 @@ latter to their numbers."
 ;;; Objects that cannot be saved.
 
 (defun reject-object (object why inventory)
-  "Signal MISUSE: OBJECT, found in the current object of INVENTORY, cannot be saved; WHY is a text."
+  "Signal MISUSE: OBJECT, found in the current object of INVENTORY, cannot be saved for the reason
+WHY, a text."
   (let ((field (inventory-field inventory)))
-    (reject-use "The run cannot be saved: in ~@[the slot ~(~A~) of ~]~A is ~A, ~A."
+    (reject-use "The run cannot be saved: ~@[the slot ~(~A~) of ~]~A contains ~A. ~A."
                 (and field (kind-slot-name field)) (short-text (inventory-holder inventory))
                 (one-line (short-text object)) why)))
 
@@ -114,10 +116,10 @@ latter to their numbers."
                                 collect (list 'unsigned-byte bits)
                                 collect (list 'signed-byte bits))))
            :test #'equal))
-  "The element types of arrays that can be saved.")
+  "The element types of arrays that can be saved with a run.")
 
 (defparameter *table-tests* '(eq eql equal equalp)
-  "The tests of hash tables that can be saved.")
+  "The tests of hash tables that can be saved with a run.")
 
 (defun array-shape (array)
   (list :array (array-element-type array) (if (array-has-fill-pointer-p array)
@@ -135,17 +137,17 @@ latter to their numbers."
 (defun structure-shape (object inventory)
   (let ((type (type-of object)))
     (unless (and (symbolp type) (savable-type-p type))
-      (reject-object object "which only the Lisp that made it knows" inventory))
+      (reject-object object "Only the Lisp that made this object can use it" inventory))
     (list :object type)))
 
 (defun table-shape (table inventory)
   (unless (member (hash-table-test table) *table-tests*)
-    (reject-object table "a table with a user-defined test" inventory))
+    (reject-object table "Hash tables with a user-defined test cannot be saved" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
 (defun shape-in-inventory (object inventory)
-  "Return the shape of OBJECT, a list of a keyword and plain data that suffices to make a new one.
-Signals MISUSE."
+  "Return the shape of OBJECT: a list of a keyword and plain data from which an empty object of the
+same structure can be made. Signals MISUSE."
   (typecase object
     (cons (list :list))
     (array (array-shape object))
@@ -153,7 +155,7 @@ Signals MISUSE."
     (dice (list :dice))
     (agenda (list :agenda (agenda-pending object)))
     (structure-object (structure-shape object inventory))
-    (t (reject-object object "which only the Lisp that made it knows" inventory))))
+    (t (reject-object object "Only the Lisp that made this object can use it" inventory))))
 
 (defun shape-fields (shape)
   (and (eq :object (first shape))
@@ -171,8 +173,8 @@ Signals MISUSE."
     (vector-push-extend object (batch-members batch))))
 
 (defun mark-found (object numbered-p inventory)
-  "Note that OBJECT was found. It gets a number if NUMBERED-P is true or it was found before; return
-true in the latter case."
+  "Record in INVENTORY that OBJECT was found. OBJECT gets a number if NUMBERED-P is true or if it
+was found before. Return true if it was found before."
   (let ((state (gethash object (inventory-states inventory))))
     (when (or (eq :found state) (and numbered-p (null state)))
       (setf (gethash object (inventory-states inventory)) :numbered)
@@ -182,20 +184,22 @@ true in the latter case."
     state))
 
 (defun mark-numbered (object inventory)
-  "Note OBJECT, which gets a number. If it belongs to the run, its contents are surveyed later."
+  "Record OBJECT in INVENTORY and give it a number. If OBJECT belongs to the run, its contents are
+surveyed later."
   (unless (gethash object (inventory-states inventory))
     (multiple-value-bind (name other-p) (current-outer-name object)
       (cond ((null name)
              (mark-found object t inventory)
              (push object (inventory-waiting inventory)))
             (other-p
-             (reject-object object "which has been defined anew, or is no longer defined"
+             (reject-object object "It has been defined anew, or is no longer defined"
                             inventory))
             (t (setf (gethash object (inventory-states inventory)) :numbered)
                (push (cons object name) (inventory-outer inventory)))))))
 
 (defun reserve-room (characters inventory)
-  "Note that CHARACTERS more will be written for the current object. True if there is room."
+  "Record that CHARACTERS more characters will be written for the current object of INVENTORY. True
+if there is room for them."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun survey-text (text inventory)
@@ -203,7 +207,7 @@ true in the latter case."
     (mark-found text (not (and (reserve-room (* 2 (length text)) inventory) short-p)) inventory)))
 
 (defun survey-list (list depth inventory)
-  "Survey the conses of LIST, which is nested DEPTH deep, and their contents."
+  "Record the conses of LIST, which is nested DEPTH deep, and their contents in INVENTORY."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
@@ -217,7 +221,7 @@ true in the latter case."
         finally (survey tail depth inventory)))
 
 (defun survey (value depth inventory)
-  "Note VALUE, and its contents if it gets no number. Signals MISUSE."
+  "Record VALUE in INVENTORY, and also its contents if it gets no number. Signals MISUSE."
   (typecase value
     ((or null fixnum) (reserve-room 20 inventory))
     (double-float (if (finite-p value)
@@ -225,9 +229,9 @@ true in the latter case."
                       (mark-numbered value inventory)))
     (symbol (reserve-room (+ 10 (* 2 (length (symbol-name value)))) inventory)
      (when (unprintable-atom-p value)
-       (reject-object value "whose package has :: in its name" inventory)))
+       (reject-object value "The name of its package contains ::" inventory)))
     (number (reserve-room 50 inventory)
-     (when (unprintable-atom-p value) (reject-object value "which is too long" inventory)))
+     (when (unprintable-atom-p value) (reject-object value "This number is too long" inventory)))
     (cons (survey-list value (1+ depth) inventory))
     (string (survey-text value inventory))
     (t (mark-numbered value inventory))))
@@ -246,7 +250,7 @@ true in the latter case."
       (survey (row-major-aref array index) 0 inventory))))
 
 (defun survey-contents (object inventory)
-  "Survey the contents of OBJECT, which has a number."
+  "Record the contents of OBJECT, which has a number, in INVENTORY."
   (setf (inventory-room inventory) +room-of-object+
         (inventory-holder inventory) object
         (inventory-field inventory) nil)
@@ -263,7 +267,7 @@ true in the latter case."
     (t (survey-fields object inventory))))
 
 (defun survey-all (inventory)
-  "Survey the contents of all objects in INVENTORY, until no new ones are found."
+  "Record the contents of all objects in INVENTORY, until no new objects are found."
   (loop while (inventory-waiting inventory)
         do (dolist (object (reverse (shiftf (inventory-waiting inventory) '())))
              (survey-contents object inventory))))
@@ -273,7 +277,7 @@ true in the latter case."
         collect (gethash shape (inventory-batches inventory))))
 
 (defun give-numbers (inventory)
-  "Number the objects in INVENTORY: first the outer ones, then each batch."
+  "Number the objects in INVENTORY: first the outer objects, then the objects of each batch."
   (let ((number 0) (states (inventory-states inventory)))
     (setf (inventory-outer inventory) (reverse (inventory-outer inventory)))
     (loop for (object) in (inventory-outer inventory)
@@ -283,8 +287,8 @@ true in the latter case."
             do (setf (gethash object states) (incf number))))))
 
 (defun take-inventory (simulation requests)
-  "Return the inventory of SIMULATION and REQUESTS, a list of those in its inbox. The first batch is
-SIMULATION alone. Signals MISUSE."
+  "Return the inventory of SIMULATION and of REQUESTS, a list of the requests in its inbox. The
+first batch is SIMULATION alone. Signals MISUSE."
   (let ((inventory (make-inventory)))
     (setf (inventory-holder inventory) simulation)
     (survey simulation 0 inventory)

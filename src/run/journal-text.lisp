@@ -18,7 +18,7 @@
 ;;; Writing.
 
 (defun check-printable (journal)
-  "Signal MISUSE if JOURNAL contains anything that could not be read from a file again."
+  "Signal MISUSE if JOURNAL contains an object that could not be read back from a file."
   (dolist (entry (journal-entries journal))
     (let ((object (unprintable-in (cddr entry))))
       (when object
@@ -30,12 +30,12 @@
                  can be read again. Replay it in memory instead."
                 (short-text (unprintable-in (journal-header journal)))))
   (when (< +latest-end+ (journal-end journal))
-    (reject-use "The journal cannot be written to a file: it ends at tick ~D, and files hold runs ~
-                 up to tick ~D. Replay it in memory instead."
+    (reject-use "The journal cannot be written to a file: it ends at tick ~D, but files hold only ~
+                 runs up to tick ~D. Replay it in memory instead."
                 (journal-end journal) +latest-end+)))
 
 (defun entry-datum (entry)
-  "Return ENTRY as written to a file, with a keyword for the operator."
+  "Return ENTRY in the form in which files contain it, with a keyword for the operator."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))
 
 (defun journal-data (journal)
@@ -47,7 +47,7 @@
           (list (list :end (journal-end journal)))))
 
 (defun write-data (data out)
-  "Write each of DATA as a line with a check sum to OUT."
+  "Write DATA to OUT, each element as a line with a check sum."
   (write-line +journal-title+ out)
   (let ((sum 0))
     (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
@@ -55,18 +55,18 @@
 ;;; Reading.
 
 (defun check-head-line (line)
-  "Signal an error unless LINE begins like the head of a journal of this version."
+  "Signal an error unless LINE begins like the first line of a journal of this version."
   (flet ((begins-p (text) (starts-with-subseq text line :test #'char-equal)))
     (when (or (begins-p "(:ars-magna-journal 1 ") (begins-p "(ars-magna-journal 1 "))
-      (error "it is of the old format 1, whose entries could call any function, and is not read ~
-              any more: repeat the run, with the version that recorded it, or record it anew"))
-    (unless (begins-p "(ars-magna-journal ") (error "it does not begin like one"))))
+      (error "the file has the old format 1, whose entries could call any function, and cannot be ~
+              read any more: repeat the run with the version that recorded it, or record it anew"))
+    (unless (begins-p "(ars-magna-journal ") (error "the file does not begin like a journal"))))
 
 (defun numbered-datum (number line sum)
-  "Return the values of CHECKED-DATUM. Signals an error with the NUMBER of the entry."
+  "Return the values of CHECKED-DATUM for LINE and SUM. Errors name the NUMBER of the entry."
   (handler-case (checked-datum line sum)
     (error (trouble)
-      (error "~[its head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
+      (error "~[the head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
 
 (defun read-data (in)
   "Return a list of all data of the journal in the stream IN. Signals errors that name the entry."
@@ -103,7 +103,7 @@
              object))
 
 (defun settings-trouble (settings)
-  "Return a text about what is wrong with SETTINGS of parameters, lists (name value), or NIL."
+  "Return a text about an error in SETTINGS, lists (name value) of parameters, or NIL."
   (handler-case (call-with-parameters settings (constantly nil))
     (ars-magna-error (trouble) (one-line-text trouble))))
 
@@ -112,24 +112,25 @@
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
 (defun header-trouble (header)
-  "Return a text about what is wrong with HEADER, or NIL."
+  "Return a text about an error in HEADER, the header of a journal, or NIL."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
-    (cond ((not (plist-p header)) "it is no list of names and values")
-          ((wrong-p :map #'stringp) "it names no map")
+    (cond ((not (plist-p header)) "the head is no list of names and values")
+          ((wrong-p :map #'stringp) "the head names no map")
           ((not (and (getf header :robots) (list-of-p 'string (getf header :robots))))
-           "it names no robots")
-          ((duplicates-p (getf header :robots)) "it names a robot twice")
+           "the head names no robots")
+          ((duplicates-p (getf header :robots)) "the head names a robot twice")
           ((wrong-p :seed #'integerp) "its seed is no integer")
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
           ((wrong-p :definitions #'definitions-p) "its definitions make no sense")
           ((wrong-p :remarks #'remarks-p) "its remarks make no sense")
           ((name-without-definition header)
-           (format nil "it does not say what ~A was" (name-without-definition header)))
+           (format nil "the head does not contain the definition of ~A"
+                   (name-without-definition header)))
           ((settings-trouble (getf header :parameters))))))
 
 (defun name-without-definition (header)
-  "Return the name of the map or a robot in HEADER that has no definition there, or NIL."
+  "Return the name of a map or robot in HEADER whose definition is missing in HEADER, or NIL."
   (flet ((described-p (kind name)
            (find (list kind name) (getf header :definitions) :test #'same-definition-p)))
     (if (described-p :map (getf header :map))
@@ -137,15 +138,17 @@
         (getf header :map))))
 
 (defun entry-trouble (entry tick)
-  "Return a text about what is wrong with ENTRY, which comes after one at TICK, or NIL."
+  "Return a text about an error in the journal entry ENTRY, which follows an entry at TICK, or NIL."
   (cond ((not (typep entry '(cons tick-count (cons symbol list)))) "it is no list (tick name ...)")
-        ((< (first entry) tick) (format nil "its tick, ~D, comes after ~D" (first entry) tick))
+        ((< (first entry) tick) (format nil "its tick, ~D, is before the tick of the previous ~
+                                             entry, ~D" (first entry) tick))
         ((null (find-operator (second entry) nil))
          (format nil "there is no operator called ~A"
                  (short-text (plain-name (second entry)))))))
 
 (defun checked-entries (data)
-  "Return DATA, the entries of a journal, checked. Signals an error that names the entry."
+  "Check the journal entries DATA and return them with symbols for the operators. Signals an error
+that names the wrong entry."
   (loop with tick = 0
         for entry in data
         for number from 1
@@ -157,21 +160,23 @@
 
 (defun check-head (head)
   (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
-    (error "it does not begin like one"))
+    (error "the file does not begin like a journal"))
   (check-format (second head) +journal-version+)
   (when (header-trouble (third head))
-    (error "its head makes no sense: ~A" (header-trouble (third head)))))
+    (error "the head makes no sense: ~A" (header-trouble (third head)))))
 
 (defun check-end (end entries)
-  "Signal an error unless END is a datum (:end tick) that may come after ENTRIES."
-  (unless (typep end '(cons (eql :end) (cons tick-count null))) (error "its end is missing"))
+  "Signal an error unless END is a valid last datum (:end tick) after ENTRIES."
+  (unless (typep end '(cons (eql :end) (cons tick-count null))) (error "the end of the file is ~
+                                                                        missing"))
   (when (< +latest-end+ (second end))
-    (error "it ends at tick ~D, and files hold runs up to tick ~D" (second end) +latest-end+))
+    (error "it ends at tick ~D, but files hold only runs up to tick ~D" (second end) +latest-end+))
   (when (and entries (< (second end) (first (first (last entries)))))
-    (error "it ends at tick ~D, before its last entry" (second end))))
+    (error "the journal ends at tick ~D, before its last entry" (second end))))
 
 (defun journal-from (data)
-  "Return the journal made of DATA, all those in its file. Signals an error if they make none."
+  "Return the journal made of DATA, a list of all data in its file. Signals an error if DATA are not
+a valid journal."
   (check-head (first data))
   (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
         (entries (checked-entries (butlast (rest data))))
@@ -185,9 +190,11 @@
 
 (defun read-journal (file &optional (operator 'read-journal))
   "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL, which names the
-entry, if FILE has no journal or an incomplete one; WRONG-ARGUMENT unless FILE is a name."
+wrong entry, if FILE does not contain a complete journal; WRONG-ARGUMENT unless FILE is a file
+name."
   (unless (typep file '(or string pathname))
-    (reject-argument operator 'journal file "a journal, or the name of a file that holds one"))
+    (reject-argument operator 'journal file
+                     "a journal, or the name of a file that holds a journal"))
   (reading-file (in file :journal 'damaged-journal) (journal-from (read-data in))))
 
 ;;; Writing. The new file is read on trial, so saving refuses what loading would refuse.
@@ -196,14 +203,15 @@ entry, if FILE has no journal or an incomplete one; WRONG-ARGUMENT unless FILE i
   "Signal MISUSE unless the journal in the file PATH can be read."
   (handler-case (read-journal path)
     ((or damaged-journal unknown-name) (trouble)
-      (reject-use "The journal cannot be written to a file, since it could not be read again: ~A. ~
-                   What was there is as before; (simulator ROBOT) starts a run with another."
+      (reject-use "The journal cannot be written to a file, because the written file could not be ~
+                   read again: ~A. An older file is unchanged. (simulator ROBOT) starts a run with ~
+                   a new journal."
                   (reason-of-refusal trouble)))))
 
 (defun write-journal (journal file)
-  "Write JOURNAL to FILE, replacing it after all is written and has been read on trial. Return the
-file's truename. Signals MISUSE if that fails, as when an entry contains a function or another
-object without a readable form; then FILE is unchanged."
+  "Write JOURNAL to FILE and return the file's truename. An existing FILE is replaced only after the
+new file has been written and read as a check. Signals MISUSE and leaves FILE unchanged if that
+fails, for example if an entry contains a function or another object without a readable form."
   (check-printable journal)
   (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"
                    :kind :journal :check #'check-readable))

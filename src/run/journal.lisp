@@ -11,20 +11,20 @@
 
 (addition *journal-limit*)
 (defparameter *journal-limit* 1000000
-  "The most entries of a journal (about 200 bytes each). When it is full, a warning says so; it then
-repeats the run up to that tick.")
+  "The most entries of a journal (about 200 bytes each). When a journal is full, a warning says so;
+such a journal repeats the run only up to that tick.")
 
 (addition journal-p)
 (define-record (journal (:constructor make-journal (header)))
-  "The record of one run."
+  "The record of the requests in one run, from which the run can be repeated."
   (header '() list "a plist of how the run began: map, robots, seed, parameters, and the definitions
 that it depends on" :writable :addition)
-  (newest-first '() list "its entries, the newest first" :writable)
+  (newest-first '() list "the entries of the journal, the newest first" :writable)
   (length 0 fixnum "how many entries the journal has" :writable :addition)
   (end 0 tick-count "the tick at which the journal ends" :writable :addition)
   (remarks '() list "lists (tick kind text robot x y), the newest first: events of the run that a
 replay does not repeat. ROBOT is a name, a string, or NIL" :writable :export)
-  (full-p nil boolean "an entry was left out as there was no room" :writable))
+  (full-p nil boolean "true if an entry was left out because the journal was full" :writable))
 
 (defmethod print-object ((journal journal) stream)
   (print-unreadable-object (journal stream :type t)
@@ -38,14 +38,14 @@ Signals WRONG-ARGUMENT."
   (reverse (journal-newest-first journal)))
 
 (defun copied-journal (journal tick)
-  "Return a copy of JOURNAL, of a run that has come to TICK, for a fork of that."
+  "Return a copy of JOURNAL for a fork of its run, which has reached TICK."
   (let ((copy (copy-structure journal)))
     (setf (journal-header copy) (copy-list (journal-header journal)))
     (unless (journal-full-p copy) (setf (journal-end copy) tick))
     copy))
 
 (defun truncated-journal (journal tick)
-  "Return a copy of JOURNAL that ends at TICK. Signals WRONG-ARGUMENT if JOURNAL ends before."
+  "Return a copy of JOURNAL that ends at TICK. Signals WRONG-ARGUMENT if JOURNAL ends before TICK."
   (unless (typep tick `(integer 0 ,(journal-end journal)))
     (reject-argument "replay" "until" tick
                      (format nil "a tick of the journal, from 0 to ~D" (journal-end journal))))
@@ -61,15 +61,17 @@ Signals WRONG-ARGUMENT."
 ;;;; Recording requests
 
 (defun close-full-journal (journal tick)
-  "End JOURNAL, which is full, at TICK, and warn."
+  "End JOURNAL, which is full, at TICK, and queue a warning."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
-  (warn-notably (format nil "The journal is full: with ~D entries it ends at tick ~D. The run goes ~
-                            on, and can be repeated up to there; see *JOURNAL-LIMIT*."
+  (warn-notably (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run ~
+                             goes on, but can be repeated only up to that tick; see ~
+                            *JOURNAL-LIMIT*."
                        (journal-length journal) tick)))
 
 (defun room-left-p (journal)
-  "True if JOURNAL may have another entry. A limit that is no number is ignored."
+  "True if JOURNAL has room for another entry. If *JOURNAL-LIMIT* is not a number, there is no
+limit."
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
@@ -87,13 +89,13 @@ close over. See RESTORED-ARGUMENTS."
   (if (some #'functionp arguments) (memorize-arguments arguments) arguments))
 
 (defun restored-arguments (arguments simulation)
-  "Return ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for SIMULATION, a repetition of that run."
+  "Return ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for SIMULATION, which repeats the recorded run."
   (if (some #'functionp arguments) (recall-arguments arguments simulation) arguments))
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun note (simulation operator arguments &optional request)
   "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for it, at the
-current tick, in the journal and the past of SIMULATION, if it keeps them."
+current tick, in the journal and the past of SIMULATION, if SIMULATION keeps them."
   (when (noting-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (asked-inside-p request))))
@@ -111,8 +113,8 @@ current tick, in the journal and the past of SIMULATION, if it keeps them."
         collect (list (parameter-symbol (find-parameter name)) value)))
 
 (defun record-settings (simulation)
-  "Record in the journal of SIMULATION the parameters set since the last call, and what
-DIRTY-SIMULATION would restore now, if that has changed."
+  "Record in the journal of SIMULATION the parameters that were set since the last call. If the
+values that DIRTY-SIMULATION would restore have changed, record these, too."
   (follow-parameters (simulation-known-parameters simulation)
                      (and (simulation-thread simulation) t)
                      (lambda (symbol value)
@@ -125,17 +127,17 @@ DIRTY-SIMULATION would restore now, if that has changed."
 ;;; Remarks. Plans and programs are not repeated in a replay. So the journal has remarks about them
 ;;; for users, made by any thread. They do not affect the replay.
 
-(define-constant +remark-limit+ 1000 :documentation "The most remarks of a journal.")
+(define-constant +remark-limit+ 1000 :documentation "The largest number of remarks in a journal.")
 (define-constant +part-limit+ 500
-  :documentation "With this many remarks, no more about parts of plans are added: a plan that tries
-repeatedly makes many, and there must be room for others.")
+  :documentation "The number of remarks from which on no remarks about parts of plans are added: a
+plan that tries repeatedly makes many, and other remarks need room.")
 
 (defun room-for-remark-p (journal kind)
   (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))
 
 (defun remark (simulation kind text &optional robot)
-  "Add a remark of KIND, a keyword, with TEXT about ROBOT, if given, at the current tick to the
-journal of SIMULATION, if it keeps one. Return the remark, or NIL."
+  "If SIMULATION keeps a journal, add a remark at the current tick: KIND is a keyword, TEXT a
+string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (room-for-remark-p journal kind))
       (let ((remark (list (simulation-tick simulation) kind text
@@ -145,7 +147,7 @@ journal of SIMULATION, if it keeps one. Return the remark, or NIL."
         remark))))
 
 (defun unremark (simulation remark)
-  "Remove REMARK, a value of the function REMARK, from the journal of SIMULATION."
+  "Remove REMARK, which the function REMARK has returned, from the journal of SIMULATION."
   (let ((journal (simulation-journal simulation)))
     (when journal
       (loop for remarks = (journal-remarks journal)
@@ -153,7 +155,8 @@ journal of SIMULATION, if it keeps one. Return the remark, or NIL."
                            (remove remark remarks :test #'eq))))))
 
 (defun remark-error (text)
-  "Add a remark about an error in users' code, TEXT, to the journal of the current run, if any."
+  "Add a remark about an error in users' code, with its text TEXT, to the journal of the current
+run, if any."
   (when *simulation*
     (let ((robots (simulation-robots *simulation*)))
       (remark *simulation* :error text (and (null (rest robots)) (first robots))))))
@@ -163,7 +166,7 @@ journal of SIMULATION, if it keeps one. Return the remark, or NIL."
 ;;; Beginning and end.
 
 (defun begin-journal (simulation)
-  "Make SIMULATION, which has passed no tick, keep a journal. Return the journal."
+  "Make SIMULATION keep a journal. No tick of SIMULATION has passed yet. Return the journal."
   (setf (simulation-journal simulation)
         (make-journal (list :map (qualified-name
                                   (map-name (world-map (simulation-world simulation))))
@@ -174,15 +177,16 @@ journal of SIMULATION, if it keeps one. Return the remark, or NIL."
                             :definitions (definitions-of simulation)))))
 
 (defun begin-thinking (simulation mode)
-  "Set the thinking mode of SIMULATION, which has passed no tick, to MODE, also in its journal."
+  "Set the thinking mode of SIMULATION to MODE, also in its journal. No tick of SIMULATION has
+passed yet."
   (set-timeline-thinking (simulation-timeline simulation) mode)
   (when (simulation-journal simulation)
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
           (simulation-thinking simulation))))
 
 (defun renew-definitions (simulation)
-  "Store the current definitions in the journal of SIMULATION, which has passed no tick. They may
-have changed since the journal was begun."
+  "Store the current definitions in the journal of SIMULATION, because definitions may have changed
+since the journal was begun. No tick of SIMULATION has passed yet."
   (let ((header (copy-list (journal-header (simulation-journal simulation)))))
     (setf (getf header :definitions) (definitions-of simulation)
           (journal-header (simulation-journal simulation)) header)))
@@ -192,11 +196,11 @@ have changed since the journal was begun."
 
 (defun journal-up-to-now (simulation)
   "Return the journal of SIMULATION, extended to the current tick unless it is full. Signals MISUSE
-if it keeps none."
+if SIMULATION keeps no journal."
   (let ((journal (or (simulation-journal simulation)
-                     (reject-use "This simulation keeps no journal. Ask for one: ~
-                                  (with-simulation (ROBOT :journal t) ...), and do not say ~
-                                  (simulator ROBOT :journal nil)."))))
+                     (reject-use "This simulation keeps no journal. Start it with a journal: ~
+                                  (with-simulation (ROBOT :journal t) ...), or (simulator ROBOT) ~
+                                  without :journal nil."))))
     (when (eq simulation *simulation*) (record-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
     ;; Robots may have been added and definitions changed since it began.
@@ -215,33 +219,34 @@ if it keeps none."
 ;;; a replay repeats them. Nor are changes of a world whose run is over.
 
 (defun check-not-of-past-run (timeline operator)
-  "Signal MISUSE if TIMELINE, whose world OPERATOR is to change, is over and this code works in
-another run."
+  "Signal MISUSE if the run of TIMELINE is over, OPERATOR is to change its world, and this code
+works in another run."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
-      (reject-outlived "~(~A~): that belongs to another run in ~(~A~), which is over: ~A. ~
-                        FIND-THING and robots' names return those of the current run."
+      (reject-outlived "~(~A~): this object belongs to another run in ~(~A~), which is over: ~A. ~
+                        FIND-THING and robots' names return the objects of the current run."
                        operator (timeline-name timeline) (timeline-over timeline)))))
 
 (defun warn-of-change-elsewhere (world operator)
-  "Warn once for WORLD if OPERATOR changes it though its run is over, or though it is between runs
-and this code works in another run."
+  "Warn once for WORLD if OPERATOR changes WORLD although its run is over, or although WORLD is
+between two runs and this code works in another run."
   (let ((over (timeline-over (world-timeline world))))
     (cond (over
            (warn-once (list :past) world
                       (format nil "~(~A~) changes an object of a past run: the run in ~(~A~) is ~
-                                   over, as ~A. Robots' names and FIND-THING return the current ~
-                                   objects."
+                                   over because ~A. Robots' names and FIND-THING return the ~
+                                   current objects."
                               operator (timeline-name (world-timeline world)) over)))
           ((and *simulation* (between-runs-p world))
            (warn-once (list :elsewhere) world
                       (format nil "~(~A~) changes ~(~A~) for a later run of (simulator ...), not ~
                                    for the current run. Inside WITH-SIMULATION, robots' names and ~
-                                   (find-thing 'NAME) return the objects of that."
+                                   (find-thing 'NAME) return the objects of the current run."
                               operator (timeline-name (world-timeline world))))))))
 
 (defun perform-change (world operator arguments)
-  "Call OPERATOR with ARGUMENTS to change WORLD, which this thread owns. It checks them again."
+  "Call OPERATOR with ARGUMENTS to change WORLD, which this thread owns. OPERATOR checks ARGUMENTS
+again."
   (let ((*world* world)
         (*simulation* (world-simulation world)))
     (apply (operator-function (find-operator operator)) arguments)))

@@ -9,46 +9,48 @@
 ;;; this code reads single slots and atomic lists, and ignores errors.
 
 (defun issued-by-program-p (request)
-  "True if a program has made REQUEST itself, and no plan, continuation or prompt."
+  "True if REQUEST was made directly by a program, not by a plan, a continuation or a prompt."
   (and (request-name request)
        (starts-with-subseq "Lisp" (note-text (request-asker request)))))
 
 (defun elsewhere-remedy (simulation)
-  "Return a text about requests to SIMULATION from inside another one since its last tick, or NIL."
+  "Return a text with a remedy if requests to SIMULATION were made inside another simulation since
+its last tick; or NIL."
   (and (asked-elsewhere-p (simulation-world simulation))
        (one-line "That was asked for inside of another with-simulation, and only ticks of that one
 passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
 
 (defun too-late-text (simulation)
-  "Return a text about requests of the program to SIMULATION since its last tick, with a remedy. NIL
-if there are none, or they only stop something."
+  "Return a text, with a remedy, about requests that the program has made to SIMULATION since its
+last tick. Requests that only stop something do not count. Return NIL if there are no others."
   (let ((names (loop for request in (timeline-inbox (simulation-timeline simulation))
                      when (and (operation-p request)
                                (issued-by-program-p request)
                                (not (trait-p :stops (operation-command request))))
                        collect (string-downcase (request-name request)))))
     (when names
-      (format nil "~{~A~^, ~} did nothing, as with-simulation ended before another tick had ~
-                   passed. ~:[Call (run-ticks N) or (run-until TEST) after that.~;~:*~A~]"
+      (format nil "~{~A~^, ~} did nothing, because with-simulation ended before another tick had ~
+                   passed. ~:[Call (run-ticks N) or (run-until TEST) after the request.~;~:*~A~]"
               (remove-duplicates (reverse names) :test #'string= :from-end t)
               (elsewhere-remedy simulation)))))
 
 ;;; At the end of a headless run.
 
 (defun lines-typed-p (simulation)
-  "True if SIMULATION is that of a prompt, whose user does not write WITH-SIMULATION."
+  "True if SIMULATION belongs to a prompt, whose user types lines instead of WITH-SIMULATION."
   (said-p '(:lines-typed) (simulation-world simulation)))
 
 (defun note-lines-typed (simulation)
-  "Note that SIMULATION is that of a prompt: warnings at its end name lines to type as the remedy."
+  "Record that SIMULATION belongs to a prompt, so that warnings at its end suggest lines to type."
   (first-time-p '(:lines-typed) (simulation-world simulation)))
 
 (defparameter *lines-remedy*
-  "STEP N lets N ticks pass, PLAN NAME carries out a plan to its end."
+  "STEP N passes N ticks, PLAN NAME carries out a plan to its end."
   "How to pass ticks at the prompt.")
 
 (defun undone-names (simulation)
-  "Return the names of requests to SIMULATION and of plans that have not begun; and those of plans."
+  "Return a list of the names of requests to SIMULATION and of plans that have not begun; and a list
+of the names of these plans alone."
   (let ((plans (unfinished-in-participants simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.
@@ -58,25 +60,26 @@ if there are none, or they only stop something."
             plans)))
 
 (defun undone-text (simulation)
-  "Return a text about what was requested of SIMULATION and has not begun, with a remedy; or NIL."
+  "Return a text, with a remedy, about requests to SIMULATION and plans that have not begun; or
+NIL."
   (multiple-value-bind (undone plans) (undone-names simulation)
     (when undone
       (format nil "~{~A~^, ~} did nothing. ~A" undone
               (cond ((lines-typed-p simulation) *lines-remedy*)
                     ((elsewhere-remedy simulation))
-                    (t (format nil "Call (run-ticks N) or (run-until TEST)~:[~; in it, or ~
+                    (t (format nil "Call (run-ticks N) or (run-until TEST)~:[~; before the end, or ~
                                     (run-plan ...) instead of (begin-plan ...)~]."
                                plans)))))))
 
 (defun cut-off-texts (simulation)
-  "Return a list of texts about what the end of SIMULATION cuts off, or NIL if the program has
-checked for itself what was in progress. A prompt always does that, which does not count."
+  "Return a list of texts about work that the end of SIMULATION cuts off. Return NIL if the program
+has checked itself which work was in progress; checks made by a prompt do not count."
   (when (or (lines-typed-p simulation) (not (looked-after-p (simulation-world simulation))))
     (loop for participant in (simulation-participants simulation)
           append (participant-cut-off participant))))
 
 (defun cut-off-text (simulation)
-  "Return a text about what the end of SIMULATION cuts off, with a remedy; or NIL."
+  "Return a text, with a remedy, about work that the end of SIMULATION cuts off; or NIL."
   (let ((cut-off (cut-off-texts simulation)) (typed (lines-typed-p simulation)))
     (when cut-off
       (format nil "At the end~:[ of with-simulation~;~], at tick ~D, ~{~A~^, ~} had not ended and ~
@@ -85,7 +88,8 @@ checked for itself what was in progress. A prompt always does that, which does n
               typed (simulation-tick simulation) cut-off (rest cut-off) typed *lines-remedy*))))
 
 (defun text-at-end (simulation)
-  "Return a text about requests to SIMULATION, which ends, that had no effect; or NIL."
+  "Return a text about requests to SIMULATION that had no effect or are cut off, because SIMULATION
+ends; or NIL."
   (if (zerop (simulation-tick simulation))
       (let ((undone (undone-text simulation)))
         (and undone (format nil "No ticks have passed~:[ in with-simulation~;~], so ~A"
@@ -110,15 +114,15 @@ checked for itself what was in progress. A prompt always does that, which does n
           collect (string-downcase (request-name request))))
 
 (defun undone-work-text (world)
-  "Return a text about what is left undone in WORLD, with a remedy; or NIL."
+  "Return a text, with a remedy, about requests of programs that are left undone in WORLD; or NIL."
   (let ((undone (remove-duplicates (left-undone world) :test #'string=)))
     (when undone
       (format nil "The program ends before ~{~A~^, ~} ~:[has~;have~] ended in ~(~A~), at tick ~D. ~
-                   (await-idle) waits for that."
+                   (await-idle) waits until all commands have ended."
               undone (rest undone) (map-name (world-map world)) (world-tick world)))))
 
 (defun warn-of-undone-work ()
-  "If there is no debugger, warn on the error output about requests left undone in resident worlds."
+  "If Lisp has no debugger, warn on the error output about requests left undone in resident worlds."
   (when (disabled-hook-p (debugger-hook))
     (dolist (map (all-maps))
       (let ((text (and (map-resident map)

@@ -5,14 +5,16 @@
 (export '(start-clock stop-clock call-as-owner *simulator-hooks* *hook-options*))
 
 (define-event *simulator-hooks*
-  "Functions of a robot and the plist of SIMULATOR's options, called when it has started.")
+  "Functions that are called when SIMULATOR has started a run, with the robot and the plist of
+SIMULATOR's options.")
 
 (defvar *hook-options* '()
-  "The options of SIMULATOR that its hooks take, as symbols without the colon.")
+  "The names of the options of SIMULATOR that its hooks use, as symbols that are no keywords.")
 
 (defun call-as-owner (simulation function)
-  "Call FUNCTION with the bindings of the thread of SIMULATION. They include the robots' names that
-were bound where it began: those of WITH-SIMULATION around SIMULATOR."
+  "Call FUNCTION with the bindings of the thread of SIMULATION. The bindings include the robots'
+names that were bound where SIMULATION was started, for example by WITH-SIMULATION around
+SIMULATOR."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
@@ -26,9 +28,10 @@ were bound where it began: those of WITH-SIMULATION around SIMULATOR."
                         (funcall function)))))))
 
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
-  "Run SIMULATION live, in a new thread, at RATE; if PAUSED-P is true, only after RESUME. Plans get
-a thread as well if REAL is true and thinking is not charged for. Return SIMULATION. Signals MISUSE
-if it runs live already, WRONG-ARGUMENT for a rate that is neither a positive number nor :FREE."
+  "Run SIMULATION live, in a new thread, at RATE; if PAUSED-P is true, ticks pass only after RESUME.
+Plans also get a thread if REAL is true and thinking is not charged. Return SIMULATION. Signals
+MISUSE if SIMULATION is already live, WRONG-ARGUMENT for a rate that is neither a positive number
+nor :FREE."
   (check-parameters)
   (let ((output (editors-output))
         ;; Users' code there, and its debugger, read and print as in this thread.
@@ -52,7 +55,7 @@ if it runs live already, WRONG-ARGUMENT for a rate that is neither a positive nu
 
 (defun stop-clock (simulation)
   "End the thread of the live SIMULATION after its current tick and wait until it has ended.
-Commands in progress stay pending; START-CLOCK continues them. If it was rewound, stop its
+Commands in progress stay pending; START-CLOCK continues them. If SIMULATION was rewound, stop its
 successor. Return SIMULATION."
   (let ((timeline (simulation-timeline simulation)))
     (stop-pacing timeline)
@@ -83,8 +86,8 @@ and run. Return the run."
        (or (not journal) (simulation-journal simulation))))
 
 (defun run-to-start (world seed journal)
-  "Return the simulation of WORLD to run live: a new one if the last has passed ticks, or if JOURNAL
-is true and it keeps none. With SEED, that seeds its dice."
+  "Return the simulation of WORLD to run live. It is a new simulation if ticks of the old one have
+passed, or if JOURNAL is true and the old one keeps no journal. SEED, if given, seeds the dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (startable-p simulation journal))
            (end-simulation simulation "it has been started anew")
@@ -95,12 +98,12 @@ is true and it keeps none. With SEED, that seeds its dice."
              simulation))))
 
 (defun call-starting (world function)
-  "Stop WORLD, and call FUNCTION, which starts it, with custody. Signals MISUSE if this thread is
-already starting it, and this is a nested call."
+  "Stop the clock of WORLD, and call FUNCTION, which starts it again, with custody of WORLD. Signals
+MISUSE in a nested call, when this thread is already starting WORLD."
   (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
     (flet ((start ()
              (when (eq (current-thread) (custody-starter custody))
-               (reject-use "simulator: this world is being started already."))
+               (reject-use "simulator: this thread is already starting the same world."))
              (in-any-case
                (progn (setf (custody-starter custody) (current-thread))
                       (stop-pacing timeline)
@@ -110,7 +113,7 @@ already starting it, and this is a nested call."
       (call-alone timeline #'start))))
 
 (defun make-current (simulation everywhere)
-  "Make SIMULATION the current one: in this thread's bindings, and globally if EVERYWHERE is true."
+  "Make SIMULATION the current simulation of this thread, and of all threads if EVERYWHERE is true."
   (setf *simulation* simulation
         *world* (simulation-world simulation))
   (when everywhere
@@ -119,7 +122,7 @@ already starting it, and this is a nested call."
 
 (defun start-world (world rate seed journal keep thinking everywhere)
   "Run WORLD, which this thread owns, live with the options of SIMULATOR, and make its run the
-current one as MAKE-CURRENT does. Return the run."
+current simulation, see MAKE-CURRENT. Return the run."
   (let ((simulation (run-to-start world seed journal)))
     (begin-thinking simulation thinking)
     (if journal
@@ -132,7 +135,8 @@ current one as MAKE-CURRENT does. Return the run."
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
 (defun start-live (robot rate seed journal keep thinking)
-  "Run the world of ROBOT as START-WORLD does. True unless ROBOT has been replaced meanwhile."
+  "Run the world of ROBOT as START-WORLD does. Return false if another thread has replaced ROBOT
+meanwhile."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
         (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
@@ -150,7 +154,8 @@ current one as MAKE-CURRENT does. Return the run."
     (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
 
 (defun check-options-of-simulator (options)
-  "Signal MISUSE if OPTIONS, a plist, has a keyword that neither SIMULATOR nor its hooks take."
+  "Signal MISUSE if the plist OPTIONS has a keyword that is an option of neither SIMULATOR nor its
+hooks."
   (unless (getf options :allow-other-keys)
     (let ((strange (strange-keyword `(&key rate seed journal keep thinking ,@*hook-options*)
                                     options)))
@@ -161,14 +166,14 @@ current one as MAKE-CURRENT does. Return the run."
                   &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
                     (thinking :real)
                   &allow-other-keys)
-  "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make
-it the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A
-world that has run before starts anew, with SEED if that is given. It keeps a journal unless
-JOURNAL is NIL, as is advisable for busy programs at free rates. With KEEP it keeps forks, so that
+  "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make it
+the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A world
+that has run before starts anew, with SEED if SEED is given. The run keeps a journal unless JOURNAL
+is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks, so that
 it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING:
-plans have a separate thread unless it is :FREE or charged, when they react within the ticks.
-Return the robot (manual A). STOP-SIMULATOR stops it. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
-MISUSE if the robot no longer fits into its map. See reading 238."
+with :REAL, plans have a separate thread; otherwise plans react within the ticks. Return the robot
+(manual A). STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the
+robot no longer fits into its map. See reading 238."
   (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")

@@ -11,35 +11,37 @@
 ;;; The head.
 
 (defun check-saved-head (datum)
-  "Signal an error unless DATUM begins a saved run of this version."
+  "Signal an error unless DATUM, the first in a file, is the head of a saved run of this version."
   (unless (typep datum '(cons (eql :ars-magna-run) (cons t (cons t null))))
-    (error "it does not begin like one"))
+    (error "the file does not begin like a saved run"))
   (check-format (second datum) +saved-version+)
   (let* ((head (third datum))
          (trouble (or (header-trouble (if (plist-p head) (list* :seed 0 head) head))
                       (saved-head-trouble head))))
-    (when trouble (error "its head makes no sense: ~A" trouble))))
+    (when trouble (error "the head makes no sense: ~A" trouble))))
 
 (defun saved-head-trouble (head)
-  "Return a text about what is wrong with HEAD, besides what HEADER-TROUBLE finds, or NIL."
-  (cond ((not (settings-p (getf head :noise))) "its noise makes no sense")
+  "Return a text about an error in HEAD that HEADER-TROUBLE does not check, or NIL."
+  (cond ((not (settings-p (getf head :noise))) "the noise in the head makes no sense")
         ((settings-trouble (getf head :noise)))
         ((not (or (null (getf head :dice)) (lisps-dice-numbers-p (getf head :dice))))
-         "its dice make no sense")
-        ((not (typep (getf head :tick) 'tick-count)) "its tick is none")
-        ((not (typep (getf head :digest) '(unsigned-byte 64))) "its digest is none")))
+         "the dice in the head make no sense")
+        ((not (typep (getf head :tick) 'tick-count)) "the tick in the head is not a tick")
+        ((not (typep (getf head :digest) '(unsigned-byte 64))) "the digest in the head is not a ~
+                                                                digest")))
 
 ;;; Lines. Their order is fixed, so the meaning of each is known.
 
 (defstruct (reading (:constructor make-reading (in sum number)) (:copier nil))
-  "The stream that is read, the check sum so far, and the number of the line."
+  "A file that is being read: its stream IN, the check sum SUM so far, and the NUMBER of the line."
   (in nil :read-only t)
   (sum 0 :type (unsigned-byte 32))
   (number 0 :type fixnum))
 
 (defun next-datum (reading)
-  "Return the datum in the next line of READING. Signals an error if there is none, or damage."
-  (let ((line (or (next-line (reading-in reading)) (error "its end is missing"))))
+  "Return the datum in the next line of READING. Signals an error if the line is damaged or
+missing."
+  (let ((line (or (next-line (reading-in reading)) (error "the end of the file is missing"))))
     (incf (reading-number reading))
     (multiple-value-bind (datum sum)
         (handler-case (checked-datum line (reading-sum reading))
@@ -52,24 +54,24 @@
   (and (consp datum) (eq tag (first datum)) (proper-list-p datum)))
 
 (defun read-numbers (reading loaded)
-  "Read the definitions of numbers from READING."
+  "Read from READING which numbers mean which objects, and make these objects in LOADED."
   (loop for datum = (next-datum reading)
         until (tagged-p :objects datum)
         do (cond ((tagged-p :found datum) (add-outer (rest datum) loaded))
                  ((and (tagged-p :new datum) (<= 3 (length datum)))
                   (add-batch (second datum) (third datum) (nthcdr 3 datum) loaded))
-                 (t (error "it does not define its numbers")))
+                 (t (error "the file does not define the numbers of its objects")))
         finally (unless (equal (rest datum) (list (1- (length (loaded-objects loaded)))))
-                  (error "it has not as many objects as it says"))))
+                  (error "the file does not have as many objects as it says"))))
 
 (defun read-contents (reading loaded)
-  "Read the contents of the objects LOADED from READING. Return the waiting requests."
+  "Read the contents of the objects in LOADED from READING. Return a list of the waiting requests."
   (let ((*numbered* (loaded-objects loaded)))
     (loop until (all-objects-complete-p loaded) do (fill-next (next-datum reading) loaded))
     (fill-tables loaded)
     (loop for datum = (next-datum reading)
           do (unless (and (tagged-p :waiting datum) (<= (length datum) 2))
-               (error "it does not say which requests wait"))
+               (error "the list of waiting requests is missing"))
           while (rest datum)
           collect (second datum))))
 
@@ -83,7 +85,7 @@
 (defun journal-of-data (datum entries)
   "Return the journal whose first line is DATUM, with ENTRIES."
   (unless (typep datum '(cons (eql :journal) (cons boolean (cons t (cons list null)))))
-    (error "its journal makes no sense"))
+    (error "the journal in the file makes no sense"))
   (destructuring-bind (full-p end header) (rest datum)
     (let ((journal (journal-from (append (list (list :ars-magna-journal +journal-version+ header))
                                          entries
@@ -92,18 +94,20 @@
       journal)))
 
 (defun read-journal-of (reading head)
-  "Return the journal in READING, of a run with HEAD, or NIL if it keeps none."
+  "Return the journal in READING, a saved run with the head HEAD, or NIL if the run keeps no
+journal."
   (let ((first (and (getf head :journal) (next-datum reading)))
         (tick (getf head :tick)))
     (multiple-value-bind (entries end) (read-entries reading)
-      (unless (equal end (list :end tick)) (error "its end is not that of the run"))
-      (when (next-line (reading-in reading)) (error "there is something after its end"))
-      (when (and entries (null first)) (error "it has journal entries, but no journal"))
+      (unless (equal end (list :end tick))
+        (error "the last line does not have the tick of the run"))
+      (when (next-line (reading-in reading)) (error "the file goes on after its last line"))
+      (when (and entries (null first)) (error "the file has journal entries, but no journal"))
       (let ((journal (and first (journal-of-data first entries))))
         (when (and journal (not (if (journal-full-p journal)
                                     (<= (journal-end journal) tick)
                                     (= (journal-end journal) tick))))
-          (error "its journal does not end where the run is"))
+          (error "the journal does not end at the tick of the run"))
         journal))))
 
 ;;; Putting the run together.
@@ -112,14 +116,15 @@
   "Return the only object of TYPE, a kind, in LOADED. Signals an error unless there is exactly one."
   (let ((objects (remove-if-not (lambda (object) (typep object type)) (loaded-objects loaded))))
     (unless (= 1 (length objects))
-      (error "it has ~R objects of the kind ~(~A~), and a run has one" (length objects) type))
+      (error "the file has ~R objects of the kind ~(~A~), but a run has one" (length objects) type))
     (aref objects 0)))
 
 (defun renamed-parameters (values settings)
-  "Return VALUES, those of SETTINGS, as a vector for the current parameters; others have defaults."
+  "Return VALUES, the values in SETTINGS, as a vector in the order of the current parameters.
+Parameters that are not in SETTINGS get their defaults."
   (unless (and (= (length values) (length settings))
                (every (lambda (value setting) (eql value (second setting))) values settings))
-    (error "its parameters contradict each other"))
+    (error "the parameters in the file contradict each other"))
   (map 'vector
        (lambda (parameter)
          (let ((setting (find (parameter-name parameter) settings
@@ -131,25 +136,28 @@
   "Signal an error unless the objects of SIMULATION are consistent."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (must-hold (and world timeline (eq timeline (world-timeline world)))
-               "its world is not that of its run")
+               "the world does not belong to the timeline of the run")
     (check-world world)
-    (must-hold (proper-list-p (world-robots world)) "its list of robots is circular")
+    (must-hold (proper-list-p (world-robots world)) "the world's list of robots is circular")
     (dolist (robot (world-robots world)) (check-robot robot world))
     (dolist (request requests)
       (check-request request)
       (let ((resource (resource-of request)))
         (must-hold (or (not (typep resource 'resource)) (eq timeline (timeline-of resource)))
-                   "a request is to another run")))))
+                   "a request belongs to another run")))))
 
 (defun resource-of (request)
-  "Return the resource that REQUEST, an operation or one with it as an argument, occupies or frees."
+  "Return the resource that REQUEST occupies or frees: the resource of an operation, or the first
+argument of another request."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
 (defun complete-loading (simulation head loaded requests)
-  "Make SIMULATION, which was LOADED, ready to continue, with REQUESTS waiting. Return it."
+  "Make SIMULATION, which is among the objects LOADED, ready to continue, with REQUESTS waiting.
+Return SIMULATION."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (destructuring-bind (agenda tick . events) (loaded-agenda loaded)
-      (unless (eq agenda (timeline-agenda timeline)) (error "its agenda is not that of its run"))
+      (unless (eq agenda (timeline-agenda timeline)) (error "the agenda does not belong to the ~
+                                                             timeline of the run"))
       (check-commands timeline events)
       (must-hold (null (intersection events requests)) "a waiting request is in progress already")
       (fill-agenda agenda tick events))
@@ -166,7 +174,7 @@
     simulation))
 
 (defun simulation-from (reading head octets)
-  "Return the simulation in READING, a saved run of OCTETS whose HEAD has been read."
+  "Return the simulation in READING, a file of OCTETS octets whose head HEAD has been read."
   (let ((loaded (begin-loading octets)))
     (read-numbers reading loaded)
     (let* ((requests (read-contents reading loaded))
@@ -194,13 +202,13 @@
            (head (read-head reading))
            (simulation (simulation-from reading head (file-length in))))
       (unless (= (getf head :tick) (simulation-tick simulation))
-        (error "its tick is not the one in its head"))
+        (error "the tick of the run is not the tick in the head"))
       (unless (= (getf head :digest) (state-digest simulation))
-        (error "the loaded state is not what was saved"))
+        (error "the digest of the loaded run is not the digest in the head"))
       simulation)))
 
 (defun check-saved-definitions (head)
-  "Signal UNKNOWN-NAME if a robot in HEAD, of a saved run, is not defined, and
+  "Signal UNKNOWN-NAME if a robot in HEAD, the head of a saved run, is not defined. Signal
 DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed."
   (let ((differences (differences-from head (mapcar #'find-blueprint (getf head :robots)))))
     (when differences
@@ -210,7 +218,8 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed
           :report "Load it all the same.")))))
 
 (defun load-saved (file anyway)
-  "Do what LOAD-SIMULATION does. Return also what DIRTY-SIMULATION restores, as settings by symbol."
+  "Load the run in FILE as LOAD-SIMULATION does. Return the simulation, and a list (symbol value) of
+the parameters that DIRTY-SIMULATION would restore in it."
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
   (let ((head (saved-head file)))
     (unless anyway (check-saved-definitions head))
@@ -218,15 +227,15 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed
 
 (addition load-simulation)
 (defun load-simulation (file &key anyway)
-  "Return a new headless simulation in the state that SAVE-SIMULATION saved in FILE. It has the same
-STATE-DIGEST, continues exactly as the saved run would have, given the same requests, and keeps its
-journal, if any. Map, robots and all else that it uses must be loaded. Nothing in FILE is executed.
-Signals:
-- DAMAGED-SIMULATION if FILE is damaged or no saved run
-- UNKNOWN-NAME if something it uses is not defined
-- DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since, unless
-  ANYWAY is true
-- WRONG-ARGUMENT unless FILE is a name"
+  "Return a new headless simulation in the state that SAVE-SIMULATION saved in FILE. The simulation
+has the same STATE-DIGEST as the saved run, continues exactly as that run would have, given the same
+requests, and has its journal, if any. The map, the robots and all other definitions that the run
+uses must be loaded. Nothing in FILE is executed. Signals:
+- DAMAGED-SIMULATION if FILE is damaged or is not a saved run
+- UNKNOWN-NAME if a definition that the run uses is not loaded
+- DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since the run was
+  saved, unless ANYWAY is true
+- WRONG-ARGUMENT unless FILE is a file name"
   (values (load-saved file anyway)))
 
 (defun call-with-loaded-simulation (function file &key anyway keep)
@@ -241,7 +250,7 @@ Signals:
 (addition with-loaded-simulation)
 (define-user-macro with-loaded-simulation ((file &key anyway keep) &body body)
   "Run BODY in the simulation that LOAD-SIMULATION returns for FILE and ANYWAY, headless, with its
-robots and parameters bound as in WITH-SIMULATION. With KEEP it keeps forks from there on, so that
-it can be rewound, see KEEP-FORKS. When BODY has ended, the run is over. Return the values of BODY.
-Signals what LOAD-SIMULATION does."
+robots and parameters bound as in WITH-SIMULATION. If KEEP is true, the run keeps forks from now on,
+so that it can be rewound, see KEEP-FORKS. When BODY has ended, the run is over. Return the values
+of BODY. Signals the same errors as LOAD-SIMULATION."
   `(call-with-loaded-simulation (lambda () ,@body) ,file :anyway ,anyway :keep ,keep))

@@ -14,7 +14,8 @@
 ;;; it is of a kind (DEFINE-KIND), the roles of its slots determine how it is copied and digested.
 
 (defmacro define-participation (name lambda-list documentation &body otherwise)
-  "Define the generic function NAME of a participant; the body of its default method is OTHERWISE."
+  "Define the generic function NAME, which participants may implement. OTHERWISE is the body of its
+default method."
   `(defgeneric ,name ,lambda-list
      (:documentation ,documentation)
      (:method ,lambda-list
@@ -22,24 +23,25 @@
        ,@otherwise)))
 
 (define-participation participant-after-tick (participant simulation)
-  "Act after each tick of SIMULATION. Called by the owner."
+  "Let PARTICIPANT act after a tick of SIMULATION. The thread that owns the world calls this
+function."
   (values))
 
 (define-participation participant-after-ticks (participant simulation)
-  "Act when RUN-TICKS or RUN-UNTIL has passed ticks of the headless SIMULATION."
+  "Let PARTICIPANT act when RUN-TICKS or RUN-UNTIL has passed ticks of the headless SIMULATION."
   (values))
 
 (define-participation participant-origin (participant)
   "Return the name of PARTICIPANT for messages and restarts, as CALL-USER-CODE takes it."
-  "what takes part in the run")
+  "a participant of the run")
 
 (define-participation participant-busy-p (participant simulation)
   "True if PARTICIPANT needs the ticks of SIMULATION to go on."
   nil)
 
 (define-participation participant-at-work-p (participant)
-  "True if PARTICIPANT is working, has a notification to process, or waits for a time.
-May be called by any thread."
+  "True if PARTICIPANT is working, has a notification to process, or waits for a time. Any thread
+may call this function."
   nil)
 
 (define-participation participant-reseed (participant seed)
@@ -51,8 +53,9 @@ May be called by any thread."
   (digest-state participant digest))
 
 (define-participation participant-copy (participant simulation copier)
-  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run that COPIER makes, or NIL for
-none. By default, participants of a kind are copied. See COPY-PLAN-VALUE."
+  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run that COPIER makes, or NIL if the
+fork needs no copy. By default, participants that DEFINE-KIND has defined are copied. See
+COPY-PLAN-VALUE."
   (and (kind-of participant) (forked participant copier)))
 
 (define-participation participant-place (participant value)
@@ -60,37 +63,37 @@ none. By default, participants of a kind are copied. See COPY-PLAN-VALUE."
   nil)
 
 (define-participation check-forkable (participant)
-  "Signal MISUSE if PARTICIPANT has made this call, so that its run cannot be forked here."
+  "Signal MISUSE if code of PARTICIPANT has made this call, so that its run cannot be forked now."
   (values))
 
 (define-participation participant-at-rest (participant function)
-  "Call FUNCTION while PARTICIPANT is at rest, and return its value. Return :BUSY if
+  "Call FUNCTION while PARTICIPANT is at rest, and return the value of FUNCTION. Return :BUSY if
 PARTICIPANT is working in another thread."
   (funcall function))
 
 (define-participation call-as-participant-makes-way (participant function)
-  "Call FUNCTION, which tries until PARTICIPANT is at rest, and return its value.
-Meanwhile the work of PARTICIPANT in another thread stops as soon as it can."
+  "Call FUNCTION, which waits until PARTICIPANT is at rest, and return the value of FUNCTION.
+Meanwhile, PARTICIPANT stops working in another thread as soon as possible."
   (funcall function))
 
 (define-participation participant-clock-stopped (participant)
-  "Act when the clock of the run has stopped. May be called by any thread."
+  "Let PARTICIPANT act when the clock of the run has stopped. Any thread may call this function."
   (values))
 
 (define-participation participant-end (participant simulation)
-  "Act when SIMULATION is over."
+  "Let PARTICIPANT act when SIMULATION is over."
   (values))
 
 (define-participation participant-unfinished (participant)
-  "Return a list of texts about unfinished work of PARTICIPANT, such as \"the plan p\".
-It cannot be saved to a file."
+  "Return a list of texts about unfinished work of PARTICIPANT, such as \"the plan p\". Unfinished
+work cannot be saved to a file."
   '())
 
 (define-participation participant-around-p (participant)
-  "True if PARTICIPANT has made this call, as in a step of a plan."
+  "True if code of PARTICIPANT has made this call, for example a step of a plan."
   nil)
 
 (define-participation participant-cut-off (participant)
-  "Return a list of texts about work of PARTICIPANT that the end of the run cuts off
-though it would have ended by itself, such as \"the plan p\"."
+  "Return a list of texts about work of PARTICIPANT that would have ended by itself but is cut off
+by the end of the run, such as \"the plan p\"."
   '())

@@ -16,22 +16,23 @@
   (when (and (owner-p simulation)
              (or (simulation-ticking-p simulation)
                  (timeline-passing-p (simulation-timeline simulation))))
-    (reject-use "run-ticks: a tick is under way; time cannot pass inside it, as in a continuation. ~
-                 A plan can be begun there, by (begin-plan ...) instead of (run-plan ...); a plan ~
-                 waits by (wait-time N).")))
+    (reject-use "run-ticks: a tick is under way, as in a continuation, so no time can pass here. ~
+                 Begin plans here by (begin-plan ...) instead of (run-plan ...); in a plan, wait ~
+                 by (wait-time N).")))
 
 (defun await-custody (simulation)
-  "Wait a moment for another thread that owns SIMULATION to inspect it. Signals MISUSE if that
-thread passes ticks of it."
+  "Wait a moment for another thread that owns SIMULATION only in order to inspect it. Signals MISUSE
+if that thread passes ticks of SIMULATION."
   (when (timeline-passing-p (simulation-timeline simulation))
-    (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. One at a time can."
+    (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. Only one thread at a ~
+                 time can do so."
                 (simulation-name simulation)))
   (answer-own-questions)
   (yield-thread))
 
 (defun pass-without-gate (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread owns. Stop early if the run ends or an error in
-users' code is to be signalled."
+  "Pass COUNT ticks of SIMULATION, which this thread owns. Stop early if the run ends, or if an
+error in users' code has to be signalled."
   (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
          (queue (simulation-messages simulation)))
     (loop repeat count
@@ -40,8 +41,8 @@ users' code is to be signalled."
              (when (custody-questions custody) (answer-questions custody)))))
 
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks as PASS-WITHOUT-GATE does, as many at a time as the gate, if any, allows. No
-other code, not even a continuation, can pass ticks of SIMULATION meanwhile."
+  "Pass COUNT ticks of SIMULATION, which this thread owns, as many at a time as its gate, if any,
+allows. Meanwhile no other code, not even a continuation, can pass ticks of SIMULATION."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case
@@ -55,21 +56,21 @@ other code, not even a continuation, can pass ticks of SIMULATION meanwhile."
       (setf (timeline-passing-p timeline) nil))))
 
 (defun warn-of-ticks-in-plan (operator simulation)
-  "Warn once if a step of a plan calls OPERATOR, which passes ticks of SIMULATION while the plan
-stands still."
+  "Warn once if a step of a plan calls OPERATOR, which passes ticks of SIMULATION while the plan is
+stopped."
   (when (some #'participant-around-p (simulation-participants simulation))
     (warn-once (list :in-plan operator) (simulation-world simulation)
-               (format nil "~(~A~) was called inside of a step of a plan, which stands still ~
-                            meanwhile. A plan waits by (wait-time N) or (wait-until TEST)."
+               (format nil "~(~A~) was called inside of a step of a plan, so the plan is stopped ~
+                            meanwhile. In a plan, wait by (wait-time N) or (wait-until TEST)."
                        operator))))
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick then reached. A fork
-that was rewound stands for its successor. Signals WRONG-ARGUMENT, and MISUSE if SIMULATION runs
-live or is inside a tick, or if another thread passes its ticks. If errors in user code are to be
-signalled, signals USER-CODE-ERROR after the tick of the first one, with a restart CONTINUE that
-passes the other ticks."
+  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick that is reached. If
+SIMULATION is a fork that was rewound, its successor is used. Signals WRONG-ARGUMENT, and MISUSE if
+SIMULATION runs live or is inside a tick, or if another thread passes its ticks. If the error policy
+is :SIGNAL, signals USER-CODE-ERROR after the tick in which the first error in user code occurs. The
+restart CONTINUE passes the remaining ticks."
   (check-argument run-ticks count (whole-p count 0) "a whole number of ticks, from 0 to 1e9")
   (let ((simulation (successor-of-fork simulation)))
     (warn-of-ticks-in-plan :run-ticks simulation)
@@ -77,7 +78,7 @@ passes the other ticks."
       (notify-participants simulation))))
 
 (defun notify-participants (simulation)
-  "Let the participants of SIMULATION act on the ticks that have passed."
+  "Let the participants of SIMULATION act after RUN-TICKS or RUN-UNTIL has passed ticks."
   (dolist (participant (simulation-participants simulation))
     (participant-after-ticks participant simulation)))
 
@@ -108,8 +109,8 @@ passes the other ticks."
   (simulation-tick simulation))
 
 (defun note-run-until-result (answer limit-p limit simulation)
-  "Note that RUN-UNTIL has ended in SIMULATION: with ANSWER or, if that is NIL, at LIMIT. Warn once
-in the run if that is the default, as LIMIT-P is false."
+  "Record that RUN-UNTIL has ended in SIMULATION with ANSWER. If ANSWER is NIL and LIMIT is the
+default, that is, LIMIT-P is false, warn once in the run."
   (cond (answer (note-looked-after (simulation-world simulation)))
         ((not (or limit-p (simulation-over simulation)))
          (warn-once '(:limit :run-until) (simulation-world simulation)
@@ -122,9 +123,9 @@ in the run if that is the default, as LIMIT-P is false."
 (define-with-keywords run-until (predicate &key (limit 100000 limit-p)
                                            (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function without arguments, returns
-true, but at most LIMIT. Return its value and the tick reached; NIL means that the limit was
-reached. Without LIMIT, a warning says so once in a run. Signals WRONG-ARGUMENT, and MISUSE as
-RUN-TICKS does."
+true, but at most LIMIT. Return the value of PREDICATE and the tick reached; a value of NIL means
+that LIMIT ticks have passed. If no LIMIT was given, a warning says so once in a run. Signals
+WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
   (check-argument run-until predicate (or (functionp predicate)
                                         (and (symbolp predicate) (fboundp predicate)))
                   "a function of no arguments, such as (lambda () (< 9 (simulation-tick)))")
@@ -143,8 +144,8 @@ RUN-TICKS does."
 
 (addition step-ticks)
 (defun step-ticks (&optional (count 1) (simulation (current-simulation)))
-  "Pass COUNT ticks and then pause. A headless SIMULATION has passed them on return; a live one
-passes them at its pace. Returns nothing."
+  "Pass COUNT ticks and then pause. In a headless SIMULATION the ticks have passed when STEP-TICKS
+returns; a live SIMULATION passes them at its pace. Return nothing."
   (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
   (if (live-p simulation)
       (let-pass count simulation)
@@ -155,20 +156,21 @@ passes them at its pace. Returns nothing."
 
 (addition await-idle)
 (defun await-idle (&optional (simulation (current-simulation)) (seconds 60 given-p))
-  "Wait, at most SECONDS, until the live SIMULATION has nothing left to do that ends. True if so;
-else a warning says what is still in progress, unless SECONDS are given. Kickers and tracks do not
-end, so they are not waited for. If SIMULATION is not live, return at once whether it has nothing
-left to do. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to 1e9, and MISUSE if the
-simulator is paused after a failure: the wait would never end."
+  "Wait, at most SECONDS, until all work in the live SIMULATION has ended. Return true if it has
+ended; otherwise return false and, unless SECONDS are given, queue a warning that names the work in
+progress. Kickers and tracks do not end, so AWAIT-IDLE does not wait for them. If SIMULATION is not
+live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to
+1e9, and MISUSE if the simulator is paused after a failure, because the wait would never end."
   (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (resolve-simulation simulation 'await-idle)))
     (cond ((not (live-p simulation)) (idle-p simulation))
           ((eq (current-thread) (simulation-thread simulation))
-           (reject-use "await-idle: the simulator would wait for itself. Go on in a continuation."))
+           (reject-use "await-idle: the simulator's own thread would wait for itself. Continue in ~
+                        a continuation instead."))
           ((some #'participant-around-p (simulation-participants simulation))
-           (reject-use "await-idle: a plan would wait for itself. Wait for a fluent there, such as ~
-                        robot-stopped*."))
+           (reject-use "await-idle: a plan would wait for itself. In a plan, wait for a fluent, ~
+                        such as robot-stopped*."))
           ((wait-until-idle simulation seconds))
           ((and (not given-p) (live-p simulation)) (warn-of-timeout simulation seconds)))))
 
@@ -176,14 +178,14 @@ simulator is paused after a failure: the wait would never end."
   "Queue a warning that SIMULATION was not idle after AWAIT-IDLE has waited SECONDS. Return NIL."
   (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
         (*message-queue* (simulation-messages simulation)))
-    (warn-at-once (format nil "await-idle has waited for ~A s, and gives up, as ~:[something is ~
-                               still to be done~;~:*~{~A~^ and ~} did not end~]."
+    (warn-at-once (format nil "await-idle has waited for ~A s and stops waiting, because ~:[some ~
+                               work is still in progress~;~:*~{~A~^ and ~} did not end~]."
                           seconds names))
     nil))
 
 ;; Check plans first: their requests are in the inbox when they are at rest.
 (defun all-at-rest-p (simulation)
-  "True if SIMULATION is settled and no participant of it is working."
+  "True if SIMULATION has no work left and none of its participants is working."
   (asking (simulation)
     (and (notany #'participant-at-work-p (simulation-participants simulation))
          (settled-p simulation))))
@@ -199,8 +201,9 @@ simulator is paused after a failure: the wait would never end."
         (remove-observer #'look simulation)))))
 
 (defun await-stillness (idle seconds simulation)
-  "Wait until SIMULATION is idle, at most SECONDS; true if it is. The semaphore IDLE is signalled
-when it may be; plans signal nothing. Signals MISUSE if SIMULATION has failed."
+  "Wait at most SECONDS until SIMULATION is idle. Return true if it is idle. The semaphore IDLE is
+signalled when SIMULATION may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has
+failed."
   (loop with due = (+ (seconds-now) seconds)
         do (check-not-failed simulation)
         thereis (all-at-rest-p simulation)
@@ -209,21 +212,21 @@ when it may be; plans signal nothing. Signals MISUSE if SIMULATION has failed."
            (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
 (defun doubt-wait (operator simulation)
-  "Check that OPERATOR does not wait for a live SIMULATION that is paused. Signal MISUSE if no user
-can resume it; else queue a warning, once in a run."
+  "If OPERATOR waits for a live SIMULATION that is paused, signal MISUSE if no user can resume it;
+otherwise queue a warning, once in a run."
   (when (stands-still-p simulation)
     (unless *waits-while-paused-p*
-      (reject-use "~(~A~): the run is paused, so nothing that this would wait for can happen. ~
-                   (resume) first." operator))
+      (reject-use "~(~A~): the run is paused, so this would wait for ever. Call (resume) first."
+                  operator))
     (let ((*message-queue* (simulation-messages simulation)))
       (warn-once '(:waits-while-paused) (simulation-world simulation)
-                 (format nil "~(~A~) waits, as the run is paused; (resume), in another thread, ~
-                              lets it go on. Control-C ends the wait." operator)))))
+                 (format nil "~(~A~) waits, because the run is paused. Call (resume) in another ~
+                              thread to continue the run. Control-C ends the wait." operator)))))
 
 (defun check-not-failed (simulation)
-  "Signal MISUSE if the live SIMULATION has failed and is paused for that."
+  "Signal MISUSE if the live SIMULATION is paused because it has failed."
   (let ((trouble (clock-trouble simulation)))
     (when trouble
       (reject-use "await-idle: the simulator has failed and is paused, so no ticks pass: ~A. ~
-                   (resume) continues it."
+                   (resume) continues the run."
                   (string-right-trim "." trouble)))))

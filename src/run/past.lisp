@@ -11,12 +11,12 @@
 
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
-  "A request or change to a run. KIND is :REQUEST for one performed at the start of a tick, else
-:CHANGE. TICK is the current tick, or the last one between ticks. PHASE is the phase of the tick in
-which the act was made, 0 between ticks. MOMENT is the number of earlier acts in that tick that
-forks repeat. OWN-P is true of an act that forks repeat. OPERATOR is the name of an operator, with
-externalized ARGUMENTS, or a function; ARGUMENTS are memorized. ASKER is a note of who made the act,
-or NIL."
+  "A request or change to a run, called an act. KIND is :REQUEST for a request performed at the
+start of a tick, else :CHANGE. TICK is the tick in which the act was made, or the tick before it if
+the act was made between ticks. PHASE is the phase of that tick, or 0 between ticks. MOMENT is the
+number of earlier acts in the tick that forks repeat by themselves. OWN-P is true of an act that
+forks repeat by themselves. OPERATOR is a function, or the name of an operator with externalized
+ARGUMENTS; ARGUMENTS are memorized. ASKER is a note of who made the act, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -27,7 +27,8 @@ or NIL."
   (asker nil :read-only t))
 
 (defstruct (kept (:constructor make-kept (fork tick acts)) (:copier nil))
-  "FORK was made at the end of TICK, when ACTS, the newest first, had been done."
+  "A fork that a run keeps for rewinding. FORK was made at the end of TICK, after ACTS, the newest
+first."
   (tick 0 :type fixnum :read-only t)
   (fork nil :type simulation :read-only t)
   (acts '() :type list :read-only t))
@@ -35,11 +36,12 @@ or NIL."
 (defstruct (kept-past (:conc-name past-)
                       (:constructor make-past (limit &key forks acts cost (count (length acts))))
                       (:copier nil))
-  "What is kept of a run's past: at most LIMIT FORKS, and COUNT ACTS, the newest of both first. The
-next fork is due at the tick NEXT, not before DUE, a time in seconds. If the time has not come then,
-the clock is read again PACE ticks later. ROLLED is the last known state of the dice of programs, or
-NIL. COST is how many seconds a fork takes on average. WANTED is since when, in seconds, a fork is
-due that could not be made, as the run was busy; or NIL."
+  "What is kept of a run's past: at most LIMIT forks, FORKS, and COUNT acts, ACTS, each list with
+the newest first. The next fork is made at the tick NEXT or later, and not before the time DUE, in
+seconds. If DUE has not come at the tick NEXT, the clock is read again PACE ticks later. ROLLED is
+the last known state of the dice of programs, or NIL. COST is the average number of seconds that a
+fork takes. WANTED is the time, in seconds, since which a fork is postponed because the run is busy;
+or NIL."
   (limit 0 :type fixnum)
   (forks '() :type list)
   (acts '() :type t)
@@ -53,12 +55,13 @@ due that could not be made, as the run was busy; or NIL."
   (warned-p nil :type boolean))
 
 (defun repeated-by-fork-p (request)
-  "True if a fork makes REQUEST by itself, as the code that made it also runs there."
+  "True if a fork makes REQUEST by itself, because the code that made REQUEST also runs in the
+fork."
   (or (request-forked-p request) (asked-inside-p request)))
 
 (defun request-act (request simulation operator arguments)
-  "Return the act for REQUEST, which SIMULATION performs, with OPERATOR and ARGUMENTS, which are
-externalized and memorized."
+  "Return the act for REQUEST, which SIMULATION performs. OPERATOR and ARGUMENTS are those of
+REQUEST; ARGUMENTS are externalized and memorized."
   (make-act :request (simulation-tick simulation) (request-phase request) 0
             (repeated-by-fork-p request) operator arguments (request-asker request)))
 
@@ -70,8 +73,8 @@ externalized and memorized."
               (goes-on-in-forks-p) operator arguments nil)))
 
 (defun remember (simulation operator arguments &optional request)
-  "If SIMULATION has a past, record that OPERATOR was called with ARGUMENTS, or requested by
-REQUEST. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
+  "If SIMULATION has a past, record that OPERATOR was called with ARGUMENTS, or that REQUEST asked
+for this call. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
   (let ((past (simulation-past simulation)))
     (when past
       (let ((arguments (memorize-arguments arguments)))
@@ -93,8 +96,8 @@ REQUEST. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
 ;;; repeated in forks. So its state is recorded after they have changed it.
 
 (defun update-rolled-dice (simulation past)
-  "Store the current dice of programs of SIMULATION in PAST. Return them if they were rolled since
-the last call, or NIL. Only a headless run has dice that all its programs share."
+  "Store the current dice of programs of SIMULATION in PAST. Return the dice if they were rolled
+since the last call, or NIL. Only in a headless run do all programs share the same dice."
   (when (member *lisps-dice* (simulation-variables simulation) :test #'eq)
     (let ((before (past-rolled past)))
       (setf (past-rolled past) (dice-rolled before))
@@ -107,8 +110,9 @@ rolled them."
     (when rolled (remember simulation #'roll-back (list rolled)))))
 
 (defun note-doing (simulation function &rest arguments)
-  "If SIMULATION has a past, record an act from outside that is not in the journal: a call of
-FUNCTION with ARGUMENTS repeats it. Acts that a fork repeats are not recorded. Return nothing."
+  "If SIMULATION has a past, record an act of a program outside the run that is not in the journal.
+A call of FUNCTION with ARGUMENTS repeats the act. Acts that a fork repeats by itself are not
+recorded. Return nothing."
   (when (and (simulation-past simulation)
              (not (goes-on-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.
@@ -120,21 +124,22 @@ FUNCTION with ARGUMENTS repeats it. Acts that a fork repeats are not recorded. R
 ;;; The part of the past before a moment.
 
 (defun requested-in-tick-p (act tick)
-  "True if ACT is a request that was made inside TICK, and performed later."
+  "True if ACT is a request that was made inside the tick TICK and performed later."
   (and (eq :request (act-kind act))
        (= (act-tick act) tick)
        (plusp (act-phase act))))
 
 (defun done-by-end-p (act tick)
-  "True if ACT, and so all acts before it, was done before the end of TICK."
+  "True if ACT, and so every earlier act, was done before the end of the tick TICK."
   (or (< (act-tick act) tick)
       (and (= (act-tick act) tick)
            (eq :change (act-kind act))
            (telling-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
-  "Return the tail of ACTS, the newest first, that was done before the end of TICK; and a list, the
-newest first, of requests made but not performed by then."
+  "ACTS is a list with the newest act first. Return its tail of acts that were done before the end
+of the tick TICK; and a list, the newest first, of the requests that were made but not performed
+before that."
   (let ((tail (member-if (lambda (act) (done-by-end-p act tick)) acts)))
     (values tail
             (remove-if-not (lambda (act) (requested-in-tick-p act tick)) (ldiff acts tail)))))
@@ -148,8 +153,8 @@ newest first, of requests made but not performed by then."
 
 (addition *forks-to-keep*)
 (defvar *forks-to-keep* nil
-  "The default of :KEEP of SIMULATOR: how many forks a live run keeps, so that REWIND can go back; T
-for a usual number, NIL for none. The prompt sets it to T.")
+  "The default of the option :KEEP of SIMULATOR: the number of forks that a live run keeps, so that
+REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T.")
 
 (defconstant +usual-forks+ 30 "How many forks a run keeps by default.")
 (defconstant +longest-pace+ 1024 "The most ticks that a run passes before it reads the clock.")
@@ -157,9 +162,10 @@ for a usual number, NIL for none. The prompt sets it to T.")
 (defconstant +least-cost+ 1d-4 "The least seconds that a fork is taken to cost.")
 
 (defparameter *keeping-share* 1/100
-  "The part of its time that a run may spend on keeping forks; 1: it keeps one at each tick.")
+  "The part of its time that a run may spend on keeping forks. With 1, a run keeps a fork at each
+tick.")
 (defparameter *most-kept-octets* (expt 2 28)
-  "The most octets that the kept forks of a run may take, by an estimate.")
+  "The estimated number of octets that the kept forks of a run may take at most.")
 
 (defun room-for-forks (simulation past)
   "Return how many forks SIMULATION, which has PAST, may keep."
@@ -167,8 +173,8 @@ for a usual number, NIL for none. The prompt sets it to T.")
     (clamp (floor *most-kept-octets* octets) 3 (max 3 (past-limit past)))))
 
 (defun least-needed (forks)
-  "Return the one of FORKS, the newest first, whose removal leaves the smallest gap for its age. It
-is neither the first nor the last."
+  "FORKS is a list with the newest fork first. Return the fork, neither the first nor the last,
+whose removal leaves the smallest gap in proportion to its age."
   (loop with now = (kept-tick (first forks))
         with best = nil and least = nil
         for (newer kept older) on forks
@@ -180,7 +186,7 @@ is neither the first nor the last."
         finally (return best)))
 
 (defun warn-of-no-fork (simulation past condition)
-  "Warn once that SIMULATION, which has PAST, cannot keep a fork because of CONDITION."
+  "Warn once that no fork of SIMULATION, which has PAST, can be kept because of CONDITION."
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
     (warn-notably (format nil "The state at tick ~D cannot be kept for REWIND: ~A."
@@ -188,7 +194,8 @@ is neither the first nor the last."
                          (string-right-trim "." (brief-text condition))))))
 
 (defun fork-to-keep (simulation past)
-  "Return a fork of SIMULATION, which has PAST; :BUSY if a participant is, NIL if none can be made."
+  "Return a fork of SIMULATION, which has PAST; :BUSY if a participant is busy; or NIL if no fork
+can be made."
   (handler-case (call-nested #'participant-at-rest (simulation-participants simulation)
                              (lambda () (fork-now simulation nil '())))
     (misuse () :busy)
@@ -198,13 +205,14 @@ is neither the first nor the last."
   "Discard the forks and acts of SIMULATION, which has PAST, if there are too many acts."
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
-    (warn-notably (format nil "This run has had so many requests that REWIND can go back to tick ~
-                              ~D at most; see *JOURNAL-LIMIT*."
+    (warn-notably (format nil "This run has had so many requests that REWIND can go back only to ~
+                               tick ~D; see *JOURNAL-LIMIT*."
                          (simulation-tick simulation)))))
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun note-cost (past began)
-  "Note in PAST the cost of a fork that was begun at BEGAN, in seconds, and has just been made."
+  "Update in PAST the average cost of a fork. The last fork was begun at the time BEGAN, in seconds,
+and has just been made."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *keeping-share* 1)
@@ -212,8 +220,8 @@ is neither the first nor the last."
                               began))))
 
 (defun keep-fork (simulation past)
-  "Keep a fork of SIMULATION, which is between ticks, in PAST, if one can be made. If a participant
-is busy, it is due again at the end of the next tick."
+  "Keep a fork of SIMULATION, which is between ticks, in PAST, if a fork can be made. If a
+participant is busy, try again at the end of the next tick."
   (forget-if-full simulation past)
   (let* ((began (or (past-wanted past) (seconds-now)))
          (tick (simulation-tick simulation))
@@ -230,11 +238,13 @@ is busy, it is due again at the end of the next tick."
       (note-cost past began))))
 
 (defconstant +looks-for-fork+ 100
-  "How many times a thread that waits for a fork checks whether it was made, before it gives up.")
+  "The number of times that a thread waiting for a fork checks whether the fork was made, before it
+gives up.")
 
 (defun await-postponed-fork (simulation)
-  "If SIMULATION still has to keep a fork, because this thread was busy, wait until the next tick
-has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped."
+  "If keeping a fork of SIMULATION was postponed because this thread was busy, wait until the fork
+is made at the end of the next tick. Give up after +LOOKS-FOR-FORK+ checks, because the ticks may
+have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
       (loop repeat +looks-for-fork+
@@ -243,7 +253,7 @@ has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped
       (setf (past-wanted past) nil))))
 
 (defun keep-fork-if-affordable (simulation past)
-  "Keep a fork of SIMULATION in PAST unless too much time was spent on that."
+  "Keep a fork of SIMULATION in PAST unless too much time was spent on keeping forks."
   (cond ((>= (seconds-now) (past-due past)) (keep-fork simulation past))
         (t (setf (past-next past) (+ (simulation-tick simulation) (past-pace past))
                  (past-pace past) (min +longest-pace+ (* 2 (past-pace past)))))))
@@ -252,7 +262,7 @@ has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped
 
 (define-argument-type 'fork-count
   (lambda (value) (or (typep value 'boolean) (whole-p value 2 1000)))
-  "a number of forks from 2 to 1000, T for a usual one, or NIL for none")
+  "a number of forks from 2 to 1000, T for 30 forks, or NIL for none")
 
 (defun begin-keeping (simulation limit)
   "Make SIMULATION, which this thread owns, keep forks, at most LIMIT, from now on."
@@ -268,10 +278,10 @@ has made it. Give up after +LOOKS-FOR-FORK+ checks, since ticks may have stopped
 (addition keep-forks)
 (defun keep-forks (&optional (count t) (simulation (current-simulation)))
   "Make SIMULATION keep forks of itself from now on, so that REWIND can go back to this tick at the
-earliest. COUNT is the most it keeps, from 2 to 1000, by default 30, and fewer for a very large
-world; NIL drops them all and stops keeping. Recent forks are closer together than old ones. Keeping
-them takes about a hundredth of the run's time; requests to the run are kept, too. Return nothing.
-Signals WRONG-ARGUMENT, and MISUSE if the run is over."
+earliest. COUNT is the largest number of forks, from 2 to 1000 and by default 30; for a very large
+world it is smaller. NIL drops all forks and keeps no more. Recent forks are closer together than
+old forks. Keeping forks takes about a hundredth of the run's time; requests to the run are kept,
+too. Return nothing. Signals WRONG-ARGUMENT, and MISUSE if the run is over."
   (check-of-type 'keep-forks 'count count 'fork-count)
   (let ((simulation (resolve-simulation simulation 'keep-forks)))
     (check-not-over simulation 'keep-forks)

@@ -17,7 +17,8 @@
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is a tree of conses within these limits, and so not circular."
+  "True if DATUM is a tree of conses that is not circular, has at most +LARGEST-DATUM+ conses and is
+at most +DEEPEST+ levels deep."
   (let ((left +largest-datum+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
@@ -52,14 +53,14 @@
         (t tree)))
 
 (defun unprintable-in (datum)
-  "Return a part of DATUM that could not be read back, or NIL."
+  "Return a part of DATUM whose printed form could not be read again, or NIL."
   (if (tree-p datum) (unprintable-part datum) datum))
 
 (defun ascii-digit-p (char)
   (char<= #\0 char #\9))
 
 (defun bare-name-p (name)
-  "True if a keyword called NAME, a string, can be written without bars."
+  "True if a keyword with the name NAME, a string, can be written without bars."
   (and (plusp (length name))
        (char<= #\A (char name 0) #\Z)
        (every (lambda (char)
@@ -68,7 +69,8 @@
        (not (member name '("NIL" "T") :test #'string=))))
 
 (defun plain-char-p (char)
-  "True if CHAR, other than a quote, can be written in a string without a code."
+  "True if CHAR, which is not a quote, can be written in a string as it is, without a character
+code."
   (let ((code (char-code char)))
     (not (or (< code 32) (<= 127 code 159) (<= #xD800 code #xDFFF) (char= char #\\)))))
 
@@ -100,13 +102,13 @@
     (t (prin1 datum stream))))
 
 (defmacro with-plain-syntax (&body body)
-  "Run BODY, which prints and reads numbers in standard syntax, whatever the user has set."
+  "Run BODY, which prints and reads numbers, in standard syntax and not by the user's settings."
   `(with-standard-io-syntax
      (let ((*read-default-float-format* 'double-float) (*read-eval* nil) (*print-readably* nil))
        ,@body)))
 
 (defun datum-text (datum)
-  "Return the text of DATUM, which has no unprintable part, for READ-DATUM."
+  "Return DATUM, which has no unprintable part, as a text that READ-DATUM can read."
   (with-plain-syntax
     (with-output-to-string (out) (write-datum datum out))))
 
@@ -119,11 +121,11 @@
   (if (and (< start (length word)) (find (char word start) "+-")) (1+ start) start))
 
 (defun digits-p (word start)
-  "True if WORD has digits from START to its end, at least one."
+  "True if WORD has only digits from START to its end, and at least one."
   (and (< start (length word)) (= (length word) (skip-digits word start))))
 
 (defun exponent-p (word start)
-  "True if WORD ends at START with an exponent of at most six characters."
+  "True if WORD from START on is the exponent of a float, of at most six characters."
   (and (find (char word start) "desfDESF")
        (< (- (length word) start) 7)
        (digits-p word (skip-sign word (1+ start)))))
@@ -149,18 +151,18 @@
 
 (defun read-number (word)
   (when (< +longest-number+ (length word))
-    (error "it has a number of ~D characters" (length word)))
+    (error "a number has ~D characters, which is too long" (length word)))
   (if (short-integer-p word)
       (parse-integer word)
       (handler-case (with-plain-syntax (values (read-from-string word)))
-        (error () (error "it has ~A, a number that Lisp does not have" word)))))
+        (error () (error "Lisp cannot represent the number ~A" word)))))
 
 ;;; Reading. Each function returns what it has read in TEXT from START on, and its end position.
 
 (defun char-at (text position)
   (if (< position (length text))
       (char text position)
-      (error "it is cut short")))
+      (error "the text ends too early")))
 
 (defun read-coded-char (text start)
   (let* ((end (position #\; text :start start))
@@ -168,7 +170,7 @@
                     (< 1 (- end start) 8)
                     (parse-integer text :start (1+ start) :end end :radix 16 :junk-allowed t))))
     (unless (and code (<= 0 code (1- char-code-limit)))
-      (error "it has a backslash where none can be"))
+      (error "a backslash is in a wrong place"))
     (values (code-char code) (1+ end))))
 
 (defun read-quoted (text start)
@@ -185,53 +187,55 @@
             (1+ position))))
 
 (defvar *uninterned* (make-hash-table :test 'equal)
-  "The uninterned symbols that were made for names, by text.")
+  "A hash table from texts to the uninterned symbols that were made for them.")
 
 (defun uninterned-symbol (text name)
-  "Return the uninterned symbol called NAME for TEXT, always the same one in *UNINTERNED*."
+  "Return the uninterned symbol NAME for TEXT: the same symbol each time, from *UNINTERNED*."
   (or (gethash text *uninterned*)
       (setf (gethash text *uninterned*) (make-symbol name))))
 
 (defun symbol-called (text)
-  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is none, an uninterned one."
-  (let* ((colons (or (search "::" text) (error "it has a name without its package")))
+  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is no such symbol, an uninterned
+symbol."
+  (let* ((colons (or (search "::" text) (error "a name has no package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
     (or (and package (find-symbol name package))
         (uninterned-symbol text name))))
 
 (defvar *numbered* nil
-  "A vector of the objects that @1, @2 and so on mean, from index 1 on; NIL if there are none.")
+  "A vector of the objects that @1, @2 and so on refer to, from index 1 on; or NIL.")
 
 (defun numbered-object (word)
-  "Return the object that WORD, such as @7, means."
+  "Return the object that WORD, such as @7, refers to."
   (let ((number (and (< 1 (length word) 12)
                      (digits-p word 1)
                      (parse-integer word :start 1))))
     (if (and number (< 0 number (length *numbered*)))
         (aref *numbered* number)
-        (error "nothing in it has the number ~A" (subseq word 1 (min 40 (length word)))))))
+        (error "no object has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
 (defun keyword-called (name word)
-  "Return the keyword called NAME, written as WORD; if there is none, an uninterned symbol."
+  "Return the keyword NAME, which is written as WORD; if there is no such keyword, an uninterned
+symbol."
   (cond ((find-symbol name :keyword))
         (*numbered* (make-keyword name))
         (t (uninterned-symbol word name))))
 
 (defun word-meaning (word)
-  "Return the number, NIL, T, keyword or numbered object that WORD means."
+  "Return the number, NIL, T, keyword or numbered object that WORD stands for."
   (cond ((number-text-p word) (read-number word))
         ((string= word "nil") nil)
         ((string= word "t") t)
         ((and *numbered* (char= #\@ (char word 0))) (numbered-object word))
         ((bare-name-p (string-upcase word)) (keyword-called (string-upcase word) word))
-        (t (error "it has ~S, neither number nor name"
+        (t (error "~S is neither a number nor a name"
                   (subseq word 0 (min 40 (length word)))))))
 
 (defun read-word (text start)
   (let ((end (or (position-if (lambda (char) (find char " ()\"|")) text :start start)
                  (length text))))
-    (when (= start end) (error "it has a ~A where none can be" (char-at text start)))
+    (when (= start end) (error "the character ~A is in a wrong place" (char-at text start)))
     (values (word-meaning (subseq text start end)) end)))
 
 (defun tail-follows-p (text position)
@@ -241,13 +245,14 @@
        (char= #\Space (char-at text (1+ position)))))
 
 (defun read-tail (text start depth)
-  "Return the datum in TEXT from START on that is the tail of a list, and its end position."
+  "Return the datum in TEXT from START on, which is the tail of a dotted list, and the position
+after it."
   (multiple-value-bind (tail end) (read-datum text start depth)
-    (unless (char= #\) (char-at text end)) (error "there is something after the tail of a list"))
+    (unless (char= #\) (char-at text end)) (error "a dotted list has something after its tail"))
     (values tail end)))
 
 (defun read-list (text start depth)
-  (when (> depth +deepest+) (error "its lists are more than ~D deep" +deepest+))
+  (when (> depth +deepest+) (error "its lists are nested more than ~D deep" +deepest+))
   (let ((position (1+ start)) (elements '()) (tail nil))
     (loop for char = (char-at text position)
           until (char= char #\))
@@ -260,7 +265,8 @@
     (values (nreconc elements tail) (1+ position))))
 
 (defun read-datum (text &optional (start 0) (depth 0))
-  "Return the datum in TEXT from START on, and its end position. Signals an error with the reason."
+  "Return the datum in TEXT from START on, and the position after the datum. Signals an error with
+the reason."
   (case (char-at text start)
     (#\( (read-list text start (1+ depth)))
     (#\" (read-quoted text start))

@@ -9,9 +9,9 @@
 ;;; the plan has DIVERGED, which can happen if it depends on state that forks do not copy.
 
 (defstruct (redoing (:constructor make-redoing (simulation acts)) (:copier nil))
-  "The repetition of ACTS, those not yet repeated, the oldest first, in SIMULATION. HELD are
-requests that it has made by itself and that are not yet due, the oldest first. DIVERGED is the
-first tick at which an act could not be repeated as it was, or NIL."
+  "The repetition of a past in SIMULATION. ACTS are the acts that are not yet repeated, the oldest
+first. HELD are the requests that SIMULATION has made by itself and that are not yet due, the oldest
+first. DIVERGED is the first tick at which an act could not be repeated exactly, or NIL."
   (simulation nil :type simulation :read-only t)
   (acts '() :type list)
   (held '() :type list)
@@ -22,15 +22,15 @@ first tick at which an act could not be repeated as it was, or NIL."
     (setf (redoing-diverged redoing) (simulation-tick (redoing-simulation redoing)))))
 
 (defun perform-act (act simulation)
-  "Repeat ACT in SIMULATION, which is the current one."
+  "Repeat ACT in SIMULATION, which is the current simulation."
   (let ((operator (act-operator act)) (arguments (recall-arguments (act-arguments act) simulation)))
     (if (functionp operator)
         (apply operator arguments)
         (perform-operator operator arguments simulation (or (act-asker act) "the past")))))
 
 (defun repeat-act (act redoing)
-  "Repeat ACT. An error of its function, which failed the first time, too, is ignored; one of an
-operator is noted as a divergence."
+  "Repeat ACT. If ACT has a function, an error is ignored, because the function failed the first
+time, too. If ACT has an operator, an error is recorded as a divergence."
   (let* ((timeline (simulation-timeline (redoing-simulation redoing)))
          (before (timeline-inbox timeline)))
     (handler-case (perform-act act (redoing-simulation redoing))
@@ -42,8 +42,9 @@ operator is noted as a divergence."
 ;;; Requests.
 
 (defun same-request-p (request act)
-  "True if REQUEST is the same as that of ACT. If it is no event, only the first argument counts:
-which of its commands a plan withdraws is known only when that is performed."
+  "True if REQUEST is the same request as that of ACT. If REQUEST is not an event, only the first
+arguments are compared: which of its commands a plan withdraws is known only when the withdrawal is
+performed."
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
@@ -51,7 +52,8 @@ which of its commands a plan withdraws is known only when that is performed."
            (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
 
 (defun repeat-request (act redoing)
-  "Repeat the request of ACT, or let through that of the fork itself, if there is one."
+  "Post the same request that the fork itself has made, if there is one; otherwise repeat the
+request of ACT."
   (let* ((held (redoing-held redoing))
          (own (and (act-own-p act)
                    (find-if (lambda (request) (same-request-p request act)) held))))
@@ -63,7 +65,7 @@ which of its commands a plan withdraws is known only when that is performed."
 ;;; Passing ticks.
 
 (defun next-act (redoing test)
-  "Remove and return the next act if it is due and TEST is true of it; or return NIL."
+  "If the next act is due and TEST is true of it, remove and return it. Otherwise return NIL."
   (let ((act (first (redoing-acts redoing))))
     (when (and act
                (<= (act-tick act) (simulation-tick (redoing-simulation redoing)))
@@ -71,7 +73,7 @@ which of its commands a plan withdraws is known only when that is performed."
       (pop (redoing-acts redoing)))))
 
 (defun redo-in-tick (redoing)
-  "Repeat the acts that were done in this tick after the world had changed, up to the current
+  "Repeat the acts that were done in the current tick after the world had changed, up to the current
 moment; see BEGIN-MOMENT."
   (loop with moments = (timeline-moments (simulation-timeline (redoing-simulation redoing)))
         for act = (next-act redoing (lambda (act)
@@ -122,7 +124,7 @@ moment; see BEGIN-MOMENT."
 
 (defun redo (simulation acts goal)
   "Advance SIMULATION, a kept fork that is the current simulation, to the tick GOAL and repeat ACTS,
-the oldest first. Return the tick at which a plan diverged, or NIL."
+which begin with the oldest. Return the tick at which a plan diverged, or NIL."
   (let ((redoing (make-redoing simulation acts))
         (*repeated* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.

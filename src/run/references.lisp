@@ -33,13 +33,15 @@
              tree)))))
 
 (defun externalize (datum)
-  "Return DATUM with each object of a run in it replaced by a reference, by which INTERNALIZE finds
-its counterpart in another run. Other objects, circular lists and very large lists are unchanged."
+  "Return DATUM with each object of a run replaced by a reference. INTERNALIZE finds the counterpart
+of the object in another run by this reference. Other objects, circular lists and very large lists
+are unchanged."
   (if (tree-p datum) (externalize-tree datum) datum))
 
 (defgeneric dereference (kind arguments simulation)
   (:documentation
-   "Return the object in SIMULATION that a reference with the symbol KIND and ARGUMENTS names.")
+   "Return the object in SIMULATION that the reference with the symbol KIND and the list ARGUMENTS
+names.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
                  (find-kind-name kind 'part))
@@ -47,8 +49,9 @@ its counterpart in another run. Other objects, circular lists and very large lis
     (robot-part (robot-in simulation (first arguments)) kind (second arguments))))
 
 (defmacro define-dereference (kind lambda-list &body body)
-  "Define how to find the object in SIMULATION that a reference of KIND, a keyword, names. BODY can
-use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the reference."
+  "Define how to find the object in SIMULATION that a reference of KIND, a keyword, names. BODY
+returns the object. In BODY, the variables of LAMBDA-LIST are bound to the arguments of the
+reference, and SIMULATION to the simulation."
   `(defmethod dereference ((kind (eql ,kind)) arguments simulation)
      (declare (ignorable simulation))
      (destructuring-bind ,lambda-list arguments ,@body)))
@@ -136,11 +139,11 @@ use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the refere
 ;;; that a function given to SCHEDULE acts on the run in which it is called.
 
 (defstruct (named (:constructor make-named (reference)) (:copier nil))
-  "Stands for the object of a run that REFERENCE, a value of EXTERNALIZE, names."
+  "A placeholder for the object of a run that REFERENCE, a value of EXTERNALIZE, names."
   (reference nil :type list :read-only t))
 
 (defun name-object (object)
-  "Return what represents OBJECT, which is not copied, in memorized arguments."
+  "Return the representation of OBJECT, which is not copied, in memorized arguments."
   (cond ((nameable-p object)
          (let ((reference (externalize object)))
            (if (eq reference object) object (make-named reference))))
@@ -150,7 +153,7 @@ use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the refere
         (t object)))
 
 (defun memorize-arguments (arguments)
-  "Return a copy of the list ARGUMENTS as they are now, for RECALL-ARGUMENTS."
+  "Return a copy of the list ARGUMENTS in its current state, for RECALL-ARGUMENTS."
   (copy-values arguments #'name-object))
 
 (defun recall-arguments (arguments simulation)
@@ -163,8 +166,8 @@ use SIMULATION and the variables of LAMBDA-LIST, for the arguments of the refere
 ;;; Comparing arguments of two runs.
 
 (defun alike-atoms-p (one other)
-  "True if the atoms ONE and OTHER are EQUAL, functions with the same code, or objects of the same
-class without a reference, as each run has its own."
+  "True if the atoms ONE and OTHER are EQUAL, are functions with the same code, or are objects of
+the same class that have no reference. (Each run has its own copy of such objects.)"
   (or (equal one other)
       (and (functionp one) (functionp other) (same-code-p one other))
       (not (or (typep one '(or number symbol character string function))

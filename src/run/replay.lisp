@@ -12,17 +12,18 @@
    (file :initarg :file :initform "journal" :reader different-definitions-file)
    (verb :initarg :verb :initform "replay" :reader different-definitions-verb))
   (:report (lambda (condition stream)
-             (format stream "The ~A is of a run whose definitions are not those at hand: ~
-                             ~{~A~^; ~}. Load what it was recorded with; or ~A it all the ~
-                             same, with :ANYWAY T, and it may go differently."
+             (format stream "The definitions recorded in this ~A are not those that are loaded: ~
+                             ~{~A~^; ~}. Load the recorded definitions; or ~A it anyway, with ~
+                             :ANYWAY T, but then the run may differ."
                      (different-definitions-file condition)
                      (different-definitions-differences condition)
                      (different-definitions-verb condition))))
-  (:documentation "A journal or saved run is of other definitions than those that are loaded."))
+  (:documentation "The definitions recorded in a journal or saved run are not those that are
+loaded."))
 
 (defun differences-from (header blueprints)
-  "Return a list of texts about differences between HEADER and the current definitions, and about
-those of BLUEPRINTS, of robots, that are in another map."
+  "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
+are those of the robots; a text says so if a robot is now in another map."
   (append (differences (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
@@ -32,8 +33,8 @@ those of BLUEPRINTS, of robots, that are in another map."
                                   (blueprint-name blueprint) (and other (map-name other))))))
 
 (defun check-definitions (header blueprints)
-  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if HEADER has other definitions
-than the current ones."
+  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if the definitions in HEADER are
+not the current definitions."
   (let ((differences (differences-from header blueprints)))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
@@ -41,37 +42,39 @@ than the current ones."
           :report "Replay it all the same.")))))
 
 (defun repeated-words (journal)
-  "Return a sentence about JOURNAL if it has other definitions than the current ones; or NIL."
+  "Return a sentence about JOURNAL if its definitions are not the current definitions; or NIL."
   (let ((header (journal-header journal)))
     (and (differences-from header (mapcar #'find-blueprint (getf header :robots)))
-         "Repeated with other definitions than it began with.")))
+         "The run is repeated with definitions that have changed since it was recorded.")))
 
 ;;; A run may have passed very many ticks without requests. Their repetition takes long, so it must
 ;;; be asked for.
 
 (defconstant +longest-silence+ 10000000
-  "The most ticks without an entry that are repeated without :UNTIL.")
+  "The largest number of ticks without a journal entry that a replay passes if :UNTIL is not
+given.")
 
 (defun check-silence (journal)
-  "Signal MISUSE if JOURNAL has too many ticks without an entry."
+  "Signal MISUSE if more than +LONGEST-SILENCE+ ticks pass between two entries of JOURNAL."
   (loop with before = 0
         for tick in (append (mapcar #'first (journal-entries journal))
                             (list (journal-end journal)))
         do (when (> (- tick before) +longest-silence+)
-             (reject-use "The journal goes on to tick ~D without any entry after tick ~D. Say how ~
-                          far to repeat it: (replay journal :until ~D), or all of it: :until ~D."
+             (reject-use "The journal goes on to tick ~D without any entry after tick ~D. Give ~
+                          :UNTIL, the last tick to repeat: (replay journal :until ~D), or :until ~
+                          ~D for the whole journal."
                          tick before before (journal-end journal)))
            (setf before tick)))
 
 ;;; Entries.
 
 (defun entry-text (entry number)
-  "Return the name of ENTRY for messages."
+  "Return a text that names the journal entry ENTRY, number NUMBER, for messages."
   (format nil "entry ~D, ~(~A~) at tick ~D" number (second entry) (first entry)))
 
 (defun perform-operator (name arguments simulation asker)
   "Call the operator NAME with ARGUMENTS, which are externalized, on behalf of ASKER in SIMULATION,
-which is the current one."
+which is the current simulation."
   (let ((operator (find-operator name))
         (arguments (internalize arguments simulation))
         (*asker* asker))
@@ -79,7 +82,8 @@ which is the current one."
     (apply (operator-function operator) arguments)))
 
 (defun perform-entry (entry number simulation)
-  "Repeat ENTRY in SIMULATION. Signals MISUSE if that fails."
+  "Repeat the journal entry ENTRY, number NUMBER, in SIMULATION. Signals MISUSE if ENTRY cannot be
+repeated."
   (destructuring-bind (tick name . arguments) entry
     (run-ticks (- tick (simulation-tick simulation)) simulation)
     (handler-case
@@ -89,7 +93,7 @@ which is the current one."
                     (entry-text entry number) (one-line-text trouble))))))
 
 (defun perform-entries (entries number simulation)
-  "Repeat ENTRIES in SIMULATION; the first has NUMBER."
+  "Repeat ENTRIES in SIMULATION. NUMBER is the number of the first entry."
   (loop for entry in entries
         for each from number
         do (perform-entry entry each simulation)))
@@ -105,21 +109,23 @@ which is the current one."
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
 (defun full-settings (settings)
-  "Return SETTINGS, lists (name value), completed by the defaults of other parameters."
+  "Return a list (name value) for each parameter: from SETTINGS if it is there, else with the
+default."
   (loop for parameter in (all-parameters)
         collect (or (find parameter settings :key (lambda (setting)
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
 (defun read-journal-if-file (journal operator)
-  "Return JOURNAL, an argument of OPERATOR, or the journal in the file of that name."
+  "Return JOURNAL, an argument of OPERATOR, or, if it is the name of a file, the journal in the
+file."
   (if (journal-p journal) journal (read-journal journal operator)))
 
 (defun call-with-replay (function journal &key until anyway keep observer
                                             (beginning #'identity))
-  "Call FUNCTION where JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if given, is called
-with the simulation after each repeated tick; BEGINNING when the entries before the first tick have
-been repeated."
+  "Call FUNCTION in a simulation in which JOURNAL has been repeated; see WITH-REPLAY. OBSERVER, if
+given, is called with the simulation after each repeated tick. BEGINNING is called with the
+simulation when the entries before the first tick have been repeated."
   (let* ((journal (read-journal-if-file journal 'with-replay))
          (journal (if (and until (not (eql until (journal-end journal))))
                       (truncated-journal journal until)
@@ -144,14 +150,15 @@ been repeated."
 (addition with-replay)
 (define-user-macro with-replay ((journal &key until anyway keep) &body body)
   "Run BODY in a fresh headless simulation in which JOURNAL (a journal or the name of its file) has
-been repeated, up to the tick UNTIL or its end. Robots and parameters are bound as in
+been repeated, up to the tick UNTIL or the end of JOURNAL. Robots and parameters are bound as in
 WITH-SIMULATION. Return the values of BODY.
-- At UNTIL, requests and changes made after that tick, also by continuations, have not happened.
+- BODY begins before any request or change that was made after the tick UNTIL, even by
+  continuations.
 - Commands are repeated without their continuations.
-- With KEEP the run keeps forks, see KEEP-FORKS, and can be rewound.
-Signals DAMAGED-JOURNAL; WRONG-ARGUMENT for a tick beyond the end; MISUSE without UNTIL if nothing
-happens for ten million ticks; UNKNOWN-NAME if the world is not loaded; and DIFFERENT-DEFINITIONS if
-the definitions are not those of the recording, unless ANYWAY is true."
+- If KEEP is true, the run keeps forks, so that it can be rewound, see KEEP-FORKS.
+Signals DAMAGED-JOURNAL; WRONG-ARGUMENT if UNTIL is beyond the end; MISUSE if JOURNAL has ten
+million ticks without an entry and UNTIL is not given; UNKNOWN-NAME if a definition is missing; and
+DIFFERENT-DEFINITIONS if definitions have changed since the recording, unless ANYWAY is true."
   `(call-with-replay (lambda () ,@body) ,journal
                      :until ,until :anyway ,anyway :keep ,keep))
 
@@ -162,13 +169,13 @@ the definitions are not those of the recording, unless ANYWAY is true."
     (funcall function)))
 
 (defmacro replaying ((anyway) &body body)
-  "Run BODY, which replays a journal; if ANYWAY is true, even if the definitions differ from those
-of the recording."
+  "Run BODY, which replays a journal. If ANYWAY is true, replay even if definitions have changed
+since the recording."
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun resolve-journal (journal operator)
   "Return the journal that JOURNAL, an argument of OPERATOR, means: a journal, the name of a file,
-or NIL for that of the current simulation up to now."
+or NIL for the journal of the current simulation up to now."
   (if journal
       (read-journal-if-file journal operator)
       (let ((simulation (current-simulation)))
@@ -176,20 +183,20 @@ or NIL for that of the current simulation up to now."
 
 (addition replay)
 (defun replay (journal &key until anyway)
-  "Repeat JOURNAL as WITH-REPLAY does. Return the simulation, and its STATE-DIGEST."
+  "Repeat JOURNAL as WITH-REPLAY does. Return the simulation and its STATE-DIGEST."
   (with-replay ((read-journal-if-file journal 'replay) :until until :anyway anyway)
     (values (current-simulation) (state-digest))))
 
 (addition save-journal)
 (defun save-journal (file &optional (simulation (current-simulation)))
-  "Write the journal of SIMULATION up to now to FILE, in place of the journal that was there. Return
-its truename. Signals MISUSE, as where FILE is something else than a journal, and WRONG-ARGUMENT
-unless FILE is a name; then FILE is as it was."
+  "Write the journal of SIMULATION up to now to FILE, and return the truename of FILE. A journal
+that is already in FILE is replaced. Signals MISUSE, for example if FILE exists but is not a
+journal, and WRONG-ARGUMENT unless FILE is a file name; then FILE is unchanged."
   (check-argument save-journal file (typep file '(or string pathname)) "the name of a file")
   (check-not-foreign file :journal "journal")
   (asking (simulation) (write-journal (journal-up-to-now simulation) file)))
 
 (addition load-journal)
 (defun load-journal (file)
-  "Return the journal in FILE. Signals DAMAGED-JOURNAL."
+  "Return the journal in FILE. Signals DAMAGED-JOURNAL if FILE does not contain a complete journal."
   (read-journal file 'load-journal))

@@ -16,7 +16,7 @@
           :key (lambda (blueprint) (find-map (blueprint-map blueprint) nil))))
 
 (defun first-robot-in (map)
-  "Return the robot of MAP that was defined first. Signals MISUSE if there is none."
+  "Return the robot of MAP that was defined first. Signals MISUSE if MAP has no robot."
   (let ((blueprint (first (blueprints-in map))))
     (if blueprint
         (blueprint-robot blueprint)
@@ -24,7 +24,7 @@
                     (map-name map)))))
 
 (defun reject-robots (designators)
-  "Signal UNKNOWN-NAME, as a list of DESIGNATORS was given instead of one robot."
+  "Signal UNKNOWN-NAME: the list DESIGNATORS was given instead of one robot."
   (error 'unknown-name
          :kind "robot or map" :name designators
          :remedy (format nil "Give one robot~@[, as '~(~A~)~]: all robots of its map are in its ~
@@ -33,7 +33,8 @@
 
 (defun robot-to-start (designator)
   "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
-A robot whose map or definition has been replaced means the current robot of that name."
+If the map or definition of a robot has been replaced, the current robot of the same name is
+returned."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
@@ -50,7 +51,8 @@ A robot whose map or definition has been replaced means the current robot of tha
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)
-  "Return the robot that SETTLE-ROBOT returns for BLUEPRINT, after setting its variable to it."
+  "Call SETTLE-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return the
+result."
   (loop
     (let ((robot (settle-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.
@@ -59,7 +61,7 @@ A robot whose map or definition has been replaced means the current robot of tha
       (unless (robot-retired robot) (return robot)))))
 
 (defun find-current-robot (name)
-  "Return the current robot called NAME; make it if that was not possible before."
+  "Return the current robot NAME. Make the robot if it could not be made before."
   (let* ((blueprint (find-blueprint name))
          (robot (blueprint-robot blueprint)))
     (if (or (null robot) (robot-retired robot))
@@ -72,16 +74,16 @@ A robot whose map or definition has been replaced means the current robot of tha
 ;;; map, if they fit. Headless runs have their own worlds and continue.
 
 (defun warn-of-ended-run (map simulation new)
-  "Warn that SIMULATION of MAP has ended, if it was under way. NEW is the new map, or NIL."
+  "Warn that SIMULATION of MAP has ended, if it was not idle. NEW is the new map, or NIL."
   (when (or (live-p simulation)
             (and (plusp (simulation-tick simulation)) (not (idle-p simulation))))
     (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~
-                         ended at tick ~D~@[; what is started from now on is in the new ~(~A~)~]."
+                         ended at tick ~D~@[; runs started from now on use the new map ~(~A~)~]."
                         (map-name map) new (simulation-tick simulation)
                         (and new (map-name new)))))
 
 (defun retire-named-robot (name reason)
-  "Retire the robot called NAME, which has no place in the new map, for REASON."
+  "Retire the robot NAME, which does not fit into the new map, for REASON."
   (unless (from-this-file-p name *robots*)
     (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." name reason))
   ;; A headless run may have bound the variable to another robot here.
@@ -89,19 +91,19 @@ A robot whose map or definition has been replaced means the current robot of tha
     (when (robot-p robot) (retire-robot robot reason))))
 
 (defun move-robots (map)
-  "Make the robots that are defined in the new MAP, if they fit."
+  "Make the robots that are defined in MAP, a new map, and retire those that do not fit into it."
   (dolist (blueprint (blueprints-in map))
     (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
       (if trouble
           (retire-named-robot
            (blueprint-name blueprint)
-           (format nil "it does not fit into the new map ~(~A~), as ~A; define it anew"
+           (format nil "it does not fit into the new map ~(~A~), because ~A; define the robot anew"
                    (map-name map) trouble))
           (settle-named-robot blueprint)))))
 
 (defun end-world (world reason)
-  "End the run of WORLD and retire its robots, for REASON. It cannot be started again. True unless
-another world is resident in its map by now."
+  "End the run of WORLD and retire its robots, for REASON. WORLD cannot be started again. Return
+false if another world has become resident in its map."
   (call-alone (ensure-timeline world)
               (lambda ()
                 (when (eq world (map-resident (world-map world)))
@@ -110,13 +112,13 @@ another world is resident in its map by now."
                   t))))
 
 (defun end-resident (map reason)
-  "End the resident world of MAP, which another map has replaced, for REASON."
+  "End the resident world of MAP for REASON. Another map has replaced MAP."
   ;; Another thread may rewind its run meanwhile, which makes another world resident.
   (loop until (end-world (map-resident map) reason)))
 
 ;; A time limit must not leave the old world live: no name would lead to it.
 (defun end-resident-safely (map reason)
-  "Do what END-RESIDENT does, at once or, if this thread is interrupted, between two ticks."
+  "Call END-RESIDENT at once or, if this thread is interrupted, between two ticks."
   (let ((done-p nil))
     (deferring-interrupts
       (unwind-protect (allowing-interrupts

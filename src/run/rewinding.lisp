@@ -10,34 +10,38 @@
 ;;; run's observers and messages, and is live if the run was.
 
 (define-event *rewind-hooks*
-  "Functions of a run that is being rewound and of its successor.")
+  "Functions that are called when a run is rewound, with the run and its successor.")
 
 ;;; Checks.
 
 ;; The thread of a clock must not rewind other runs either: it would wait for their clocks, and
 ;; these perhaps for it.
 (defun run-paced-by-this-thread (simulation)
-  "Return SIMULATION, or else the current one, if this is the thread of its clock; else NIL."
+  "If this is the thread of the clock of SIMULATION, return SIMULATION. If it is the thread of the
+clock of the current simulation, return that. Otherwise return NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
 
 (defun check-place-to-rewind (simulation)
-  "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not current."
+  "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not the current
+simulation."
   (cond ((goes-on-in-forks-p)
-         (reject-use "rewind: a plan is at work here, and would undo itself. PROJECT and TRY-BEST ~
-                      look ahead instead."))
+         (reject-use "rewind: a plan has made this call, and would undo itself. Use PROJECT or ~
+                      TRY-BEST to look ahead."))
         ((run-paced-by-this-thread simulation)
-         (reject-use "rewind: ticks of ~A are passing here, in the thread of its clock. Rewind ~A ~
-                      at the prompt or the REPL, or from a thread of your own."
+         (reject-use "rewind: this is the thread of the clock of ~A, where its ticks are passing. ~
+                      Rewind ~A at the prompt or the REPL, or from a thread of your own."
                      (simulation-name (run-paced-by-this-thread simulation))
                      (simulation-name simulation)))
         ((and (owner-p simulation)
               (or (timeline-passing-p (simulation-timeline simulation))
                   (plusp (timeline-phase (simulation-timeline simulation)))))
-         (reject-use "rewind: ticks are passing here. Rewind the run when RUN-TICKS has returned."))
+         (reject-use "rewind: ticks are passing in this thread. Rewind the run when RUN-TICKS has ~
+                      returned."))
         ((and (headless-p simulation) (not (eq simulation *simulation*)))
-         (reject-use "rewind: ~A is headless, and not the current simulation here. Rewind it where ~
-                      it is: in the body of WITH-SIMULATION, or in CALL-IN-FORK."
+         (reject-use "rewind: ~A is headless, and not the current simulation. Call REWIND where it ~
+                      is the current simulation: in the body of WITH-SIMULATION, or in ~
+                      CALL-IN-FORK."
                      (simulation-name simulation)))))
 
 (defun earliest-tick (simulation)
@@ -48,13 +52,13 @@
 (defun check-past (simulation)
   "Signal MISUSE if SIMULATION has no past to go back to."
   (unless (earliest-tick simulation)
-    (reject-use "rewind: ~A keeps no forks to go back to. Ask for them at its beginning, ~
+    (reject-use "rewind: ~A keeps no forks to go back to. Keep forks from its beginning, ~
                  (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), or from now ~
                  on by (keep-forks)."
                 (simulation-name simulation))))
 
 (defun check-how-far (ticks simulation)
-  "Signal WRONG-ARGUMENT unless SIMULATION can be rewound by TICKS."
+  "Signal WRONG-ARGUMENT unless SIMULATION can be rewound by TICKS ticks."
   (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
     (unless (<= ticks most)
@@ -64,8 +68,8 @@
 ;;; Making the successor.
 
 (defun past-until (tick simulation)
-  "Return the past of SIMULATION at the end of TICK; and a list, the newest first, of the requests
-made but not performed by then."
+  "Return the past of SIMULATION at the end of the tick TICK; and a list, the newest first, of the
+requests that were made but not performed before that."
   (let* ((past (simulation-past simulation))
          (acts (past-acts past)))
     (when (= tick (simulation-tick simulation))
@@ -81,12 +85,13 @@ made but not performed by then."
 (defun warn-of-divergence (run tick)
   (let ((*message-queue* (simulation-messages run)))
     (warn-notably (format nil "The rewound run differs from the original: from tick ~D on a plan ~
-                               acts differently, as it may if it depends on state outside its run."
+                               acts differently, which can happen if it depends on state outside ~
+                               its run."
                           tick))))
 
 (defun repeat-past (past asked tick)
-  "Return a copy of the run of PAST at the end of TICK, with the requests ASKED waiting; and the
-tick at which a plan diverged on the way, or NIL."
+  "Return a copy of the run of PAST at the end of the tick TICK, with the requests ASKED waiting;
+and the tick at which a plan diverged while the past was repeated, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (kept-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (kept-acts kept))))
@@ -101,7 +106,8 @@ tick at which a plan diverged on the way, or NIL."
 ;;; Replacing the run.
 
 (defun variable-setter (old)
-  "Return a function of a symbol and a value that sets the binding or global value for OLD."
+  "Return a function of a symbol and a value that sets the symbol where code in OLD sees it: the
+binding, the global value or both."
   (cond ((headless-p old) #'set)
         ((not (eq old *simulation*)) (lambda (symbol value) (setf (global-value symbol) value)))
         ((eq old (global-value '*simulation*))
@@ -109,7 +115,7 @@ tick at which a plan diverged on the way, or NIL."
         (t #'set)))
 
 (defun set-variables (new old)
-  "Set the variables of OLD to their values for NEW, in the bindings or globally."
+  "Set the variables of OLD to their values in NEW, where code in OLD sees them."
   (let ((setter (variable-setter old)))
     (loop for (symbol . value) in (simulation-environment new)
           do (funcall setter symbol value))
@@ -120,14 +126,15 @@ tick at which a plan diverged on the way, or NIL."
     (funcall setter '*world* (simulation-world new))))
 
 (defun make-resident (new)
-  "Make the world of NEW the one that top-level code works in, and set the variables of its robots."
+  "Make the world of NEW the world in which top-level code works, and set the variables of its
+robots."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
     (dolist (robot (world-robots world))
       (bind-robot-name (robot-blueprint robot) robot))))
 
 (defun hand-over-observers (new old)
-  "Make NEW the successor of OLD, with its observers, gate and messages."
+  "Make NEW the successor of OLD, and give NEW the observers, gate and messages of OLD."
   (link-successor new old)
   (setf (simulation-observers new) (simulation-observers old)
         (simulation-gate new) (simulation-gate old)
@@ -136,22 +143,22 @@ tick at which a plan diverged on the way, or NIL."
   (tell-listeners *rewind-hooks* old new))
 
 (defun end-rewound (old new)
-  "End OLD, as NEW replaces it."
-  (let ((reason (format nil "it was rewound to tick ~D, and another run goes on from there: ~
-                             *SIMULATION*, where it was rewound"
+  "End OLD, because NEW replaces OLD."
+  (let ((reason (format nil "it was rewound to tick ~D, and a new run continues from there: the ~
+                             value of *SIMULATION* where REWIND was called"
                         (simulation-tick new))))
     (retire-robots (simulation-robots old) reason)
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
 
 (defun hand-over-errors (new old)
-  "Move the errors of users' code at the end of OLD to the messages of NEW."
+  "Move the errors that users' code has signalled at the end of OLD to the messages of NEW."
   (dolist (message (take-messages (simulation-messages old)))
     (when (eq :error (message-kind message))
       (queue-message message (simulation-messages new)))))
 
 (defun take-over-state (new old from)
-  "Give NEW the variables, world and errors of OLD, which had come to the tick FROM."
+  "Give NEW the variables, world and errors of OLD, which had reached the tick FROM."
   (let ((resident-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (note-rewound from new)
@@ -164,8 +171,9 @@ tick at which a plan diverged on the way, or NIL."
     (hand-over-errors new old)))
 
 (defun replace-owned-run (new old then)
-  "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called, as
-it is over. Neither their non-local exits nor interrupts of this thread stop the replacement."
+  "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called
+because OLD is over. Non-local exits from continuations and interrupts of this thread do not stop
+the replacement."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
     ;; A thread waiting for custody gets it once NEW has replaced OLD.
@@ -184,8 +192,8 @@ it is over. Neither their non-local exits nor interrupts of this thread stop the
                      :real (eq :real (simulation-thinking new)))))
 
 (defun replace-run (new old)
-  "Replace OLD by NEW, live if OLD is. Return NEW. Signals MISUSE, after releasing NEW, if OLD is
-over."
+  "Replace OLD by NEW, and run NEW live if OLD is live. Return NEW. If OLD is over, release NEW and
+signal MISUSE."
   (let* ((timeline (simulation-timeline old))
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
@@ -204,16 +212,17 @@ over."
 ;;; The journal.
 
 (defun note-rewound (from &optional (simulation (current-simulation)))
-  "Record in the journal of SIMULATION that it was rewound from the tick FROM to the current one."
+  "Record in the journal of SIMULATION that the run was rewound from the tick FROM to the current
+tick."
   (note simulation 'rewound (list from)))
 
 (define-operator 'rewound '(integer) #'note-rewound)
 
 (defvar *rewinding-lock* (make-lock "rewinding")
-  "Held by the thread that rewinds a run: only one at a time can.")
+  "The lock held by the thread that rewinds a run: only one thread at a time can rewind.")
 
 (defun rewind-now (ticks simulation)
-  "Do what REWIND does, with *REWINDING-LOCK* held."
+  "Rewind SIMULATION by TICKS as REWIND does. The caller holds *REWINDING-LOCK*."
   (multiple-value-bind (tick past asked)
       (asking (simulation)
         (check-past simulation)
@@ -227,19 +236,20 @@ over."
 
 (addition rewind)
 (defun rewind (ticks &optional (simulation (current-simulation)))
-  "Take SIMULATION back TICKS ticks, plans included. Return the simulation that continues from
-there: it becomes the current one, with its robots as the values of their variables, and is live, at
-the same rate, if SIMULATION was. SIMULATION itself is over; its robots take no more commands.
-SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0, which undoes what was done
-since the last tick, to how many ticks have passed since SIMULATION began to keep forks.
-- Requests and changes after that tick have not happened. The journal records the rewind.
-- Commands and plans in progress continue. Programs do not: continuations of commands in progress at
-  the call receive :INTERRUPT now, and those of commands that continue are never called. So a
-  program such as ROBOT-GO-TO issues no further commands.
-- RUN-PLAN, waiting in another thread, returns :STOPPED.
+  "Take SIMULATION back TICKS ticks, plans included. Return the new simulation, which continues from
+that tick. It becomes the current simulation, with its robots as the values of their variables, and
+is live, at the same rate, if SIMULATION was live. SIMULATION itself is over; its robots take no
+more commands. SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0 to the number of
+ticks that have passed since SIMULATION began to keep forks; 0 undoes the requests and changes since
+the last tick.
+- Requests and changes after that tick are undone. The journal records the rewind.
+- Commands and plans in progress at that tick continue, but programs do not. Continuations of
+  commands that are in progress when REWIND is called receive :INTERRUPT; continuations of commands
+  that continue are never called. So a program such as ROBOT-GO-TO issues no further commands.
+- A call of RUN-PLAN that waits in another thread returns :STOPPED.
 - Messages are kept, and so are variables that programs have set themselves.
-- For RUN-TICKS, RUN-UNTIL and CALL-IN-FORK, a fork that was rewound stands for its successor; its
-  digest is of its last state.
+- RUN-TICKS, RUN-UNTIL and CALL-IN-FORK use the successor of a fork that was rewound. The digest of
+  such a fork remains that of its last state.
 Signals WRONG-ARGUMENT, with the largest possible number of ticks; MISUSE inside ticks and plans, in
 the thread of any clock, and if SIMULATION is over."
   (let ((simulation (resolve-simulation simulation 'rewind)))

@@ -11,36 +11,39 @@
 
 (addition simulation-p)
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
-    "One run: a timeline, a world, and what goes with them."
+    "One run: a timeline and a world, with the journal, messages, observers and participants."
   (:fixed
    (timeline nil (or null timeline) "the timeline of the simulation" :part :export)
    (world nil (or null world) "the world that the simulation changes" :part :addition))
   (:memory
    ;; State as well, but digested by the method below.
    (known-parameters (parameter-values) simple-vector
-                     "the values of the parameters as the journal knows them"))
+                     "the values of the parameters that were recorded last"))
   (:link
    (known-noise *noise-before-cleaning* list
-                "what DIRTY-SIMULATION would restore, as the journal knows it")
+                "the parameter values that DIRTY-SIMULATION would restore, as recorded last")
    (journal nil t "the journal that the simulation keeps, or NIL" :addition)
-   (variables '() list "the symbols that are bound for the headless simulation")
-   (environment '() list "the values of variables, a list (symbol . value): in a fork the current
-ones, else those that a thread in the simulation has stored last")
+   (variables '() list "the symbols that the headless simulation binds")
+   (environment '() list "the values of the variables, a list (symbol . value): in a fork the
+current values, else the values that a thread in the simulation has stored last")
    (dice nil (or null random-state)
-         "the state of CL:RANDOM of its programs, if it was loaded from a file that has it, or NIL")
-   (plans-dice-p nil boolean "its plans have their own CL:RANDOM state, as the threads of a run that
-is or was live do not share one" :export)
-   (past nil t "the forks and acts that it keeps for rewinding, or NIL" :export)
-   (line nil list "a list of the run that continues, shared by all runs that were rewound to it; or
-NIL if there was no rewinding")
-   (output nil (or null stream) "where its threads write, if an editor wants that, or NIL")
+         "the random state for CL:RANDOM in the simulation's programs, if a saved run contained it,
+or NIL")
+   (plans-dice-p nil boolean "true if the simulation's plans have their own random state for
+CL:RANDOM: the threads of a run that is or was live do not share one" :export)
+   (past nil t "the forks and acts that the simulation keeps for rewinding, or NIL" :export)
+   (line nil list "a list of one element, the latest successor of the simulation, shared by all runs
+that were rewound to it; or NIL if there was no rewinding")
+   (output nil (or null stream) "the stream of an editor to which the simulation's threads write, or
+NIL")
    (messages *message-queue* message-queue
              "the message queue that the simulation reports to" :export)
-   (forked-p nil boolean "it was forked, perhaps to look ahead")
+   (forked-p nil boolean "true if the simulation was forked, perhaps to look ahead")
    (gate nil (or null function) "a function of the simulation that returns how many ticks may pass
 before it is called again" :export)
    (observers '() list "the functions that are called after each tick" :export)
-   (trails '() list "where robots were, for displays; replaced, never altered, as forks share it"
+   (trails '() list "the earlier positions of robots, for displays; the list is replaced, never
+altered, because forks share it"
            :export)
    (participants '() list "the participants of the simulation, see participant.lisp" :export)))
 
@@ -58,7 +61,8 @@ before it is called again" :export)
 (addition simulation-tick)
 (declaim (inline simulation-tick))
 (defun simulation-tick (&optional (simulation (current-simulation)))
-  "Return the number of ticks of SIMULATION that have passed; inside a tick, its number."
+  "Return the number of ticks of SIMULATION that have passed; inside a tick, the number of that
+tick."
   (timeline-tick (simulation-timeline simulation)))
 
 (defmethod print-object ((simulation simulation) stream)
@@ -89,7 +93,7 @@ steps). See SET-THINKING."
 
 (declaim (inline simulation-over))
 (defun simulation-over (simulation)
-  "Return why the run of SIMULATION is over, a string, or NIL if it is not."
+  "Return the reason why the run of SIMULATION is over, a string, or NIL if it is not over."
   (timeline-over (simulation-timeline simulation)))
 
 (declaim (inline simulation-thread))
@@ -114,15 +118,16 @@ steps). See SET-THINKING."
 ;;; Making.
 
 (defun make-simulation (world &optional (prepare (constantly nil)))
-  "Return a new simulation of WORLD, which has a timeline. It replaces any earlier one. The function
-PREPARE is called with it before other threads can find it."
+  "Return a new simulation of WORLD, which has a timeline. The new simulation replaces an earlier
+simulation of WORLD. PREPARE is called with the new simulation before other threads can find it."
   (let* ((timeline (world-timeline world))
          (simulation (%make-simulation timeline world)))
     (funcall prepare simulation)
     (setf (timeline-run timeline) simulation)))
 
 (defun headless-p (simulation)
-  "True if SIMULATION is headless: its world is not the resident one that top-level code works in."
+  "True if SIMULATION is headless: its world is not the resident world in which top-level code
+works."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
@@ -132,8 +137,8 @@ PREPARE is called with it before other threads can find it."
     (if line (first line) simulation)))
 
 (defun link-successor (new old)
-  "Make NEW the successor of OLD and of its predecessors. These share one list and do not refer to
-each other, so all but the last can be garbage-collected."
+  "Make NEW the successor of OLD and of the predecessors of OLD. All these runs share one list and
+do not refer to each other, so all but the last can be garbage-collected."
   (let ((line (or (simulation-line old) (list old))))
     (setf (first line) new
           (simulation-line old) line
@@ -144,13 +149,14 @@ each other, so all but the last can be garbage-collected."
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun residents-queue ()
-  "Return the message queue for runs of resident worlds: the global one inside a headless run."
+  "Return the message queue for runs of resident worlds: *MESSAGE-QUEUE*, or inside a headless run
+its global value."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
 
 (defun world-simulation (world)
-  "Return the simulation of WORLD; if there is none, make one that keeps a journal."
+  "Return the simulation of WORLD; if there is none, make a simulation that keeps a journal."
   (let ((timeline (ensure-timeline world)))
     (or (timeline-run timeline)
         (with-lock (*simulations-lock*)
@@ -160,11 +166,12 @@ each other, so all but the last can be garbage-collected."
                                        (begin-journal simulation))))))))
 
 (defun resolve-simulation (designator operator)
-  "Return DESIGNATOR if it is a simulation, or the simulation of the robot DESIGNATOR. Signals
-WRONG-ARGUMENT by OPERATOR."
+  "Return the simulation DESIGNATOR, or the simulation of the robot DESIGNATOR. Signals
+WRONG-ARGUMENT, which names OPERATOR, for other objects."
   (cond ((simulation-p designator) designator)
         ((robot-p designator) (robot-simulation designator))
-        (t (reject-argument operator 'simulation designator "a simulation, or a robot in one"))))
+        (t (reject-argument operator 'simulation designator "a simulation, or a robot in a ~
+                                                             simulation"))))
 
 (addition robot-simulation)
 (defun robot-simulation (robot)
@@ -185,14 +192,15 @@ WRONG-ARGUMENT by OPERATOR."
 
 (addition remove-observer)
 (defun remove-observer (function &optional (simulation (current-simulation)))
-  "Stop calling FUNCTION after the ticks of SIMULATION, also if it has been rewound since."
+  "Stop calling FUNCTION after the ticks of SIMULATION or, if SIMULATION has been rewound, of its
+successor."
   (let ((simulation (latest simulation)))
     (asking (simulation)
       (removef (simulation-observers simulation) function)))
   (values))
 
 (defun add-participant (participant simulation)
-  "Add PARTICIPANT to SIMULATION. Return it."
+  "Add PARTICIPANT to SIMULATION. Return PARTICIPANT."
   (asking (simulation)
     (setf (simulation-participants simulation)
           (append (simulation-participants simulation) (list participant))))
@@ -220,8 +228,9 @@ never end."
                  (simulation-participants simulation)))))
 
 (defun idle-p (&optional (simulation (current-simulation)))
-  "True if nothing can happen in SIMULATION until a request is made. In a live one at the rate
-:FREE, kickers wait for a request, too: otherwise millions of ticks would pass before one is made."
+  "True if nothing can happen in SIMULATION until a request is made. In a live simulation at the
+rate :FREE, kickers wait for a request, too: otherwise millions of ticks would pass before a request
+is made."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-busy-p world))))
@@ -248,15 +257,15 @@ reading 218."
 
 (addition set-thinking)
 (defun set-thinking (mode &optional (simulation (current-simulation)))
-  "Set the cost of thinking in SIMULATION from now on, also of thinking in progress, to MODE (manual
-1.2), and return it:
-  :FREE                      no ticks: plans react after each tick, as long as it takes them
+  "Set the cost of thinking in SIMULATION, also of thinking in progress, to MODE (manual 1.2).
+Return MODE. The modes and their costs:
+  :FREE                      no ticks: plans react after each tick, for as long as they need
   :CHARGED                   the ticks that THINK and WITH-CHARGE say
-  (:CHARGED :BUDGET steps)   these, and a tick for each STEPS of plans: the rest waits
-  :REAL                      no ticks: with a clock, plans have a thread and the clock goes on
-If a plan calls it, the mode applies from its next reaction on, mostly in the next tick. Free and
-charged runs are the same on every machine. Without a clock :REAL is the same as :FREE. The journal
-records it. Signals WRONG-ARGUMENT."
+  (:CHARGED :BUDGET steps)   these ticks, and one tick for every STEPS steps of plans
+  :REAL                      no ticks: in a live run, plans have a thread, and ticks go on passing
+If a plan calls SET-THINKING, the mode applies from the plan's next reaction on, which is usually in
+the next tick. Runs in the modes :FREE and :CHARGED are the same on every machine. In a headless run
+:REAL is the same as :FREE. The journal records the mode. Signals WRONG-ARGUMENT."
   (check-thinking 'set-thinking mode)
   (let ((simulation (resolve-simulation simulation 'set-thinking)))
     (changing ((simulation-world simulation) set-thinking mode)
@@ -269,7 +278,7 @@ records it. Signals WRONG-ARGUMENT."
 
 ;; A time limit may come at any moment. It must not keep plans from being told of the end.
 (defun tell-of-end (simulation)
-  "Tell the robots and participants of SIMULATION that it is over, with interrupts deferred."
+  "Notify the robots and participants of SIMULATION that the run is over. Interrupts are deferred."
   (in-any-case
     (call-each #'close-robot (simulation-robots simulation))
     (call-each (lambda (participant)
@@ -278,7 +287,7 @@ records it. Signals WRONG-ARGUMENT."
 
 (defun end-simulation (simulation reason)
   "End the run of SIMULATION, for REASON, a sentence without its full stop. Requests to its robots,
-in progress or waiting, are interrupted; further ones are refused."
+in progress or waiting, are interrupted; further requests are refused."
   (let ((timeline (simulation-timeline simulation))
         (robots (simulation-robots simulation)))
     (call-alone
@@ -299,13 +308,12 @@ in progress or waiting, are interrupted; further ones are refused."
 
 (defun state-digest (&optional (simulation (current-simulation)) participants)
   "Return a 64-bit number computed from the exact state of SIMULATION. Two runs with the same digest
-at a tick go the same way from there, given the same requests. It covers the world, robots and
-parts, commands in progress, parameters and dice: all that the definitions of kinds declare as
-state.
-- Requests since the last tick count from the next one on.
+at a tick go the same way from there, given the same requests. The digest covers the world, robots
+and parts, commands in progress, parameters and dice: everything that DEFINE-KIND declares as state.
+- Requests made since the last tick count only after the next tick.
 - Continuations of commands do not count.
 - Plans count if PARTICIPANTS is true.
-- Functions, such as those given to SCHEDULE, count only as such, not by what they do.
+- Functions, such as the body of an event of SCHEDULE, count, but their code does not.
 SIMULATION may be one of its robots. Signals WRONG-ARGUMENT."
   (let ((simulation (resolve-simulation simulation 'state-digest)))
     (asking (simulation)

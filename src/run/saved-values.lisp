@@ -12,8 +12,8 @@
 ;;; an array are a repeat count, an element, and so on.
 
 (defun write-elements (list inventory out &optional (beginning #\Space))
-  "Write the elements of LIST up to its end or a cons with a number. BEGINNING is written before the
-first, a space before each other one."
+  "Write the elements of LIST up to its end or to a cons that has a number. Write BEGINNING before
+the first element and a space before each other element."
   (loop for tail = list then (cdr tail)
         for separator = beginning then #\Space
         while (and (consp tail)
@@ -38,8 +38,8 @@ first, a space before each other one."
   (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
 
 (defun write-run (array start inventory out)
-  "Write how often the element of ARRAY at START is repeated there, and the element. Return the
-index of the next different one."
+  "Write the number of equal elements of ARRAY from START on, and the element. Return the index of
+the next different element."
   (let* ((element (row-major-aref array start))
          (end (or (loop for index from (1+ start) below (element-count array)
                         unless (eql element (row-major-aref array index)) return index)
@@ -61,7 +61,8 @@ index of the next different one."
            start)))
 
 (defun values-in (object fields)
-  "Return the contents of OBJECT, no array or cons, as a list for LOADED-VALUES."
+  "Return the contents of OBJECT, which is neither an array nor a cons, as a list for
+LOADED-VALUES."
   (typecase object
     (dice (list (dice-state object)))
     (agenda (cons (agenda-tick object) (pending-events object)))
@@ -71,7 +72,7 @@ index of the next different one."
     (t (loop for field in fields collect (funcall (kind-slot-reader field) object)))))
 
 (defun write-row (values inventory out)
-  "Write the first of VALUES, as many as fit into a line. Return the others."
+  "Write the first elements of VALUES, as many as fit into a line. Return the others."
   (loop repeat +longest-row+
         while values
         do (write-char #\Space out)
@@ -79,8 +80,8 @@ index of the next different one."
   values)
 
 (defun write-line-of (object more inventory out)
-  "Write the next line for OBJECT to OUT. Return what is left to write, or NIL. MORE is what was
-left before: values, or an index of an array."
+  "Write the next line for OBJECT to OUT. MORE are the values that are left to write, or an index if
+OBJECT is an array. Return what is left after this line, in the same form, or NIL."
   (typecase object
     (cons (write-elements object inventory out) nil)
     (array (let ((end (write-part object more inventory out)))
@@ -88,7 +89,7 @@ left before: values, or an index of an array."
     (t (write-row more inventory out))))
 
 (defun object-lines (object fields inventory seal)
-  "Call SEAL with each line for the contents of OBJECT. FIELDS are the slots of a structure."
+  "Call SEAL with each line for the contents of OBJECT. For a structure, FIELDS are its slots."
   (let ((more (typecase object
                 (cons nil)
                 (array 0)

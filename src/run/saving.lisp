@@ -22,12 +22,12 @@
   ((name  :initarg :name  :reader unsavable-name)
    (parts :initarg :parts :reader unsavable-parts))
   (:report (lambda (condition stream)
-             (format stream "The run in ~(~A~) cannot be saved whole: ~{~A~^; ~}. Wait ~
-                             until plans and events are over, or leave all that out by the ~
-                             restart SAVE-WITHOUT; a journal that cannot be saved is left out ~
-                             whole."
+             (format stream "The run in ~(~A~) cannot be saved completely: ~{~A~^; ~}. Wait until ~
+                             plans and events are over, or use the restart SAVE-WITHOUT to leave ~
+                             these parts out; a journal that has such parts is left out completely."
                      (unsavable-name condition) (unsavable-parts condition))))
-  (:documentation "A run to be saved has parts that cannot be saved, such as plans in progress."))
+  (:documentation "A run cannot be saved completely, because it has parts such as plans in
+progress."))
 
 (setf (documentation 'unsavable-parts 'function)
       "Return the parts that an UNSAVABLE condition names, a list of strings.")
@@ -46,7 +46,7 @@
   (pending-events (simulation-agenda simulation)))
 
 (defun unsavable-texts (simulation journal)
-  "Return a list of texts about what in SIMULATION or JOURNAL cannot be saved."
+  "Return a list of texts about the parts of SIMULATION and JOURNAL that cannot be saved."
   (append (loop for text in (unfinished-in-participants simulation)
                 collect (format nil "~A is under way" text))
           (loop for event in (events-waiting simulation)
@@ -55,14 +55,14 @@
           (loop for request in (requests-waiting simulation)
                 when (holds-function-p request)
                   collect (if (typep request 'scheduled)
-                              "an event of SCHEDULE was asked for"
+                              "an event of SCHEDULE was requested"
                               "a command was withdrawn by a plan"))
           (and journal
                (some (lambda (entry) (unprintable-in (cddr entry))) (journal-entries journal))
                (list "its journal has entries with functions in them, as those of PUT-KICKER"))))
 
 (defun stripped-copy (simulation)
-  "Return a copy of SIMULATION without what cannot be saved."
+  "Return a copy of SIMULATION without the parts that cannot be saved."
   (let* ((copy (copy-without-participants simulation)) (timeline (simulation-timeline copy)))
     (dolist (event (events-waiting copy))
       (when (holds-function-p event) (cancel-event (timeline-agenda timeline) event)))
@@ -70,8 +70,8 @@
     copy))
 
 (defun call-with-savable (function simulation without-p)
-  "Call FUNCTION with SIMULATION and its journal. If these have parts that cannot be saved, leave
-these out if WITHOUT-P is true, or else signal UNSAVABLE."
+  "Call FUNCTION with SIMULATION and its journal. If either has parts that cannot be saved, leave
+these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
   (let* ((journal (and (simulation-journal simulation) (journal-up-to-now simulation)))
          (texts (unsavable-texts simulation journal)))
     (cond ((null texts) (funcall function simulation journal))
@@ -89,7 +89,8 @@ these out if WITHOUT-P is true, or else signal UNSAVABLE."
         collect (list (parameter-name parameter) value)))
 
 (defun commands-under-way (simulation)
-  "Return, as definitions, the users' commands that are in progress or wait in SIMULATION."
+  "Return the users' commands that are in progress or waiting in SIMULATION, in the form of
+definitions."
   (loop for request in (append (events-waiting simulation) (requests-waiting simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
@@ -97,15 +98,16 @@ these out if WITHOUT-P is true, or else signal UNSAVABLE."
           collect (definition-of :command entry)))
 
 (defun programs-head (simulation)
-  "Return the part of the head for programs of SIMULATION: the noise that DIRTY-SIMULATION would
-restore there, and their dice. A live run has none, as each of its threads has its own."
+  "Return the part of the head of a saved run that concerns programs in SIMULATION: the noise that
+DIRTY-SIMULATION would restore, and the dice of CL:RANDOM. For a live run there are no dice, because
+each of its threads has its own."
   (let ((dice (and (headless-p simulation)
                    (cdr (assoc *lisps-dice* (environment-of simulation))))))
     (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
            (and dice (list :dice (lisps-dice-numbers dice))))))
 
 (defun head-of (simulation programs journal)
-  "Return the head of the file of SIMULATION. PROGRAMS is a value of PROGRAMS-HEAD."
+  "Return the head for the file in which SIMULATION is saved. PROGRAMS is a value of PROGRAMS-HEAD."
   (let ((used (append (definitions-of simulation)
                       (current-definitions (commands-under-way simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
@@ -120,7 +122,7 @@ restore there, and their dice. A live run has none, as each of its threads has i
            programs)))
 
 (defun write-saved (simulation journal programs out)
-  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is for the head."
+  "Write SIMULATION and JOURNAL, its journal or NIL, to OUT. PROGRAMS is a value of PROGRAMS-HEAD."
   (let* ((requests (requests-waiting simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
@@ -143,16 +145,17 @@ restore there, and their dice. A live run has none, as each of its threads has i
 ;;; loading would refuse.
 
 (defun check-loadable (path name)
-  "Signal MISUSE unless the run called NAME that is saved in the file PATH can be loaded."
+  "Signal MISUSE unless the run NAME that is saved in the file PATH can be loaded."
   (handler-case (read-simulation path)
     ((or damaged-simulation unknown-name) (trouble)
-      (reject-use "The run in ~(~A~) cannot be saved, since it could not be loaded again: ~A. What ~
-                   was there is as before; (simulator ROBOT) starts a run that can be saved."
+      (reject-use "The run in ~(~A~) cannot be saved, because the written file could not be loaded ~
+                   again: ~A. An older file is unchanged. (simulator ROBOT) starts a run that can ~
+                   be saved."
                   name (reason-of-refusal trouble)))))
 
 (defun write-simulation (simulation file without-p)
-  "Write SIMULATION, which is between ticks, to FILE; if WITHOUT-P is true, without what cannot be
-saved. Return the truename of FILE."
+  "Write SIMULATION, which is between ticks, to FILE; if WITHOUT-P is true, without the parts that
+cannot be saved. Return the truename of FILE."
   (when (simulation-ticking-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
@@ -170,20 +173,22 @@ saved. Return the truename of FILE."
 ;; The restart is established in the thread that saves the run: another thread may own the run.
 (addition save-simulation)
 (defun save-simulation (file &optional (simulation (current-simulation)))
-  "Write the state of SIMULATION, between two ticks, to FILE, from which LOAD-SIMULATION continues
-it exactly. FILE is replaced after all is written and has been loaded on trial. Return its truename.
+  "Write the state of SIMULATION, between two ticks, to FILE, so that LOAD-SIMULATION continues the
+run exactly. An existing FILE is replaced only after the new file has been written and loaded as a
+check. Return the truename of FILE.
 - Saved: world, things, kickers, robots and their parts, designators, tracks, odometers, commands in
-  progress and requested, parameters, seed and dice, of a headless run also those of CL:RANDOM in
-  its programs; and the journal, so that a replay still repeats the whole run.
-- Left out: continuations of commands and tracks, as programs have them, observers and messages.
+  progress and requested commands, parameters, seed and dice, in a headless run also the dice of
+  CL:RANDOM in its programs; and the journal, so that a replay still repeats the whole run.
+- Left out: continuations of commands and tracks, because they belong to programs; observers;
+  messages.
 Signals:
 - UNSAVABLE, with the restart SAVE-WITHOUT, if plans or events of SCHEDULE are in progress or the
   journal contains functions
-- MISUSE if the run is over or inside a tick, contains something without a printed form, such as a
-  kicker of PUT-KICKER, could not be loaded again, or cannot be written, for example because FILE is
-  something else than a saved run
-- WRONG-ARGUMENT unless FILE is a name
-If it signals, FILE is unchanged."
+- MISUSE if the run is over or inside a tick, if it contains an object without a printed form, such
+  as a kicker of PUT-KICKER, if the saved run could not be loaded again, or if FILE cannot be
+  written, for example because it exists but is not a saved run
+- WRONG-ARGUMENT unless FILE is a file name
+After an error, FILE is unchanged."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
   (check-not-foreign file :run "saved run")

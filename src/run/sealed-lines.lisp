@@ -16,11 +16,13 @@
   (:report (lambda (condition stream)
              (format stream "~A cannot be used: ~A." (shown-name (damaged-file-name condition))
                      (damaged-file-reason condition))))
-  (:documentation "A file that should have been saved by the simulator cannot be used."))
+  (:documentation "A file cannot be used, because it is damaged or was not saved by the
+simulator."))
 
 (defun report-damage (condition stream kind operator)
-  "Write to STREAM that the file of CONDITION is not of KIND, and that OPERATOR saves one."
-  (format stream "~A is no usable ~A: ~A. Save one with ~A; nothing was changed."
+  "Write to STREAM that the file of CONDITION is not a usable file of KIND, and that OPERATOR saves
+such a file."
+  (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
           (shown-name (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
 
 (addition damaged-journal)
@@ -40,19 +42,21 @@
 ;;; Writing.
 
 (defun write-sealed (text sum out)
-  "Write TEXT to OUT as a line with its check sum. Return that. SUM is the one of the line before."
+  "Write TEXT to OUT as a line with its check sum, and return this check sum. SUM is the check sum
+of the previous line."
   (when (<= (- +longest-line+ 10) (length text))
-    (error "one of its entries takes ~D characters" (length text)))
+    (error "one entry takes ~D characters, more than a line can have" (length text)))
   (let ((sum (text-checksum text sum)))
     (format out "~A ;~8,'0X~%" text sum)
     (when (< (- +longest-file+ (expt 2 20)) (file-position out))
-      (error "it takes more than ~D bytes" (- +longest-file+ (expt 2 20))))
+      (error "the file would take more than ~D bytes" (- +longest-file+ (expt 2 20))))
     sum))
 
 ;;; Reading.
 
 (defun read-short-line (in)
-  "Return the next line of IN, or NIL; only the beginning of a line that is too long."
+  "Return the next line of IN, or NIL at the end. If the line is longer than +LONGEST-LINE+, return
+only its beginning."
   (let* ((last nil)
          (line (with-output-to-string (out)
                  (loop repeat +longest-line+
@@ -70,20 +74,23 @@
     (or (string= "" text) (char= #\; (char text 0)))))
 
 (defun line-checksum (line start)
-  "Return the check sum in LINE from START on, or NIL."
+  "Return the check sum that begins in LINE at START, or NIL."
   (and (<= 0 start)
        (string= " ;" line :start2 start :end2 (+ 2 start))
        (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))
 
 (defun checked-datum (line sum)
-  "Return the datum in LINE and its check sum. SUM is the one of the line before."
-  (when (= +longest-line+ (length line)) (error "it has ~D characters or more" +longest-line+))
+  "Return the datum in LINE and the check sum of LINE. SUM is the check sum of the previous line.
+Signals an error if LINE is damaged."
+  (when (= +longest-line+ (length line))
+    (error "the line has ~D characters or more" +longest-line+))
   (let* ((start (- (length line) 10))
          (text (subseq line 0 (max 0 start)))
          (sum (text-checksum text sum)))
-    (unless (eql sum (line-checksum line start)) (error "it is not as it was written"))
+    (unless (eql sum (line-checksum line start)) (error "the line has been changed since it was ~
+                                                         written"))
     (multiple-value-bind (datum end) (read-datum text)
-      (unless (= end (length text)) (error "there is something after it"))
+      (unless (= end (length text)) (error "the line has more than one datum"))
       (values datum sum))))
 
 (defun next-line (in)
@@ -94,35 +101,36 @@
 ;;; Files.
 
 (defun call-with-saved-text (function file)
-  "Call FUNCTION with a stream of the octets of FILE, for NEXT-LINE. Signals an error if that is no
-regular file, or too long."
+  "Call FUNCTION with a stream of the octets of FILE, for NEXT-LINE. Signals an error if FILE is not
+a regular file or is too long."
   (let ((trouble (unusable-file-text file)))
     (when trouble (error "~A" trouble)))
   (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
-      (error "it has ~D bytes, more than such files have" (file-length in)))
+      (error "the file has ~D bytes, more than a saved file can have" (file-length in)))
     (let ((*uninterned* (make-hash-table :test 'equal)))
       (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
-  "Do what CALL-WITH-SAVED-TEXT does. For an error other than UNKNOWN-NAME, signal one of the class
-DAMAGE, which names FILE. The file should be of KIND."
+  "Call FUNCTION as CALL-WITH-SAVED-TEXT does. Errors other than UNKNOWN-NAME are signalled as an
+error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
   (handler-case (call-with-saved-text function file)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
-      (error damage :file file :reason "the system does not let it be read"))
+      (error damage :file file :reason "the operating system does not let the file be read"))
     ((or error storage-condition) (trouble)
       (error damage :file file :reason (or (file-advice file kind)
                                            (one-line-text trouble))))))
 
 (defun reason-of-refusal (trouble)
-  "Return the reason why READING-FILE has signalled TROUBLE, as a part of a sentence."
+  "Return the reason of the error TROUBLE, which READING-FILE has signalled, as a part of a
+sentence."
   (if (typep trouble 'damaged-file)
       (damaged-file-reason trouble)
       (string-right-trim "." (one-line-text trouble))))
 
 (defmacro reading-file ((in file kind damage) &body body)
-  "Run BODY with IN bound to a stream of FILE, as CALL-READING-FILE calls a function."
+  "Run BODY with IN bound to a stream of FILE. See CALL-READING-FILE for KIND and DAMAGE."
   `(call-reading-file (lambda (,in) ,@body) ,file ,kind ,damage))
 
 (defun check-format (found expected)

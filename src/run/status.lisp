@@ -8,8 +8,8 @@
 ;;; strings, as they print. Property lists can get more entries in the future.
 
 (defun view-without-effect (camera)
-  "Return what CAMERA sees now, without an effect on the run: dice and last view are
-restored (reading 201)."
+  "Return the current view of CAMERA without an effect on the run: dice and last view are restored
+(reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera))
@@ -20,16 +20,18 @@ restored (reading 201)."
             (camera-last-view-tick camera) tick))))
 
 (defun inside-name (part)
-  "Return the name of what PART is inside of, a string, or NIL."
+  "Return the name of the container that PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
 (defun slots-of-own-kind (part)
-  "Return the slot descriptions of the kind of PART, without the slots that all parts have."
+  "Return the descriptions of the slots that the kind of PART has in addition to the slots of all
+parts."
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
 
 (defgeneric part-status (part)
-  (:documentation "Return the plist of PART for STATUS; for a user's kind, its state and memory."))
+  (:documentation "Return the plist of PART for STATUS. For a part of a user's kind, it contains the
+slots with the roles :STATE and :MEMORY."))
 
 (defmethod part-status ((part part))
   (list :name (princ-to-string part)
@@ -75,16 +77,17 @@ restored (reading 201)."
 ;;; Commands in progress, and who issued them.
 
 (defun part-name (resource)
-  "Return the name of RESOURCE, a string; NIL if it is the robot itself."
+  "Return the name of RESOURCE, a string, or NIL if RESOURCE is a robot."
   (if (robot-p resource) nil (princ-to-string resource)))
 
 (defun under-way-status (resource)
-  "Return a list of the command in progress on RESOURCE and its asker, as a plist; or NIL."
+  "Return a list of one plist, which describes the command in progress on RESOURCE and who issued
+it; or NIL."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (list (list :part (part-name resource) :command name :for asker)))))
 
 (defun interrupted-status (resource)
-  "Return a list of the last interruption on RESOURCE, as a plist; or NIL."
+  "Return a list of one plist, which describes the last interruption on RESOURCE; or NIL."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (destructuring-bind (what asker by by-asker tick) interruption
@@ -94,7 +97,7 @@ restored (reading 201)."
 ;;; All of it.
 
 (defun robot-status (robot)
-  "Return the value of STATUS for ROBOT, whose world is between ticks."
+  "Return the value of STATUS for ROBOT. The world is between ticks."
   (let ((resources (cons robot (robot-parts robot))))
     (append
      (list :robot (robot-name robot)
@@ -127,18 +130,21 @@ is NIL, the first of the current simulation."
 
 (addition status)
 (defun status (&optional robot)
-  "Return what STATUS shows at the prompt of ROBOT, a robot or its name, by default the first robot
-of the current simulation, as a property list of plain data:
+  "Return the state of ROBOT, which the prompt command STATUS prints, as a property list of plain
+data. ROBOT is a robot or its name, by default the first robot of the current simulation. The
+properties are:
 - :ROBOT, :MAP, :TICK
 - :POSITION, :LAST-MOVE and :ESTIMATED-LAST-MOVE, lists (x y) in metres
 - :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in radians a tick
 - :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part
-- :PLACE, the place type it sensed last, or NIL
-- :THINKING, how much time thinking costs; :LIVE, true of a live run
-- :UNDER-WAY and :INTERRUPTED, lists of property lists: the commands in progress on it and its parts
-  and who issued them, and the last interrupted commands and by whose commands
-- :FAILED, what LAST-FAILURE returns
-- :DESIGNATORS, a property list for each
+- :PLACE, the place type that the robot sensed last, or NIL
+- :THINKING, the thinking mode; :LIVE, true in a live run
+- :UNDER-WAY, a list of property lists: the commands in progress on the robot and its parts, and who
+  issued them
+- :INTERRUPTED, a list of property lists: the commands interrupted last, and which commands
+  interrupted them
+- :FAILED, the value of LAST-FAILURE
+- :DESIGNATORS, a list of property lists, one for each designator
 Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (resolve-robot robot 'status)))
     (ask robot (lambda () (robot-status robot)))))

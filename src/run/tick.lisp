@@ -11,8 +11,9 @@
 ;;; begun, and the others are run first.
 
 (defmacro in-phases ((place) &body phases)
-  "Run PHASES, (name form...), in order. PLACE holds the number of the last one that has begun; skip
-phases up to that. It is 0 before and after."
+  "Run PHASES, lists (name form...), in order. PLACE holds the number of the last phase that has
+begun; skip the phases up to this number. PLACE is 0 before the first phase and after the last
+phase."
   `(progn
      ,@(loop for (name . forms) in phases
              collect `(when (< ,place (phase-number ,name))
@@ -34,29 +35,31 @@ phases up to that. It is 0 before and after."
 
 (declaim (inline record-changed-parameters))
 (defun record-changed-parameters (simulation timeline)
-  "Check and record the parameters of SIMULATION, at least if a command may read them in this tick."
+  "Check and record the parameters of SIMULATION if a command may read them in this tick, or if
+SIMULATION keeps a journal or forks."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
             (noting-p simulation))
     (record-settings simulation)))
 
 (defun set-parameter (name value)
-  "Set the parameter NAME to VALUE, as the journal of the current run says, which is repeated, and
-record it in the same place of the new journal."
+  "Set the parameter NAME to VALUE. A replay calls this for an entry of the repeated journal; the
+change is recorded at the same point of the new journal."
   (setf (parameter-value name) value)
   (record-settings *simulation*))
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 
 (defun set-cleaning (settings)
-  "Make DIRTY-SIMULATION restore SETTINGS, lists (name value), as in the run that is repeated."
+  "Make DIRTY-SIMULATION restore SETTINGS, lists (name value). A replay calls this for an entry of
+the repeated journal."
   (setf *noise-before-cleaning* (settings-by-symbol settings))
   (record-settings *simulation*))
 
 (define-operator 'cleaning '(datum) #'set-cleaning)
 
 (defun perform-requests (simulation timeline)
-  "Perform the requests made of SIMULATION since the last tick, oldest first."
+  "Perform the requests to SIMULATION that were made since the last tick, the oldest first."
   (call-each (lambda (request)
                (when (noting-p simulation)
                  (destructuring-bind (operator . arguments) (request-entry request)
@@ -65,7 +68,7 @@ record it in the same place of the new journal."
              (take-requests timeline)))
 
 (defun settled-robot-p (robot)
-  "True if a tick has nothing to settle for ROBOT, as WORLD-SETTLED-P says."
+  "True if the phase :SETTLING of a tick can be skipped for ROBOT, see WORLD-SETTLED-P."
   (flet ((unsettled-hand-p (hand)
            (or (hand-location hand) (rest (hand-contents hand)) (grip-watched-p hand))))
     (not (or (plusp (length (robot-designators robot)))
@@ -74,7 +77,7 @@ record it in the same place of the new journal."
              (some #'unsettled-hand-p (robot-hands robot))))))
 
 (defun settle (world)
-  "Update which parts are inside of things in WORLD, tracks and grips."
+  "Update in WORLD which parts are inside of things, and the tracks and grips."
   (settle-robots world)
   (tend-tracks world)
   (check-grips world)
@@ -82,7 +85,7 @@ record it in the same place of the new journal."
 
 (declaim (inline extend-journal))
 (defun extend-journal (simulation)
-  "Extend the journal of SIMULATION to the current tick, if it keeps one that is not full."
+  "If SIMULATION keeps a journal that is not full, extend it to the current tick."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))
@@ -102,7 +105,7 @@ record it in the same place of the new journal."
 
 (declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)
-  "Keep a fork of SIMULATION, whose tick has ended, if it keeps forks and one is due."
+  "At the end of a tick, keep a fork of SIMULATION if it keeps forks and the next fork is due."
   (let ((past (simulation-past simulation)))
     (when past
       ;; Forks repeat what plans have rolled, so this is not recorded.
@@ -111,7 +114,8 @@ record it in the same place of the new journal."
         (keep-fork-if-affordable simulation past)))))
 
 (defun tick (simulation)
-  "Pass one tick of SIMULATION, or the rest of one that was left. Called by the owner."
+  "Pass one tick of SIMULATION, or the rest of a tick that a non-local exit has interrupted. The
+thread that owns the world calls this function."
   (declare #.*hot* (type simulation simulation))
   (let ((timeline (simulation-timeline simulation))
         (world (simulation-world simulation)))
