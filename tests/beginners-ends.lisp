@@ -119,9 +119,9 @@
         (run:save-simulation saved))
       (let ((journal (uiop:native-namestring journal)) (saved (uiop:native-namestring saved)))
         (loop for (form . words)
-                in `(((run:load-simulation ,journal) "it is a journal; (replay FILE)")
-                     ((run:load-journal ,saved) "it is a saved run; (load-simulation FILE)")
-                     ((floors:import-map ,saved) "it is a saved run")
+                in `(((run:load-simulation ,journal) "the file is a journal; (replay FILE)")
+                     ((run:load-journal ,saved) "the file is a saved run; (load-simulation FILE)")
+                     ((floors:import-map ,saved) "the file is a saved run")
                      ((ars:read-results ,journal) "no directory of an experiment" "a journal"))
               do (is-true (apply #'complains-p form words)))))))
 

@@ -272,7 +272,7 @@ function of its name. Return that parameter."
 
 (test files.of-other-kinds-say-what-reads-them
   (let ((journal (format nil "~A~%(ars-magna-journal 2 (robots))~%" run::+journal-title+)))
-    (is-true (has-words-p (complaint-of-loading journal) "it is a journal; (replay FILE)"))
+    (is-true (has-words-p (complaint-of-loading journal) "the file is a journal; (replay FILE)"))
     (uiop:with-temporary-file (:pathname path :stream out :type "ars")
       (write-string journal out)
       :close-stream
@@ -280,7 +280,7 @@ function of its name. Return that parameter."
                               (lambda (path)
                                 (cli::run-arguments (list (uiop:native-namestring path))))))
         (is-true (has-words-p (said-by (lambda () (funcall function path)))
-                              "it is a journal; (replay FILE)"))))))
+                              "the file is a journal; (replay FILE)"))))))
 
 (test files.that-are-scripts-of-lines-say-so
   (dolist (said (list (complaint-of-loading (format nil "; mine~%turn 1~%go 3~%"))

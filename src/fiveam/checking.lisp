@@ -4,7 +4,7 @@
 
 (export '(is-success-rate))
 
-(defparameter *examples* 5 "The most trials that did not succeed that are listed.")
+(defparameter *examples* 5 "The largest number of unsuccessful trials that a failed check lists.")
 
 (defun subject-text (check)
   (if (check-subject check)
@@ -24,7 +24,8 @@
               (string= "" (result-error result)) (result-error result))))
 
 (defun example-lines (bad check)
-  "Return lines for the first *EXAMPLES* of BAD, results of trials of CHECK that did not succeed."
+  "Return lines of text about the first *EXAMPLES* results in BAD, a list of results of trials of
+CHECK that did not succeed."
   (append (loop for result in bad
                 repeat *examples*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
@@ -46,8 +47,8 @@
 
 (defun failure-text (check)
   (let ((bad (remove-if #'success-p (reverse (check-results check)))))
-    (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Of those that did not:~%~{~A~%~}To see ~
-                 one, in the package ~A:~%  ~A"
+    (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Trials that did not ~
+                 succeed:~%~{~A~%~}To repeat the first of them, in the package ~A:~%  ~A"
             (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
             (meaning-text check) (example-lines bad check)
             (package-name (experiment-package (check-experiment check)))
@@ -56,11 +57,12 @@
 ;;;; The check
 
 (defun designated-condition (experiment condition)
-  "Return the condition of EXPERIMENT for the designator CONDITION; its only one if that is NIL."
+  "Return the condition of EXPERIMENT for the designator CONDITION. If CONDITION is NIL, return the
+only condition of EXPERIMENT."
   (let ((all (experiment-conditions experiment)))
     (cond (condition (find-condition experiment condition))
           ((rest all)
-           (reject-use "The experiment ~(~A~) has several conditions; say which, as in ~
+           (reject-use "The experiment ~(~A~) has several conditions; name one of them, as in ~
                         (:experiment '~(~A~) :condition ~S)."
                        (experiment-name experiment) (experiment-name experiment)
                        (condition-name (first all))))
@@ -69,10 +71,12 @@
 ;;; Checking.
 
 (defun decide-check (experiment condition subject at-least trials level workers)
-  "Check with at most TRIALS trials of CONDITION of EXPERIMENT, made for SUBJECT or NIL, that the
-rate of success is AT-LEAST. Report that to FiveAM; return true if so."
+  "Check, with at most TRIALS trials of CONDITION of EXPERIMENT, that the rate of success is
+AT-LEAST or more. SUBJECT is the subject for which EXPERIMENT was made, or NIL. Report the result to
+FiveAM; return true if the check passes."
   (check-rates 'is-success-rate at-least trials level)
-  (check-argument is-success-rate workers (whole-p workers 1 1000) "how many threads, 1 to 1000")
+  (check-argument is-success-rate workers (whole-p workers 1 1000) "a number of threads, from 1 to ~
+                                                                    1000")
   (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
                                       (as-written level) workers))))
     (cond ((eq :passed (check-verdict check))
@@ -92,14 +96,15 @@ rate of success is AT-LEAST. Report that to FiveAM; return true if so."
                   at-least (or trials (experiment-trials experiment)) level workers)))
 
 (defun experiment-clause (form options)
-  "Return name and condition in FORM, (:experiment name :condition c). Signals MALFORMED-DEFINITION
-if FORM is not like that, or there are OPTIONS, which the experiment determines."
+  "Return a list of name and condition in FORM, (:experiment name :condition c). Signals
+MALFORMED-DEFINITION if FORM does not have this form, or if there are OPTIONS, because the
+experiment determines these."
   (unless (and (proper-list-p form) (member (length form) '(2 4))
                (or (null (cddr form)) (eq :condition (third form))))
     (reject-clause "is-success-rate" form "(:experiment name) or (:experiment name :condition c)"))
   (when options
     (reject-clause "is-success-rate" form
-                   (format nil "no ~(~S~) beside it, as the experiment says that"
+                   (format nil "no option ~(~S~), because the experiment determines it"
                            (first options))))
   (list (second form) (fourth form)))
 
@@ -107,34 +112,35 @@ if FORM is not like that, or there are OPTIONS, which the experiment determines.
     (form &rest options
           &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
           (limit +usual-limit+) (workers 1))
-  "Check, in a test of FiveAM, that FORM succeeds in at least AT-LEAST of trials, .95 by default.
-Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME.
+  "Check, in a test of FiveAM, that the rate of success of FORM is at least AT-LEAST, by default
+.95. Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME.
 
   (is-success-rate (run-plan 'fetch-thing '((:color blue)) '((109 24)))
     :robots marvin :at-least .9 :trials 60 :parameters ((motion-noise* .2) (max-speed* 2)))
 
-Each trial evaluates FORM in a fresh headless simulation with ROBOTS, the name of a robot or a list
-of names, which are bound to the robots. As in :run of an experiment, the values of RUN-PLAN, or
-else the first value, decide whether it succeeded. Errors, and trials of more than LIMIT ticks, did
-not succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at most 300. Trial T has
-the seed SEED + T. Parameters are the manual's, except PARAMETERS: lists (name form) as in
-DEFEXPERIMENT, or a form that returns lists (name value). CLEAN runs trials without noise.
+Each trial evaluates FORM in a fresh headless simulation. ROBOTS is the name of a robot or a list of
+names; the names are bound to the robots. As for :run of an experiment, the values of RUN-PLAN, or
+else the first value of FORM, decide whether the trial succeeded. Trials with an error or with more
+than LIMIT ticks do not succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at
+most 300. Trial T has the seed SEED + T. Parameters have the values of the manual, except those in
+PARAMETERS: lists (name form) as in DEFEXPERIMENT, or a form that returns lists (name value). If
+CLEAN is true, trials have no noise.
 
-FORM may also be (:experiment NAME) or (:experiment NAME :condition C): trials of that experiment,
-which decides the rest.
+FORM may also be (:experiment NAME) or (:experiment NAME :condition C). Then the trials are those of
+that experiment, which determines robots, seed, parameters and limit.
 
-At most TRIALS are run: by default 200, or as many as the experiment says. The check fails as soon
-as the rate is clearly lower than AT-LEAST, and passes as soon as it is clearly higher. After the
-last trial it fails if the rate is significantly below AT-LEAST, else it passes. (RATE-VERDICT
-decides after each trial, EXACT-INTERVAL at the end, each with half of LEVEL.) So a form that
-succeeds AT-LEAST so often fails the check with a probability of at most LEVEL. PASS-PROBABILITY
-tells how likely a loss is noticed; more trials make it likelier. If AT-LEAST is 1, all trials must
-succeed.
+At most TRIALS trials are run: by default 200, or the number that the experiment specifies. The
+check fails as soon as the rate is clearly lower than AT-LEAST, and passes as soon as it is clearly
+higher. After the last trial the check fails if the rate is significantly below AT-LEAST, else it
+passes. (RATE-VERDICT decides after each trial, EXACT-INTERVAL at the end, each with half of LEVEL.)
+So a form whose rate of success is really AT-LEAST or more fails the check with a probability of at
+most LEVEL. PASS-PROBABILITY returns the probability that a check passes for a given rate; with more
+trials, a low rate is noticed more often. If AT-LEAST is 1, all trials must succeed.
 
-Seeds are fixed, so the same code gives the same answer, with any number of WORKERS, threads. With
-several of them FORM does not see bindings of the test. The reason of a failure gives the numbers,
-the first trials that did not succeed and why, and a form that repeats one, by REPEAT-TRIAL or
-REPLAY-TRIAL, in any Lisp with the same code."
+Seeds are fixed, so the same code gives the same result, with any number of threads WORKERS. With
+several threads FORM does not see the dynamic bindings of the test. The message about a failure
+gives the numbers, the first unsuccessful trials with reasons, and a form that repeats one of these
+trials, by REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp with the same code."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
           (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))

@@ -10,7 +10,7 @@
 ;;; end. So trials can end early with either answer.
 
 (defun early-verdict (successes trials rate level)
-  "Return :PASSED, :FAILED or NIL for SUCCESSES of TRIALS, with more to come."
+  "Return :PASSED, :FAILED or NIL for SUCCESSES successes in TRIALS trials, before the last trial."
   (if (= rate 1)
       (if (= successes trials) nil :failed)
       (ecase (rate-verdict successes trials rate :level (/ level 2))
@@ -24,8 +24,8 @@
       :passed))
 
 (defun verdict (successes trials most rate level)
-  "Return :PASSED, :FAILED or, if more trials are needed, NIL, for SUCCESSES of TRIALS. There can be
-MOST trials."
+  "Return :PASSED, :FAILED or, if more trials are needed, NIL, for SUCCESSES successes in TRIALS
+trials. MOST is the largest number of trials."
   (or (early-verdict successes trials rate level)
       (and (= trials most) (last-verdict successes trials rate level))))
 
@@ -35,13 +35,14 @@ MOST trials."
   (unless (and (finite-p at-least) (<= 1d-9 at-least 1))
     (reject-argument operator 'at-least at-least "a rate above 0 and up to 1, such as .95"))
   (unless (and (integerp trials) (<= 1 trials +largest+))
-    (reject-argument operator 'trials trials "how many trials at most, from 1 to 1e9"))
+    (reject-argument operator 'trials trials "the largest number of trials, from 1 to 1e9"))
   (unless (and (finite-p level) (<= 1d-9 level 1/2))
     (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
 
 (defun next-odds (odds count rate)
-  "Return the probabilities of 0 to COUNT successes. ODDS are those of 0 to COUNT - 1 before the
-last trial, which succeeds with the probability RATE."
+  "Return a vector of the probabilities of 0 to COUNT successes. ODDS is the vector of the
+probabilities of 0 to COUNT - 1 successes before the last trial, which succeeds with the probability
+RATE."
   (let ((next (make-array (1+ count) :initial-element 0)))
     (loop for successes below count
           for share = (aref odds successes)
@@ -51,10 +52,10 @@ last trial, which succeeds with the probability RATE."
 
 (defun pass-probability (rate &key (at-least .95) (trials 200) (level .05))
   "Return the probability that IS-SUCCESS-RATE passes, with these arguments, if trials succeed with
-the probability RATE; and the average number of trials. Use it to see which loss of success a check
-notices: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with .20, and 85 %
-with .003. Both values are exact except for rounding: they add up all courses that the trials can
-take, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
+the probability RATE; and the average number of trials. Use this function to see which rates a check
+accepts: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with .20, and 85 %
+with .003. Both values are exact except for rounding: the function adds up all sequences of
+successes and failures, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rates 'pass-probability at-least trials level)
   (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))

@@ -2,8 +2,8 @@
 
 (ars-magna.host:define-package :ars-magna.fiveam
   (:nicknames :ars-fiveam)
-  (:documentation "Checks of success rates of plans, programs and experiments,
-for test suites written with FiveAM. Use it beside FIVEAM.")
+  (:documentation "Checks of success rates of plans, programs and experiments, for test suites
+written with FiveAM. Use this package together with FIVEAM.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval #:as-written)

@@ -7,8 +7,9 @@
 (defstruct (subject (:constructor make-subject
                         (function form package robots parameters clean limit))
                     (:copier nil))
-  "A form to check. FUNCTION evaluates FORM, from PACKAGE. Trials have ROBOTS, PARAMETERS, lists
-(name value), no noise if CLEAN is true, and at most LIMIT ticks."
+  "A form whose rate of success is checked. FUNCTION evaluates FORM, which was written in PACKAGE.
+Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN is true; and at most LIMIT
+ticks."
   (function nil :read-only t)
   (form nil :read-only t)
   (package nil :type package :read-only t)
@@ -17,12 +18,13 @@
   (clean nil :read-only t)
   (limit 0 :read-only t))
 
-(defconstant +usual-limit+ 100000 "The default for the most ticks of a trial.")
+(defconstant +usual-limit+ 100000 "The default for the largest number of ticks of a trial.")
 
 ;;; An experiment for a form.
 
 (defun parameter-parts (parameters operator)
-  "Return PARAMETERS, lists (name value), an argument of OPERATOR, in the form for EXPERIMENT-FROM."
+  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM requires. OPERATOR is the
+operator whose argument PARAMETERS is, for errors."
   (unless (and (proper-list-p parameters)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
     (reject-argument operator 'parameters parameters "lists (name value)"))
@@ -31,7 +33,8 @@
         collect (list (list symbol value) value)))
 
 (defun experiment-of (subject operator seed)
-  "Return an experiment for the trials of SUBJECT from SEED on. Errors name OPERATOR."
+  "Return an experiment that consists of trials of SUBJECT, with seeds that follow SEED. Errors name
+OPERATOR."
   (let ((limit (subject-limit subject)))
     (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
     (unless (whole-p limit 1)
@@ -49,7 +52,8 @@
 ;;; Expanding the macros.
 
 (defun robot-names (operator robots form)
-  "Return the names in ROBOTS, a name or a list. Signals MALFORMED-DEFINITION if there is none."
+  "Return a list of the names in ROBOTS, a name or a list of names. Signals MALFORMED-DEFINITION if
+there is no name."
   (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
                                 (second robots)
                                 robots))))
@@ -59,7 +63,7 @@
     names))
 
 (defun parameters-form (operator parameters)
-  "Return the form for lists (name value) of PARAMETERS, which are lists (name form), or a form."
+  "Return a form that returns lists (name value). PARAMETERS is such a form, or lists (name form)."
   (if (and (consp parameters) (consp (first parameters)))
       `(list ,@(loop for part in parameters
                      do (unless (and (proper-list-p part) (= 2 (length part))
@@ -70,7 +74,7 @@
       parameters))
 
 (defun subject-maker (operator form robots parameters clean limit)
-  "Return a form for the subject with these arguments of the macro OPERATOR."
+  "Return a form that makes the subject from these arguments of the macro OPERATOR."
   (doubt-nested-run form)
   (let ((names (robot-names operator robots form)))
     `(make-subject (lambda ()
@@ -85,7 +89,7 @@
                        (:constructor make-check (experiment condition subject at-least trials
                                                  level workers))
                        (:copier nil))
-  "A check that trials of CONDITION, of EXPERIMENT, succeed at a rate of AT-LEAST."
+  "A check that trials of CONDITION of EXPERIMENT succeed at a rate of AT-LEAST or more."
   (experiment nil :read-only t)
   (condition nil :read-only t)
   ;; The form that the experiment was made for, or NIL.
@@ -103,7 +107,8 @@
 (defun success-p (result) (string= "success" (result-outcome result)))
 
 (defun count-result (check result)
-  "Count RESULT, of the next trial of CHECK. Return the verdict, or NIL."
+  "Add RESULT, the result of the next trial of CHECK, to the results of CHECK. Return the verdict,
+or NIL."
   (push result (check-results check))
   (when (success-p result) (incf (check-successes check)))
   (setf (check-verdict check)
@@ -116,7 +121,8 @@
 
 ;; The trials that count are decided in their order, whichever worker runs them.
 (defun run-some-trials (check first)
-  "Return results of some trials of CHECK from FIRST on, in order; of one trial for one worker."
+  "Run some trials of CHECK, from the number FIRST on, and return their results in order. With one
+worker, run only one trial."
   (let* ((workers (check-workers check))
          (last (min (check-trials check) (+ first (max first (* 8 workers)))))
          (results (make-array (- last first -1)))
@@ -150,15 +156,15 @@
     (form &rest options
           &key robots (seed 1) parameters clean (limit +usual-limit+)
           until then rate step journal trace)
-  "Run the trial with SEED of a check of FORM by IS-SUCCESS-RATE again: the same run, in this
-thread. A check that fails prints such a form; the other arguments are those of the check.
+  "Run again, in this thread, the trial with SEED of a check of FORM by IS-SUCCESS-RATE. A failed
+check prints a form (repeat-trial ...); the arguments besides SEED are those of the check.
 
   (repeat-trial (run-plan 'fetch-thing '((:color blue)) '((109 24)))
     :robots marvin :seed 7 :parameters ((motion-noise* 0.2)))
 
-UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are as for REPLAY-TRIAL, for example to watch it at a
-pace or to stop it in the middle. Return a plist, and signal errors, as REPLAY-TRIAL does;
-MALFORMED-DEFINITION, too."
+UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are those of REPLAY-TRIAL, for example to watch the trial
+at a pace or to stop it in the middle. Return the same plist as REPLAY-TRIAL. Signals the errors of
+REPLAY-TRIAL, and MALFORMED-DEFINITION."
   (declare (ignore until then rate step journal trace))
   `(replay-subject ,(subject-maker "repeat-trial" form robots parameters clean limit) ,seed
                    (list ,@(loop for (key value) on options by #'cddr
@@ -174,7 +180,7 @@ MALFORMED-DEFINITION, too."
     (if (< (length line) 90) line text)))
 
 (defun literal (value)
-  "Return a form that returns VALUE."
+  "Return a form that evaluates to VALUE."
   (if (or (consp value) (and (symbolp value) (not (keywordp value)) (not (member value '(t nil)))))
       `',value
       value))
@@ -190,7 +196,7 @@ MALFORMED-DEFINITION, too."
       ,@(when (subject-clean subject) '(:clean t)))))
 
 (defun repetition-text (check result)
-  "Return a form, as text, that repeats the trial of CHECK that RESULT is of."
+  "Return the text of a form that repeats the trial of CHECK that had the result RESULT."
   (let ((subject (check-subject check)))
     (flet ((text (form) (checked-form-text form check)))
       (if subject

@@ -3,8 +3,9 @@
 (in-package :ars-magna.plots)
 
 (defstruct (axis (:copier nil))
-  "The numbers from LOW to HIGH, logarithms if LOG-P, between the pixels FROM and TO. MARKS is a
-list of lists (value line...) with lines of text, which run upward if UPWARD-P."
+  "An axis from the number LOW to HIGH, between the pixels FROM and TO. If LOG-P, LOW and HIGH are
+logarithms. MARKS is a list of lists (value line...) with lines of text, which are vertical if
+UPWARD-P."
   (low 0 :type real)
   (high 1 :type real)
   (from 0 :type real)
@@ -14,16 +15,18 @@ list of lists (value line...) with lines of text, which run upward if UPWARD-P."
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return VALUE, or its logarithm to base 10 if LOG-P. Signals WRONG-ARGUMENT if it has none."
+  "Return VALUE, or its logarithm to base 10 if LOG-P. Signals WRONG-ARGUMENT if VALUE has no
+logarithm."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
-                           "more than 0 on a logarithmic axis; leave :log-x out, or make it a word")
+                           "a number above 0 on a logarithmic axis; leave :log-x out, or give the
+value as a string")
            (let ((power (power-of-ten value)))
              (+ power (rational (/ (logarithm (/ value (expt 10 power))) (logarithm 10))))))))
 
-(defun antilogarithm (spot)
-  "Return the number whose logarithm is about SPOT."
-  (multiple-value-bind (power rest) (floor spot)
+(defun antilogarithm (logarithm)
+  "Return approximately the number whose logarithm to base 10 is LOGARITHM."
+  (multiple-value-bind (power rest) (floor logarithm)
     (* (expt 10 power) (rational (power 10 rest)))))
 
 (defun axis-place (value axis)
@@ -35,8 +38,8 @@ list of lists (value line...) with lines of text, which run upward if UPWARD-P."
 ;;; Limits.
 
 (defun limits (values &optional (least-step 0))
-  "Return the least and the greatest of VALUES; 0 and 1 if there are none. If both are equal, widen
-them by LEAST-STEP or more to each side."
+  "Return the least and the greatest of VALUES, or 0 and 1 if VALUES is empty. If both would be
+equal, the limits are at least LEAST-STEP farther out on each side."
   (let ((low (if values (reduce #'min values) 0))
         (high (if values (reduce #'max values) 1)))
     (cond ((< low high) (values low high))
@@ -45,13 +48,13 @@ them by LEAST-STEP or more to each side."
                (values (- low more) (+ high more)))))))
 
 (defun least-step (values percent)
-  "Return the least step of marks for VALUES: 1 for counts, which are integers without PERCENT, else
-0."
+  "Return the least step between marks for VALUES: 1 for counts, that is, integers that are not
+shown as PERCENT; else 0."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
 (defun padded-limits (low high from to inset)
-  "Return the ends of an axis between the pixels FROM and TO on which LOW and HIGH are INSET pixels
-from the ends, but at most a sixth of the axis."
+  "Return the numbers at the ends of an axis between the pixels FROM and TO on which LOW and HIGH
+are INSET pixels from the ends. INSET is reduced to a sixth of the axis if it is more."
   (let* ((span (rational (- to from)))
          (inset (min (rational inset) (/ span 6)))
          (margin (* (- high low) (/ inset (- span (* 2 inset))))))
@@ -72,8 +75,8 @@ from the ends, but at most a sixth of the axis."
                    (- (axis-place (first next) axis) (axis-place (first mark) axis)))))
 
 (defun fit-marks (axis candidates least)
-  "Give AXIS the first of CANDIDATES, lists of marks, whose texts fit. A single mark, which does not
-show the scale, is used only if no candidate has two."
+  "Give AXIS the first list of marks in CANDIDATES whose texts fit. A list of a single mark, which
+does not show the scale, is used only if no candidate has two marks."
   (loop for (marks . more) on (or (remove-if-not #'rest candidates) candidates)
         do (setf (axis-marks axis) marks)
         until (or (null more) (marks-fit-p axis least)))
@@ -82,14 +85,15 @@ show the scale, is used only if no candidate has two."
 ;;; Axes across.
 
 (defun step-candidates (low high start end percent &optional (least-step 0))
-  "Return lists of marks between START and END, at most 10 between LOW and HIGH and at least
-LEAST-STEP apart, the longest list first."
+  "Return candidates for the marks between START and END, the longest list first. Each is a list of
+marks that are at least LEAST-STEP apart, and at most 10 between LOW and HIGH."
   (loop for most in '(10 8 6 5 4 3 2 1)
         for step = (max least-step (round-step (- high low) most))
         collect (step-marks step start end percent)))
 
 (defun decade-marks (low high factors every)
-  "Return marks at FACTORS times each power of ten that EVERY divides, from LOW to HIGH."
+  "Return marks from LOW to HIGH, which are logarithms: at FACTORS times each power of ten whose
+exponent EVERY divides."
   (loop for power from (floor low) to (ceiling high)
         when (zerop (mod power every))
           append (loop for factor in factors
@@ -98,7 +102,8 @@ LEAST-STEP apart, the longest list first."
                          collect (list value (plain-text value 4)))))
 
 (defun logarithmic-candidates (low high percent)
-  "Return lists of marks for the logarithms from LOW to HIGH, the longest list first."
+  "Return candidates for the marks of a logarithmic axis from LOW to HIGH, which are logarithms.
+Each is a list of marks; the longest list comes first."
   (if (< (- high low) 1)
       (let ((least (antilogarithm low)) (most (antilogarithm high)))
         (step-candidates least most least most percent))
@@ -125,7 +130,8 @@ ends."
 ;;; The axis upward. Its ends are marks.
 
 (defun axis-upward (values percent range)
-  "Return an axis for VALUES and the two numbers of RANGE, without its place on the page."
+  "Return a vertical axis for VALUES and the two numbers of RANGE, without its position on the
+page."
   (multiple-value-bind (low high) (limits (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            ;; 0 and 1 can be counts or shares.
@@ -140,11 +146,11 @@ ends."
 ;;; The words are below their places, in up to three lines, if none must be broken for that.
 ;;; Otherwise they run upward. If there are too many for the page, it becomes wider.
 
-(defconstant +longest-upward+ 170 "The greatest length of a line that runs upward, in pixels.")
+(defconstant +longest-upward+ 170 "The greatest length of a line of vertical text, in pixels.")
 
 (defun across-lines (words width)
-  "Return a list of the lines of each of WORDS within WIDTH pixels; NIL if one needs more than three
-or a break."
+  "Return a list with the lines of text of each of WORDS, wrapped at WIDTH pixels. Return NIL if one
+of WORDS needs more than three lines or must be broken inside."
   (let ((all (mapcar (lambda (word) (wrap-text word width)) words)))
     (and (every (lambda (word lines)
                   (and (<= (length lines) 3)
@@ -154,7 +160,8 @@ or a break."
          all)))
 
 (defun word-axis (words from to)
-  "Return an axis with a mark for each of WORDS: 0, 1, 2 .... It may reach beyond the pixel TO."
+  "Return an axis with a mark for each of WORDS, at 0, 1, 2 and so on. The axis begins at the pixel
+FROM and may reach beyond the pixel TO."
   (let* ((count (max 1 (length words)))
          (across (across-lines words (- (/ (- to from) count) 8)))
          (all (or across (mapcar (lambda (word) (wrap-text word +longest-upward+)) words)))

@@ -8,7 +8,8 @@
 ;;; give the same picture to the last byte.
 
 (defun as-rational (value)
-  "Return VALUE, a finite number or NIL, as a rational or NIL; 0.1 as 1/10. Signals WRONG-ARGUMENT."
+  "Return VALUE, a finite number, as a rational: 0.1 as 1/10. Return NIL for NIL. Signals
+WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a finite number, or NIL if there is none")
   ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.
@@ -18,7 +19,8 @@
            (rationalize value))))
 
 (defun power-of-ten (value)
-  "Return the greatest integer N for which 10^N is at most the size of VALUE, not 0."
+  "Return the greatest integer N for which 10^N is at most the absolute value of VALUE, which is not
+0."
   (let* ((size (abs value))
          (bits (- (integer-length (numerator size)) (integer-length (denominator size)) 1)))
     (loop for power from (- (floor (* 3/10 bits)) (ceiling (max 0 (- bits)) 100) 1)
@@ -36,7 +38,7 @@
             whole (plusp decimals) decimals rest)))
 
 (defun without-zeros (text)
-  "Return TEXT, a number, without trailing zeros of its decimals."
+  "Return TEXT, the text of a number, without trailing zeros after the decimal point."
   (if (find #\. text)
       (string-right-trim "." (string-right-trim "0" text))
       text))
@@ -57,7 +59,7 @@
                 power))))
 
 (defun figure-text (value &key (percent nil) (digits 4))
-  "Return VALUE, a number, as text with DIGITS significant digits, as per cent if PERCENT: 0.3,
+  "Return the text of the number VALUE with DIGITS significant digits, as per cent if PERCENT: 0.3,
 12.5 %, 1.5e9. For NIL return a dash. Signals WRONG-ARGUMENT."
   (let ((value (as-rational value)))
     (cond ((null value) "-")
@@ -67,7 +69,8 @@
 ;;; Round numbers along an axis.
 
 (defun round-step (span most)
-  "Return the least of 1, 2 and 5 times a power of ten of which at most MOST fit in SPAN."
+  "Return the least step that divides SPAN into at most MOST parts. A step is 1, 2 or 5 times a
+power of ten."
   (let ((least (/ span most)))
     (loop for power from (power-of-ten least)
           thereis (loop for factor in '(1 2 5)
@@ -75,7 +78,7 @@
                         when (<= least step) return step))))
 
 (defconstant +slack+ 1/1000000000
-  "The share of a step by which a float may miss a round number.")
+  "The fraction of a step by which a float may differ from a round number.")
 
 (defun multiple-below (step value)
   (* step (floor (+ (/ value step) +slack+))))
@@ -84,7 +87,8 @@
   (* step (ceiling (- (/ value step) +slack+))))
 
 (defun step-text (value step largest percent)
-  "Return the text of VALUE, one of several STEP apart up to LARGEST, with the decimals of STEP."
+  "Return the text of VALUE for a mark, with as many decimals as STEP. The marks are STEP apart;
+LARGEST is the largest absolute value."
   (flet ((decimals (step) (max 0 (- (power-of-ten step)))))
     (cond (percent
            (format nil "~A %" (decimal-text (* 100 value) (decimals (* 100 step)))))
@@ -96,7 +100,7 @@
                        (power-of-ten largest)))))))
 
 (defun step-marks (step low high percent)
-  "Return a list of marks (value text) for an axis from LOW to HIGH, STEP apart."
+  "Return a list of marks (value text), STEP apart, for an axis from LOW to HIGH."
   (let ((largest (max (abs low) (abs high))))
     (loop for value from (multiple-above step low) to (multiple-below step high) by step
           collect (list value (step-text value step largest percent)))))

@@ -6,15 +6,15 @@
 
 (defstruct (data-point (:conc-name point-) (:constructor make-data-point (x y low high))
                        (:copier nil))
-  "A point of a series: Y at X, with the interval LOW to HIGH. X is a number or a text; all others
-may be NIL."
+  "A point of a series: the value Y at X, with the interval from LOW to HIGH. X is a number or a
+text; Y, LOW and HIGH may be NIL."
   (x nil :read-only t)
   (y nil :read-only t)
   (low nil :read-only t)
   (high nil :read-only t))
 
 (defstruct (series (:constructor make-series (name index points)) (:copier nil))
-  "Points in the given order. INDEX determines the look."
+  "A series of points, in the given order. INDEX determines its colour, markers and dashes."
   (name nil :read-only t)
   (index 0 :read-only t)
   (points '() :type list :read-only t))
@@ -28,13 +28,14 @@ may be NIL."
                      (as-rational y) (as-rational low) (as-rational high))))
 
 (defun words-p (all)
-  "True if the X of a point in ALL, lists (name point...), is not a number."
+  "True if any point in ALL, a list of lists (name point...), has an X that is not a number."
   (some (lambda (entry)
           (some (lambda (point) (and (consp point) (not (realp (first point))))) (rest entry)))
         all))
 
 (defun checked-series (all)
-  "Return series for ALL, a list of lists (name point...), and whether X are words."
+  "Return a list of series for ALL, a list of lists (name point...); and true if the X of points are
+words."
   (check-argument chart all (and (listp all) (every #'consp all))
                   "a list of series, each a list (name (x y low high) ...)")
   (let ((words-p (words-p all)))
@@ -48,7 +49,7 @@ may be NIL."
 (defun all-points (series) (mapcan (lambda (one) (copy-list (series-points one))) series))
 
 (defun all-x (series)
-  "Return the X of SERIES, each once, in order of appearance."
+  "Return the X of all points of SERIES, without duplicates, in order of appearance."
   (remove-duplicates (mapcar #'point-x (all-points series)) :test #'equal :from-end t))
 
 (defun all-y (series)
@@ -58,7 +59,8 @@ may be NIL."
 ;;; Series are drawn side by side, so that their intervals do not hide each other.
 
 (defun least-gap (places)
-  "Return the least distance of two of PLACES, in pixels; 60 if there are fewer."
+  "Return the least distance between two of the positions PLACES, in pixels; or 60 if there are less
+than two."
   (let ((sorted (sort (copy-list places) #'<)))
     (loop for (place next) on sorted
           while next
@@ -68,20 +70,21 @@ may be NIL."
 (defconstant +most-sideways+ 8 "The greatest shift between two series, in pixels.")
 
 (defun shift-step (count gap)
-  "Return the shift between two of COUNT series, for places that are GAP pixels apart."
+  "Return the horizontal shift from one of COUNT series to the next, in pixels, if points of a
+series are GAP pixels apart."
   (min +most-sideways+ (/ (* 6/10 gap) (max 1 count))))
 
 (defun inset-for-series (series values from to log-p)
-  "Return how far VALUES must be from the ends of an axis between the pixels FROM and TO for all
-SERIES to have room beside them."
+  "Return the distance that VALUES must have from the ends of an axis between the pixels FROM and
+TO, so that all SERIES have room side by side."
   (let* ((places (mapcar (lambda (value) (scaled-value value log-p)) values))
          (span (if places (- (reduce #'max places) (reduce #'min places)) 0))
          (gap (if (zerop span) 60 (* (- to from) (/ (least-gap places) span)))))
     (+ 14 (* 1/2 (length series) (shift-step (length series) gap)))))
 
 (defun series-shifts (series places from)
-  "Return a function from an index of SERIES to its shift, in pixels to the right of PLACES, on an
-axis that begins at FROM."
+  "Return a function that returns the horizontal shift, in pixels, of the series with a given index
+among SERIES. PLACES are the positions of points on an axis that begins at the pixel FROM."
   (let* ((middle (/ (1- (length series)) 2))
          (room (if places (- (reduce #'min places) from 7) 0))
          (step (min (shift-step (length series) (least-gap places))
@@ -89,7 +92,7 @@ axis that begins at FROM."
     (lambda (index) (* step (- index middle)))))
 
 (defun legend-name (name known-p)
-  "Return the text of NAME in the legend; KNOWN-P is true if there is data."
+  "Return the text for the series NAME in the legend. KNOWN-P is true if the series has data."
   (if (or known-p (string= "" name))
       name
       (concatenate 'string name " (no data)")))
@@ -99,7 +102,7 @@ axis that begins at FROM."
 ;;; Words along the axis across are replaced by numbers.
 
 (defun number-words (series words)
-  "Return SERIES with the position in WORDS of each X, in its place."
+  "Return copies of SERIES in which each X, a word, is replaced by its position in WORDS."
   (loop for one in series
         for points = (loop for point in (series-points one)
                            for place = (position (point-x point) words :test #'equal)
@@ -118,7 +121,7 @@ axis that begins at FROM."
             (and (point-high point) (text (point-high point))))))
 
 (defun runs (items test)
-  "Return lists of consecutive ITEMS for which TEST is true."
+  "Return a list of the longest sublists of consecutive ITEMS for which TEST is true."
   (let ((runs '()) (run '()))
     (dolist (item items (nreverse (if run (cons (nreverse run) runs) runs)))
       (cond ((funcall test item) (push item run))
@@ -151,7 +154,7 @@ axis that begins at FROM."
                      (axis-place (point-y point) (plane-upward plane)))))))
 
 (defun draw-series (canvas all plane words percent)
-  "Draw ALL series: lines, then intervals, then markers."
+  "Draw the series in the list ALL: lines first, then intervals, then markers."
   (let ((shifts (series-shifts all
                                (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
                                (axis-from (plane-across plane)))))
@@ -164,7 +167,8 @@ axis that begins at FROM."
       (each (lambda (series shift) (draw-markers canvas series plane shift words percent))))))
 
 (defun plan-line-chart (all words values log-x upward options)
-  "Return the plane for ALL series, whose X are VALUES: numbers of WORDS if there are any."
+  "Return the plane for the series in the list ALL. VALUES are their X. If there are WORDS, the X
+are positions in WORDS."
   (apply #'plan-plane
          (lambda (from to)
            (if words
@@ -179,13 +183,14 @@ axis that begins at FROM."
 (defun line-chart (series &rest options
                    &key percent range log-x title subtitle x-label y-label legend-title
                      width height)
-  "Return a chart of SERIES as an SVG document. Each is a list (name point...), a point a list (x y)
-or (x y low high): Y at X, with an interval. X are all numbers, joined by lines, or all strings or
-symbols. Unknown values are NIL. PERCENT: Y are rates, shown as per cent from 0 to 100. RANGE is a
-list (low high) that the axis upward must include. LOG-X: X on a logarithmic scale. TITLE, SUBTITLE,
-X-LABEL, Y-LABEL and LEGEND-TITLE, above the names of the series, are strings or NIL. WIDTH and
-HEIGHT are pixels, by default 720 and 440; they grow where the text needs it. If all names are NIL,
-there is no legend. Signals WRONG-ARGUMENT."
+  "Return a chart of SERIES as an SVG document. Each series is a list (name point...), each point a
+list (x y) or (x y low high): the value Y at X, with the interval from LOW to HIGH. The X of all
+points are numbers, joined by lines, or strings and symbols. Unknown values are NIL. If PERCENT is
+true, Y are rates, shown as per cent from 0 to 100. RANGE is a list (low high) that the vertical
+axis must include. If LOG-X is true, the scale of X is logarithmic. TITLE, SUBTITLE, X-LABEL,
+Y-LABEL and LEGEND-TITLE, which is above the names of the series, are strings or NIL. WIDTH and
+HEIGHT are pixels, by default 720 and 440; the chart is larger if its texts need more room. If all
+names are NIL, there is no legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")

@@ -15,22 +15,22 @@
 (defconstant +grid-ink+ #xDEDEDE "The colour of the lines behind the data.")
 
 (defparameter *colors* #(#x0072B2 #xD55E00 #x009E73 #x000000 #xE69F00 #x56B4E9 #xCC79A7)
-  "Blue, vermilion, green, black, orange, sky blue, purple.")
+  "The colours of series, in turn: blue, vermilion, green, black, orange, sky blue, purple.")
 
 (defparameter *dashes* #(nil (7 3) (2 3) (9 3 2 3) (4 2) (12 3 2 3 2 3))
-  "Lengths of dashes and gaps, in pixels; NIL is a solid line.")
+  "The dashes of series, in turn: lengths of dashes and gaps, in pixels; NIL is a solid line.")
 
 (defparameter *shapes*
   #((:circle t) (:square t) (:triangle t) (:diamond t) (:kite t)
     (:circle nil) (:square nil) (:triangle nil) (:diamond nil) (:kite nil))
-  "Lists (outline filled-p).")
+  "The markers of series, in turn: lists (outline filled-p).")
 
 (defparameter *outlines*
   '((:square -9/10 -9/10 9/10 -9/10 9/10 9/10 -9/10 9/10)
     (:triangle 0 -6/5 23/20 4/5 -23/20 4/5)
     (:diamond 0 -27/20 1 0 0 27/20 -1 0)
     (:kite 0 6/5 23/20 -4/5 -23/20 -4/5))
-  "Polygons x y ... around 0, 0.")
+  "An alist from names of markers to their outlines, polygons x y ... around the point 0, 0.")
 
 (defun look-color (index)
   "Return the colour of the series INDEX."
@@ -66,7 +66,7 @@
         (draw-lines canvas draw-gcontext* (shape-points outline x y radius) :fill-p t))))
 
 (defun draw-marker (canvas index x y &optional (radius 4) (color (look-color index)))
-  "Draw the marker of the series INDEX around X, Y in COLOR, with a white rim."
+  "Draw the marker of the series INDEX in COLOR, with its middle at X, Y and a white rim."
   (destructuring-bind (outline filled-p) (nth-cyclic index *shapes*)
     (fill-shape canvas outline white* x y (+ radius 6/5))
     (fill-shape canvas outline color x y radius)
@@ -90,7 +90,7 @@
 (defconstant +text-step+ 15 "The distance between lines of text, in pixels.")
 
 (defun name-text (name)
-  "Return NAME, a string, symbol, character or number, as text; the empty text for NIL."
+  "Return the text of NAME, a string, symbol, character or number; or the empty string for NIL."
   (check-argument chart name (typep name '(or string symbol character real))
                   "a string, symbol, character or number")
   (typecase name
@@ -100,7 +100,7 @@
     (t (string name))))
 
 (defun split-text (text separator-p)
-  "Return the pieces of TEXT between characters for which SEPARATOR-P is true, without empty ones."
+  "Return a list of the non-empty pieces of TEXT between characters for which SEPARATOR-P is true."
   (loop with start = 0
         for end = (position-if separator-p text :start start)
         unless (eql start (or end (length text)))
@@ -109,14 +109,15 @@
         do (setf start (1+ end))))
 
 (defun fitting-length (word width size bold-p)
-  "Return how many of the first characters of WORD fit in WIDTH pixels, at least 1."
+  "Return the number of characters at the beginning of WORD that fit in WIDTH pixels, at least 1."
   (loop for count from 1 to (length word)
         while (<= (text-width (subseq word 0 count) size bold-p) width)
         finally (return (max 1 (1- count)))))
 
 (defun place-to-break (word count)
-  "Return where to break WORD, of which COUNT characters fit in a line: after the last dash, slash
-or the like among these, except at the beginning; else at COUNT."
+  "Return the position at which to break WORD, whose first COUNT characters fit in a line. It is
+after the last dash, slash or similar character in that part, but not at the beginning of WORD;
+without such a character it is COUNT."
   (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))
@@ -130,7 +131,7 @@ or the like among these, except at the beginning; else at COUNT."
         finally (return (append pieces (list word)))))
 
 (defun wrapped-words (words width size bold-p)
-  "Return lines of WORDS, each as long as fits in WIDTH pixels."
+  "Return WORDS as a list of lines of text, each as long as fits in WIDTH pixels."
   (let ((lines '()) (line nil))
     (dolist (word words)
       (dolist (piece (break-word word width size bold-p))
@@ -144,8 +145,9 @@ or the like among these, except at the beginning; else at COUNT."
 (defun space-p (character) (not (and (graphic-char-p character) (char/= #\Space character))))
 
 (defun wrap-text (text width &key (size +text-size+) bold-p)
-  "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels. Break it at newlines
-and between words; a word longer than a line after a dash, else anywhere."
+  "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels. TEXT is broken at
+newlines and between words. A word that is longer than a line is broken after a dash or a similar
+character, or anywhere if there is none."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
        (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
@@ -159,14 +161,15 @@ and between words; a word longer than a line after a dash, else anywhere."
 
 (defun write-lines (canvas x y lines &key (anchor :start) (color +ink+) (size +text-size+) bold-p
                                        (step +text-step+))
-  "Write LINES below each other, the first with its base line at Y. Return that of the next."
+  "Write LINES of text below each other. Y is the base line of the first line. Return the base line
+for a further line."
   (with-ink (color)
     (dolist (line lines y)
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)
       (incf y step))))
 
 (defun write-lines-upward (canvas x y lines)
-  "Write LINES upward, beside each other around X, with their ends at Y."
+  "Write LINES as vertical text, side by side around X. They end at Y."
   (with-ink (+ink+)
     (loop for line in lines
           for shift from (- (/ (1- (length lines)) 2))
@@ -199,7 +202,8 @@ and between words; a word longer than a line after a dash, else anywhere."
 
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the
-truename. The name ends in .svg or, if the program rsvg-convert is installed, .png. Signals
-WRONG-ARGUMENT, and MISUSE without that program."
-  (check-argument save-chart chart (stringp chart) "what a function such as LINE-CHART returns")
+truename of FILE. The name of FILE ends in .svg or, if the program rsvg-convert is installed, .png.
+Signals WRONG-ARGUMENT, and MISUSE without that program."
+  (check-argument save-chart chart (stringp chart) "an SVG document from a function such as
+LINE-CHART")
   (save-svg chart file (picture-kind 'save-chart file)))

@@ -6,7 +6,8 @@
 (defconstant +entry-gap+ 6 "The gap between entries of the legend, in pixels.")
 
 (defstruct (legend (:copier nil))
-  "The legend beside a chart: the lines TITLE, and ENTRIES, lists (index line...)."
+  "The legend beside a chart. TITLE is a list of lines of text, ENTRIES a list of lists (index
+line...). If CONNECT is true, the samples of series have lines."
   (title '() :type list)
   (entries '() :type list)
   (connect t)
@@ -14,12 +15,13 @@
   (height 0 :type real))
 
 (defun title-height (title)
-  "Return the height of TITLE, lines, above the entries, in pixels."
+  "Return the height, in pixels, of TITLE, a list of lines of text above the entries of a legend."
   (if title (+ +entry-gap+ (lines-height title)) 0))
 
 (defun plan-legend (names title most connect)
-  "Return the legend for series called NAMES below TITLE, a string or NIL, at most MOST pixels wide;
-an empty one if all names are empty. CONNECT: samples have lines."
+  "Return the legend for series with NAMES, below TITLE, a string or NIL, and at most MOST pixels
+wide. If all names are empty, the legend is empty. If CONNECT is true, the samples of series have
+lines."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))
@@ -50,25 +52,28 @@ an empty one if all names are empty. CONNECT: samples have lines."
            (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
            (incf y (+ +entry-gap+ (lines-height (or lines '("")))))))
 
-(defconstant +least-height+ 170 "The least height of the box of the data, in pixels.")
-(defconstant +least-width+ 200 "The least width of the box of the data, in pixels.")
+(defconstant +least-height+ 170 "The least height of the area for the data, in pixels.")
+(defconstant +least-width+ 200 "The least width of the area for the data, in pixels.")
 
 (defstruct (page (:copier nil))
-  "A chart to draw: ACROSS is an axis, LEFT to BOTTOM the box of the data, in pixels."
+  "The layout of a chart. ACROSS is the horizontal axis. LEFT, RIGHT, TOP and BOTTOM are the edges
+of the area for the data, in pixels."
   heading across x-lines
   (left 0) (right 0) (top 0) (bottom 0) (width 0) (height 0))
 
 (defstruct (plane (:include page) (:copier nil))
-  "A page with an axis UPWARD. BELOW is the top of what a chart adds below, in pixels."
+  "A page with a vertical axis, UPWARD. BELOW is the top, in pixels, of the space below the
+horizontal axis that some charts use."
   upward legend y-lines (below 0))
 
 (defun plan-plane (make-across upward names
                    &key title subtitle x-label y-label legend-title (width 720) (height 440)
                      (connect t) (extra 0) (least-left 0)
                    &allow-other-keys)
-  "Return a plane for series called NAMES. UPWARD is an axis. MAKE-ACROSS is called with the pixels
-where the data begin and end, and returns the other axis. EXTRA is the room to leave below,
-LEAST-LEFT the least room at the left. The page grows beyond WIDTH and HEIGHT if necessary."
+  "Return a plane for series with NAMES. UPWARD is the vertical axis. The function MAKE-ACROSS is
+called with the left and right pixel of the area for the data, and returns the horizontal axis.
+EXTRA is the height to leave free at the bottom, LEAST-LEFT the least width at the left. The page
+grows beyond WIDTH and HEIGHT if necessary."
   (check-size width height)
   (let* ((heading (plan-heading title subtitle width))
          (legend (plan-legend names legend-title (* 4/10 width) connect))
@@ -128,8 +133,8 @@ LEAST-LEFT the least room at the left. The page grows beyond WIDTH and HEIGHT if
         (values (page-width page) (page-height page))))))
 
 (defun plane-svg (plane data-p draw-data)
-  "Return PLANE as an SVG document. If DATA-P, DRAW-DATA, a function of a canvas, draws the data;
-else there is a text that there are none."
+  "Return PLANE as an SVG document. If DATA-P is true, the function DRAW-DATA of a canvas draws the
+data; else the chart has the text \"no data\"."
   (page-svg plane (lambda (canvas)
                     (draw-plane canvas plane)
                     (if data-p (funcall draw-data canvas) (draw-no-data canvas plane)))))

@@ -5,7 +5,8 @@
 (export '(difference-chart measure-chart))
 
 (defstruct (row (:constructor make-row (label words height)) (:copier nil))
-  "A row: LABEL and WORDS are lines of text to its left and right. TOP and HEIGHT are pixels."
+  "A row of a chart. LABEL and WORDS are lines of text to its left and right. TOP and HEIGHT are
+pixels."
   (label '() :type list :read-only t)
   (words '() :type list :read-only t)
   (height 0 :read-only t)
@@ -14,25 +15,26 @@
 (defun row-middle (row) (+ (row-top row) (/ (row-height row) 2)))
 
 (defun plan-row (label words width least)
-  "Return a row at least LEAST pixels high on a page of WIDTH pixels. WORDS is a list of strings."
+  "Return a row that is at least LEAST pixels high on a page of WIDTH pixels. WORDS is a list of
+strings."
   (let ((label (wrap-text label (* 32/100 width)))
         (words (loop for text in words append (wrap-text text (* 34/100 width)))))
     (make-row label words
               (+ 8 (max least (lines-height label) (lines-height words))))))
 
 (defstruct (table (:include page) (:copier nil))
-  "A page of rows."
+  "A page whose data are rows below each other, each with a label and texts."
   rows)
 
 (defun stack-rows (rows top)
-  "Place ROWS below each other from TOP. Return where they end."
+  "Place ROWS below each other, from the pixel TOP on. Return the pixel below the last row."
   (dolist (row rows top)
     (setf (row-top row) top)
     (incf top (row-height row))))
 
 (defun plan-table (entries values &key title subtitle x-label (width 720) (least 14) log-x percent)
-  "Return a table of ENTRIES, lists (label text...), with an axis for VALUES. Each row is at least
-LEAST pixels high. The page becomes wider than WIDTH if necessary."
+  "Return a table with a row for each of ENTRIES, lists (label text...), and a horizontal axis for
+VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDTH if necessary."
   (check-size width 440)
   (flet ((widest (reader rows)
            (reduce #'max rows :initial-value 0
@@ -60,7 +62,7 @@ LEAST pixels high. The page becomes wider than WIDTH if necessary."
                :anchor anchor))
 
 (defun draw-table (canvas table draw-row)
-  "Draw TABLE. Call DRAW-ROW with CANVAS, each row and its number to draw the data."
+  "Draw TABLE. For each row, call DRAW-ROW with CANVAS, the row and its number, to draw the data."
   (let ((left (table-left table)) (right (table-right table)) (top (table-top table))
         (bottom (table-bottom table)) (across (table-across table)))
     (with-ink (+grid-ink+)
@@ -83,7 +85,8 @@ LEAST pixels high. The page becomes wider than WIDTH if necessary."
 ;;;; Differences with intervals, against zero
 
 (defun checked-difference (row)
-  "Return ROW, checked, as a list (label estimate low high words). All but the label may be NIL."
+  "Check ROW, an element of the argument ROWS of DIFFERENCE-CHART. Return a list (label estimate low
+high words); all but the label may be NIL."
   (check-argument difference-chart row (and (consp row) (ignore-errors (<= 2 (length row) 5)))
                   "a list (label estimate low high words)")
   (destructuring-bind (label estimate &optional low high words) row
@@ -94,7 +97,8 @@ LEAST pixels high. The page becomes wider than WIDTH if necessary."
                (figure-text value :percent percent :digits 3)))
 
 (defun interval-text (value low high text)
-  "Return a text of VALUE and its interval, with numbers written by the function TEXT."
+  "Return a text of VALUE and its interval from LOW to HIGH. The function TEXT returns the text of a
+number."
   (cond ((null value) "no data")
         ((and low high)
          (format nil "~A (~A to ~A)" (funcall text value) (funcall text low) (funcall text high)))
@@ -107,7 +111,8 @@ LEAST pixels high. The page becomes wider than WIDTH if necessary."
           words)))
 
 (defun draw-estimate (canvas index y value low high across)
-  "Draw VALUE with its interval along the axis ACROSS at Y, with the look of the series INDEX."
+  "Draw VALUE and its interval from LOW to HIGH on the horizontal axis ACROSS, at the height Y, with
+the colour and marker of the series INDEX."
   (when (and low high)
     (with-ink ((look-color index) 1.8)
       (draw-interval-across canvas y (axis-place low across) (axis-place high across))))
@@ -120,10 +125,10 @@ LEAST pixels high. The page becomes wider than WIDTH if necessary."
       (draw-line canvas draw-gcontext* x (table-top table) x (table-bottom table)))))
 
 (defun difference-chart (rows &key percent title subtitle x-label (width 720))
-  "Return a chart of differences, below each other against a line at 0, as an SVG document. ROWS are
-lists (label estimate low high words): what is compared, the difference, its interval, and a remark
-such as \"p = 0.03\". All but LABEL may be NIL. PERCENT: numbers are shown as per cent. The other
-arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+  "Return a chart of differences, below each other and with a line at 0, as an SVG document. ROWS
+are lists (label estimate low high words): the name of the comparison, the difference, its interval,
+and a remark such as \"p = 0.03\". All but the label may be NIL. If PERCENT is true, numbers are
+shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument difference-chart rows (listp rows) "a list of rows")
   (let* ((differences (mapcar #'checked-difference rows))
          (table (plan-table (mapcar (lambda (difference) (difference-entry difference percent))
@@ -144,11 +149,12 @@ arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
 ;;; The numbers of a group are a histogram with columns of four pixels. So ten numbers and ten
 ;;; thousand are drawn alike.
 
-(defconstant +column-width+ 4 "The width of a column, in pixels.")
+(defconstant +column-width+ 4 "The width of a column of a histogram, in pixels.")
 (defconstant +column-height+ 28 "The height of the highest column of a group, in pixels.")
 
 (defun checked-group (row)
-  "Return ROW, checked, as a list (label numbers middle low high)."
+  "Check ROW, an element of the argument ROWS of MEASURE-CHART. Return a list (label numbers middle
+low high)."
   (check-argument measure-chart row
                   (and (consp row) (ignore-errors (<= 2 (length row) 5))
                        (typep (second row) 'sequence))
@@ -165,8 +171,8 @@ arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
           (format nil "n = ~D" (length numbers)))))
 
 (defun columns (numbers axis)
-  "Return an alist from columns, numbered from the beginning of AXIS, to the count of NUMBERS in
-each."
+  "Return an alist from the columns of a histogram, numbered from the beginning of AXIS, to the
+count of NUMBERS in each column."
   (let ((counts (make-hash-table)))
     (dolist (number numbers)
       (incf (gethash (floor (- (axis-place number axis) (axis-from axis)) +column-width+)
@@ -194,11 +200,12 @@ each."
       (draw-estimate canvas 3 (+ base 8) middle low high axis))))
 
 (defun measure-chart (rows &key log-x (middle-label "median") title subtitle x-label (width 720))
-  "Return a chart of many numbers as an SVG document. ROWS are lists (label numbers middle low
-high). NUMBERS, a sequence in which NIL is ignored, are drawn as a histogram. Below it is their
-middle, with its interval, any of which may be NIL. MIDDLE-LABEL says what the middle is, such as
-the median. LOG-X: numbers on a logarithmic scale. The other arguments are those of LINE-CHART.
-Signals WRONG-ARGUMENT."
+  "Return a chart of the distributions of many numbers, by group, as an SVG document. ROWS are lists
+(label numbers middle low high). NUMBERS, a sequence in which NIL is ignored, are drawn as a
+histogram. Below the histogram is MIDDLE, such as their median, with the interval from LOW to HIGH;
+MIDDLE, LOW and HIGH may be NIL. MIDDLE-LABEL is the name of this statistic, by default \"median\".
+If LOG-X is true, the scale is logarithmic. The other arguments are those of LINE-CHART. Signals
+WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
          (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)

@@ -5,8 +5,9 @@
 (export '(survival-chart))
 
 (defstruct (curve (:constructor make-curve (name index steps censored times)) (:copier nil))
-  "A survival curve. STEPS are lists (time survival low high), by time, each valid from that time
-on. CENSORED are the times of censoring, TIMES those of any end."
+  "A survival curve. STEPS are lists (time survival low high), sorted by time; each is valid from
+its time on. CENSORED are the times of censored trials, TIMES the times at which trials ended, for
+any reason."
   (name "" :read-only t)
   (index 0 :read-only t)
   (steps '() :type list :read-only t)
@@ -54,13 +55,14 @@ on. CENSORED are the times of censoring, TIMES those of any end."
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
 (defun at-risk (time curve)
-  "Return the number at risk in CURVE just before TIME."
+  "Return the number of trials in CURVE that are at risk just before TIME."
   (count time (curve-times curve) :test #'<=))
 
 ;;; The curve.
 
 (defun stairs (steps end reader plane)
-  "Return points x y ... along STEPS until the time END. READER returns the height of a step."
+  "Return a list of points x y ... along STEPS until the time END. READER returns the value of a
+step to draw."
   (loop for (step next) on steps
         for y = (axis-place (funcall reader step) (plane-upward plane))
         collect (axis-place (first step) (plane-across plane))
@@ -75,8 +77,8 @@ on. CENSORED are the times of censoring, TIMES those of any end."
         collect y))
 
 (defun bands (curve)
-  "Return lists (end step...) of consecutive steps of CURVE with an interval, valid until the time
-END."
+  "Return lists (end step...), one for each sequence of consecutive steps of CURVE that have an
+interval. END is the time until which the last of these steps is valid."
   (loop with steps = (curve-steps curve)
         for band in (runs steps (lambda (step) (and (third step) (fourth step))))
         for next = (second (member (first (last band)) steps))
@@ -92,7 +94,7 @@ END."
                            :fill-p t)))))
 
 (defun draw-censored (canvas curve plane)
-  "Draw a short vertical line for each censoring in CURVE, at most one for each pixel."
+  "Draw a short vertical line for each censored trial in CURVE, at most one line for each pixel."
   (let ((places (remove-duplicates
                  (loop for time in (remove-duplicates (curve-censored curve))
                        collect (list (round (axis-place time (plane-across plane)))
@@ -104,7 +106,7 @@ END."
             do (draw-line canvas draw-gcontext* x (- y 5) x (+ y 5))))))
 
 (defun draw-markers-along (canvas curve curves plane)
-  "Draw up to four markers along CURVE, at other times than those of the other CURVES."
+  "Draw up to four markers along CURVE, at times at which none of the other CURVES has markers."
   (loop with end = (reduce #'max curves :key #'curve-end)
         for turn below 4
         for time = (* end 1/4 (+ turn (/ (+ 1/2 (curve-index curve)) (length curves))))
@@ -143,11 +145,12 @@ END."
 (defun survival-chart (curves &rest options
                        &key (risk-label "still there") title subtitle x-label y-label legend-title
                          width height)
-  "Return a chart of survival CURVES as an SVG document. Each is a list (name :steps steps :censored
-times :times times). A step is a list (time survival low high): the share that survives from then
-on, 0 to 1, and its band; before the first step it is 1. CENSORED are the times of censoring, TIMES
-the times at which each was last seen, for any reason. From TIMES come the numbers at risk below the
-chart, which RISK-LABEL introduces. The other arguments are those of LINE-CHART. Signals
+  "Return a chart of survival CURVES as an SVG document. Each curve is a list (name :steps steps
+:censored times :times times). A step is a list (time survival low high): the share that survives
+from that time on, from 0 to 1, and the bounds of its confidence band; before the first step the
+share is 1. TIMES are the times at which the trials ended, by the event or by censoring; CENSORED
+are the times of those that were censored. Below the chart are the numbers at risk, computed from
+TIMES, with the heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals
 WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument survival-chart risk-label (stringp risk-label) "a string")

@@ -12,7 +12,7 @@
 (define-constant +journal-title+ ";;;; A journal of ARS MAGNA." :test #'string=
   :documentation "The first line of a file that holds a journal.")
 (note-kind-of-file :journal +journal-title+
-                   "it is a journal; (replay FILE) and (load-journal FILE) read it")
+                   "the file is a journal; (replay FILE) and (load-journal FILE) read it")
 (defconstant +latest-end+ (expt 10 9) "The last tick that a journal on file can end at.")
 
 ;;; Writing.

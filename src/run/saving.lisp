@@ -10,8 +10,8 @@
 (define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
   :documentation "The first line of files that hold saved runs.")
 (note-kind-of-file :run +saved-title+
-                   (format nil "it is a saved run; (load-simulation FILE) and ~
-                                (with-loaded-simulation (FILE) ...) read it"))
+                   (format nil "the file is a saved run; (load-simulation FILE) and ~
+                                (with-loaded-simulation (FILE) ...) load it"))
 
 ;;; Contents that cannot be saved, and may be left out.
 

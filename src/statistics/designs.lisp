@@ -15,16 +15,18 @@
       (6 1 1 3 3 9 7 49) (6 13 1 1 1 15 21 21) (6 16 1 3 1 13 27 49) (6 19 1 1 1 15 7 5)
       (6 22 1 3 1 15 13 25) (6 25 1 1 5 5 19 61) (7 1 1 3 7 11 23 15 103))
   :test #'equal
-  :documentation "For each dimension the degree of its polynomial, its inner coefficients as a
-number, and the initial odd numbers; the first dimension has none.")
+  :documentation "A list (degree coefficients number...) for each dimension of Sobol's sequence: the
+degree of its primitive polynomial, the inner coefficients as a binary number, and the initial odd
+numbers. The first dimension has no polynomial.")
 
 (define-constant +most-dimensions+ 20
-  :documentation "The most dimensions of Sobol's sequence.")
+  :documentation "The largest number of dimensions of Sobol's sequence.")
 
 (define-constant +sobol-bits+ 32)
 
 (defun next-direction (directions degree coefficients)
-  "Return the direction number after DIRECTIONS, the last first, for a polynomial of DEGREE."
+  "Return the direction number that follows DIRECTIONS, a list with the last one first, for a
+polynomial with DEGREE and COEFFICIENTS."
   (let* ((oldest (nth (1- degree) directions))
          (number (logxor oldest (ash oldest (- degree)))))
     (loop for direction in directions
@@ -33,7 +35,7 @@ number, and the initial odd numbers; the first dimension has none.")
     number))
 
 (defun direction-numbers (dimension)
-  "Return the direction numbers of DIMENSION, from 0, a vector."
+  "Return the vector of the direction numbers of DIMENSION, which counts from 0."
   (destructuring-bind (degree &optional coefficients &rest odds) (nth dimension +polynomials+)
     (let ((directions '()))
       (loop for place from 1 to +sobol-bits+
@@ -58,7 +60,8 @@ below 2^32."
 ;;; :RANDOM or :SOBOL design begins with the points of a smaller one; a Latin hypercube does not.
 
 (defun latin-numbers (count dice)
-  "Return COUNT numbers, one in each of COUNT equal parts of [0, 1), in random order by DICE."
+  "Return COUNT random numbers drawn from DICE, one in each of COUNT equal parts of [0, 1), in
+random order."
   (let ((places (make-array count)))
     (dotimes (place count) (setf (aref places place) place))
     (loop for last from (1- count) above 0
@@ -72,11 +75,11 @@ below 2^32."
           collect (float (/ (+ (logxor number shift) 1/2) (ash 1 +sobol-bits+)) 1d0))))
 
 (defun design-points (kind count dimensions seed)
-  "Return COUNT points in DIMENSIONS dimensions, for :SOBOL at most +MOST-DIMENSIONS+: lists of
-numbers from 0 to below 1, the same for the same SEED, an integer. KIND is :RANDOM: independent
-numbers; :LATIN-HYPERCUBE: in each dimension one in each of COUNT equal parts (McKay, Beckman and
-Conover 1979); or :SOBOL: Sobol's sequence, shifted by SEED, which fills the cube most evenly if
-COUNT is a power of two."
+  "Return COUNT points in DIMENSIONS dimensions, lists of numbers from 0 to below 1. The points are
+the same for the same SEED, an integer. KIND is :RANDOM for independent numbers; :LATIN-HYPERCUBE
+for one number in each of COUNT equal parts of each dimension (McKay, Beckman and Conover 1979); or
+:SOBOL for Sobol's sequence, shifted by SEED, which fills the cube most evenly if COUNT is a power
+of two. :SOBOL has at most +MOST-DIMENSIONS+ dimensions."
   (apply #'mapcar #'list
          (loop for dimension below dimensions
                for dice = (make-dice seed (format nil "~(~A~) ~D" kind dimension))

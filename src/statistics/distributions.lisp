@@ -4,8 +4,8 @@
 
 (declaim (inline continued-fraction))
 (defun continued-fraction (terms)
-  "Return 1 + a1/(b1 + a2/(b2 + ...)), where the function TERMS returns ak and bk for k (Lentz's
-method as in Thompson and Barnett 1986)."
+  "Return the continued fraction 1 + a1/(b1 + a2/(b2 + ...)). The function TERMS returns ak and bk
+for k (Lentz's method as in Thompson and Barnett 1986)."
   (loop with value of-type double-float = 1d0
         with up of-type double-float = 1d0
         with down of-type double-float = 0d0
@@ -20,7 +20,7 @@ method as in Thompson and Barnett 1986)."
                (return value)))))
 
 (defun artanh-remainder (w)
-  "Return artanh(W)/W - 1 = W^2/3 + W^4/5 + ..., to the last digits; fast for W up to 1/2."
+  "Return artanh(W)/W - 1 = W^2/3 + W^4/5 + ..., to full precision; fast for W up to 1/2."
   (declare (type double-float w) #.*hot*)
   (loop with square of-type double-float = (* w w)
         for power of-type double-float = square then (* power square)
@@ -75,8 +75,8 @@ MEAN (Loader 2000)."
         finally (return sum)))
 
 (defun gamma-fraction (a x)
-  "Return the upper incomplete gamma function of A and X, divided by X^A e^-X (DLMF 8.9.2, its even
-part)."
+  "Return the upper incomplete gamma function of A and X, divided by X^A e^-X, by a continued
+fraction (the even part of DLMF 8.9.2)."
   (declare (type double-float a x) #.*hot*)
   (let ((first (+ x (- 1 a))))
     (/ (* first
@@ -148,8 +148,8 @@ part)."
      2.04426310338993978564d-15)))
 
 (defun normal-quantile (p)
-  "Return the quantile P, between 0 and 1, of the standard normal distribution (the rational
-functions of Wichura 1988, algorithm AS 241, good to 1e-16)."
+  "Return the quantile for the probability P, between 0 and 1, of the standard normal distribution
+(the rational functions of Wichura 1988, algorithm AS 241, exact to 1e-16)."
   (declare (type double-float p) #.*hot*)
   (let ((q (- p .5d0)))
     (if (<= (abs q) .425d0)
@@ -170,15 +170,16 @@ functions of Wichura 1988, algorithm AS 241, good to 1e-16)."
 ;;; Some functions take both X and Y = 1 - X, so that neither loses digits near 1.
 
 (defun log-power (y x exponent)
-  "Return EXPONENT log Y, where X = 1 - Y."
+  "Return EXPONENT times the logarithm of Y, where X = 1 - Y."
   (declare (type double-float y x exponent))
   (if (< x .1d0)
       (- (+ (deviance exponent (* exponent y)) (* exponent x)))
       (* exponent (logarithm y))))
 
 (defun log-binomial-density (a b x y)
-  "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B: for integers, of the
-probability of A successes and B failures (Loader 2000). A and B are 0 or at least 1/2."
+  "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B (Loader 2000). For
+integers, this is the logarithm of the probability of A successes and B failures. A and B are 0 or
+at least 1/2."
   (declare (type double-float a b x y))
   (let ((n (+ a b)))
     (cond ((zerop n) 0d0)
@@ -194,8 +195,9 @@ probability of A successes and B failures (Loader 2000). A and B are 0 or at lea
   (+ (log-binomial-density a b x y) (logarithm (/ (* a b) (+ a b)))))
 
 (defun beta-fraction (a b x y)
-  "Return I_X(A, B) divided by X^A Y^B / beta(A, B), for X up to about A/(A+B) (the continued
-fraction of Didonato and Morris 1992, all of whose terms are positive there)."
+  "Return I_X(A, B), the regularised incomplete beta function, divided by X^A Y^B / beta(A, B), for
+X up to about A/(A+B) (by the continued fraction of Didonato and Morris 1992, whose terms are all
+positive for such X)."
   (declare (type double-float a b x y) #.*hot*)
   (flet ((lower-part (m)
            (declare (type double-float m))
@@ -223,7 +225,8 @@ fraction of Didonato and Morris 1992, all of whose terms are positive there)."
         (t (- 1 (* (exponential (log-beta-prefactor b a y x)) (beta-fraction b a y x))))))
 
 (defun beta-quantile (p a b)
-  "Return the X with I_X(A, B) = P, which is between 0 and 1, and 1 - X."
+  "Return the X for which I_X(A, B), the regularised incomplete beta function, is P, between 0 and
+1; and 1 - X."
   (declare (type double-float p a b))
   (if (> p .5d0)
       (multiple-value-bind (y x) (lower-beta-quantile (- 1 p) b a) (values x y))
@@ -249,8 +252,8 @@ fraction of Didonato and Morris 1992, all of whose terms are positive there)."
           finally (return (values (share odds) (share (- odds)))))))
 
 (defun fair-coin-cdf (count trials)
-  "Return the probability of at most COUNT heads in TRIALS throws of a fair coin, integers; COUNT
-may be -1."
+  "Return the probability of at most COUNT heads in TRIALS throws of a fair coin. COUNT is an
+integer from -1 to TRIALS."
   (let ((count (double count)) (trials (double trials)))
     (cond ((minusp count) 0d0)
           ((= count trials) 1d0)

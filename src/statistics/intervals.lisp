@@ -4,8 +4,8 @@
 
 (declaim (inline wilson-low))
 (defun wilson-low (successes failures z)
-  "Return the lower bound, as a square over a sum, which follows from the product of both bounds, so
-that no digit is lost near 0."
+  "Return the lower bound of the Wilson interval, computed as a square divided by a sum, so that no
+digits are lost near 0. The formula follows from the product of both bounds."
   (declare (type double-float successes failures z))
   (let ((n (+ successes failures)) (square (* z z)))
     (/ (/ (* successes successes) n)
@@ -25,16 +25,16 @@ that no digit is lost near 0."
 (defun wilson-interval (successes trials &key (confidence .95d0))
   "Return the bounds, low and high, of the score interval for the probability of success (Wilson
 1927; Newcombe 1998, \"Two-sided confidence intervals for the single proportion\", method 3). On
-average over probabilities it holds the true one as often as CONFIDENCE says; near 0 and 1 it may
-not, where EXACT-INTERVAL does. Of no trials the bounds are 0 and 1; of no success, low is 0; of no
-failure, high is 1. Signals WRONG-ARGUMENT unless TRIALS is an integer from 0 to 1e9, SUCCESSES
-from 0 to TRIALS, and CONFIDENCE between 0 and 1."
+average over all probabilities, the interval contains the true probability as often as CONFIDENCE
+says; near 0 and 1 it may contain it less often, unlike EXACT-INTERVAL. Without trials the bounds
+are 0 and 1; without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless
+TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
   (wilson-bounds successes trials (normal-critical-value (check-share wilson-interval confidence))))
 
 (defun exact-low (successes trials tail)
-  "Return the probability of success for which SUCCESSES or more of TRIALS have the probability
-TAIL; and the corresponding probability of failure."
+  "Return the rate of success at which SUCCESSES or more successes in TRIALS trials have the
+probability TAIL; and 1 minus this rate."
   (if (zerop successes)
       (values 0d0 1d0)
       (beta-quantile tail (double successes) (double (- trials successes -1)))))
@@ -42,8 +42,9 @@ TAIL; and the corresponding probability of failure."
 (addition exact-interval)
 (defun exact-interval (successes trials &key (confidence .95d0))
   "Return the bounds, low and high, of the exact interval for the probability of success (Clopper
-and Pearson 1934; Newcombe 1998, method 5). It holds the true one at least as often as CONFIDENCE
-says, whatever that is, and so is wider than WILSON-INTERVAL, which see for the edges and errors."
+and Pearson 1934; Newcombe 1998, method 5). The interval contains the true probability at least as
+often as CONFIDENCE says, whatever that probability is, so it is wider than WILSON-INTERVAL. For the
+bounds without trials, successes or failures, and for errors, see WILSON-INTERVAL."
   (check-trials exact-interval successes trials)
   (let ((tail (/ (- 1 (check-share exact-interval confidence)) 2)))
     (values (nth-value 0 (exact-low successes trials tail))
@@ -67,7 +68,8 @@ CORRELATION."
   (sqrt (max 0d0 (+ (* a a) (* b b) (* -2 correlation a b)))))
 
 (defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
-  "Return the bounds for P less Q, from the bounds for each and their CORRELATION."
+  "Return the bounds for the difference P - Q, from the bounds for P and for Q, and their
+CORRELATION."
   (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
     (values (- (- p q) (third-side (- p low-p) (- high-q q) correlation))
             (+ (- p q) (third-side (- high-p p) (- q low-q) correlation)))))
@@ -75,11 +77,12 @@ CORRELATION."
 (addition paired-proportion-interval)
 (defun paired-proportion-interval (both first second neither &key (confidence .95d0))
   "Return the bounds, low and high, of the interval for the difference of two probabilities of
-success, first less second. In the same trials both succeeded BOTH times, only the first FIRST
-times, only the second SECOND times, and neither NEITHER times (Newcombe 1998, \"Improved confidence
-intervals for the difference between binomial proportions based on paired data\", method 10). Below
-0 the second is better. Without trials the bounds are -1 and 1. Signals WRONG-ARGUMENT unless the
-counts are integers from 0 to 1e9, which together are no more, and CONFIDENCE is between 0 and 1."
+success of two methods, the first minus the second, from trials that both methods have made. BOTH,
+FIRST, SECOND and NEITHER are the numbers of trials in which both methods, only the first, only the
+second and neither of them succeeded (Newcombe 1998, \"Improved confidence intervals for the
+difference between binomial proportions based on paired data\", method 10). If the difference is
+below 0, the second method is better. Without trials the bounds are -1 and 1. Signals WRONG-ARGUMENT
+unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is between 0 and 1."
   (check-count paired-proportion-interval both)
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
@@ -107,26 +110,31 @@ counts are integers from 0 to 1e9, which together are no more, and CONFIDENCE is
 (addition student-interval)
 (defun student-interval (numbers &key (confidence .95d0))
   "Return the bounds, low and high, of the interval for the mean of the distribution from which
-NUMBERS, a list or vector, are a sample (Student 1908). For normal numbers its coverage is
-CONFIDENCE. For skewed numbers it is less: for exponential ones, with .95, 89 of 100
-samples of 5, 93 of 30, and 94 of 50. BOOTSTRAP-INTERVAL is no better there. If all numbers are
-equal, both bounds are that number; of fewer than two numbers, both are NIL. Signals WRONG-ARGUMENT
-unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+NUMBERS, a list or vector, are a sample (Student 1908). For a normal distribution, the interval
+contains the mean as often as CONFIDENCE says. For a skewed distribution it contains the mean less
+often: for an exponential distribution and .95, in 89 of 100 samples of 5 numbers, in 93 of 100
+samples of 30, and in 94 of 100 samples of 50. BOOTSTRAP-INTERVAL is no better for skewed
+distributions. If all numbers are equal, both bounds are that number; for fewer than two numbers,
+both bounds are NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE
+between 0 and 1."
   (let ((confidence (check-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
 (defun check-same-length (operator name seconds firsts)
-  "Signal WRONG-ARGUMENT unless there are as many SECONDS, its argument NAME, as FIRSTS."
+  "Signal WRONG-ARGUMENT unless SECONDS and FIRSTS have the same length. SECONDS is the argument
+NAME of OPERATOR."
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
-                     (format nil "one for each of the first, which are ~D" (length firsts)))))
+                     (format nil "a sequence of as many numbers as the first,
+~D" (length firsts)))))
 
 (addition mean-difference-interval)
 (defun mean-difference-interval (firsts seconds &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the mean of FIRSTS less that of SECONDS,
-lists or vectors of numbers that belong together one by one, such as what two plans took with the
-same seeds: STUDENT-INTERVAL of the differences (Student 1908). Both are NIL of fewer than two
-pairs. Signals WRONG-ARGUMENT as that does, and if the two are not equally many."
+  "Return the bounds, low and high, of the interval for the mean difference between paired numbers:
+the STUDENT-INTERVAL of the differences FIRSTS - SECONDS (Student 1908). FIRSTS and SECONDS are
+lists or vectors whose elements form pairs, such as the ticks of two plans with the same seeds. For
+fewer than two pairs, both bounds are NIL. Signals WRONG-ARGUMENT as STUDENT-INTERVAL does, and if
+FIRSTS and SECONDS have different lengths."
   (let ((confidence (check-share mean-difference-interval confidence))
         (firsts (sample 'mean-difference-interval 'firsts firsts))
         (others (sample 'mean-difference-interval 'seconds seconds)))
@@ -134,8 +142,8 @@ pairs. Signals WRONG-ARGUMENT as that does, and if the two are not equally many.
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
 (defun outer-rank (size tail)
-  "Return the largest R for which the median of the distribution is below the R-th smallest of SIZE
-numbers with a probability of at most TAIL; or 0."
+  "Return the largest R for which, with a probability of at most TAIL, the median of the
+distribution is below the R-th smallest of SIZE numbers drawn from it; or 0 if there is no such R."
   (let ((low 0) (high size))
     (loop while (< (1+ low) high)
           do (let ((rank (floor (+ low high) 2)))
@@ -147,11 +155,11 @@ numbers with a probability of at most TAIL; or 0."
 (addition median-interval)
 (defun median-interval (numbers &key (confidence .95d0))
   "Return the bounds, low and high, of the interval for the median of the distribution from which
-NUMBERS, a list or vector, are a sample, and its coverage, which is CONFIDENCE or more. It holds for
-any distribution. The bounds are two of NUMBERS, as far from the ends as CONFIDENCE allows (David
-and Nagaraja 2003, Order Statistics, 7.1). All three are NIL if NUMBERS are too few, for .95 fewer
-than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and
-1."
+NUMBERS, a list or vector, are a sample; and its coverage, which is CONFIDENCE or more for any
+distribution. The bounds are two of NUMBERS, as far from the least and the greatest as CONFIDENCE
+allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values are NIL if there are too
+few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15,
+and CONFIDENCE between 0 and 1."
   (let* ((confidence (check-share median-interval confidence))
          (sample (sorted (sample 'median-interval 'numbers numbers)))
          (size (length sample))
@@ -164,10 +172,10 @@ than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONF
 ;;;; Any statistic, by the bootstrap
 
 (defparameter *most-groups* 500
-  "The most groups of the jackknife, which estimates skewness.")
+  "The largest number of groups of the jackknife, which estimates skewness.")
 
 (defun checked-statistic (function)
-  "Return a function that calls FUNCTION and signals WRONG-ARGUMENT if that returns no number."
+  "Return a function that calls FUNCTION and signals WRONG-ARGUMENT if the value is not a number."
   (lambda (sample)
     (let ((value (funcall function sample)))
       (unless (quantity-p value)
@@ -210,16 +218,16 @@ SAMPLE is large (Efron and Tibshirani 1993, formula 14.15)."
     (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
 
 (defun bias (values found)
-  "Return the bias correction: by how many standard deviations FOUND is off the middle of VALUES,
-some of which may equal it (Efron and Tibshirani 1993, formula 14.14)."
+  "Return the bias correction: the number of standard deviations from the middle of VALUES to FOUND.
+Some of VALUES may be equal to FOUND (Efron and Tibshirani 1993, formula 14.14)."
   (declare (type doubles values) (type double-float found))
   (let* ((size (length values))
          (below (+ (count found values :test #'>) (/ (count found values :test #'=) 2))))
     (normal-quantile (double (/ (clamp below 1/2 (- size 1/2)) size)))))
 
 (defun corrected-share (z bias acceleration)
-  "Return the corrected quantile, as a share, for the bound at Z standard deviations (Efron and
-Tibshirani 1993, formula 14.10)."
+  "Return the corrected probability of the quantile for the bound at Z standard deviations (Efron
+and Tibshirani 1993, formula 14.10)."
   (declare (type double-float z bias acceleration))
   (let* ((off (+ bias z)) (rest (- 1 (* acceleration off))))
     (cond ((plusp rest) (normal-probability (+ bias (/ off rest))))
@@ -240,15 +248,17 @@ Tibshirani 1993, formula 14.10)."
                                      (confidence .95d0))
   "Return the bounds, low and high, of the interval for a STATISTIC of the distribution from which
 NUMBERS, a list or vector, are a sample, by the bias-corrected and accelerated bootstrap (Efron
-1987; Efron and Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function of a vector
-of double-floats to a number; it may sort the vector but must not keep it. It is called on RESAMPLES
-samples drawn from NUMBERS with the dice for SEED, an integer, so the bounds are the same each time.
+1987; Efron and Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function that returns
+a number for a vector of double-floats; the function may sort the vector but must not keep it. The
+function is called on RESAMPLES samples drawn from NUMBERS. SEED, an integer, seeds the draws, so
+the bounds are the same each time.
 
-  Few numbers: it is too narrow. With .95, the interval for the mean of normal numbers is
-    right in 85 of 100 samples of 5 numbers, 90 of 10, 94 of 30; STUDENT-INTERVAL is better there.
-  Few samples: no bound lies beyond the values found in the samples. With fewer samples than
-    20 / (1 - CONFIDENCE), bounds vary with SEED or are too near.
-  Equal numbers: both bounds are the value found. Of fewer than two numbers both are NIL.
+- Few numbers: the interval is too narrow. With .95, the interval for the mean of a normal
+  distribution contains the mean in 85 of 100 samples of 5 numbers, in 90 of 100 samples of 10, and
+  in 94 of 100 samples of 30. For means of few numbers use STUDENT-INTERVAL.
+- Few resamples: no bound lies beyond the values found in the resamples. With fewer resamples than
+  20 / (1 - CONFIDENCE), the bounds vary with SEED or are too narrow.
+- Equal numbers: both bounds are the value of STATISTIC. For fewer than two numbers both are NIL.
 
 Signals WRONG-ARGUMENT unless NUMBERS and the values of STATISTIC are from -1e15 to 1e15, RESAMPLES
 from 100 to 1e7, and CONFIDENCE between 0 and 1."

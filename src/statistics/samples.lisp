@@ -5,7 +5,7 @@
 (export '(mean median as-written))
 
 (deftype doubles ()
-  "A sample in its internal form."
+  "A sample, as functions of this package use it internally."
   '(simple-array double-float (*)))
 
 (defun elements-p (value test)
@@ -14,7 +14,7 @@
 
 (defun sample (operator name numbers)
   "Return NUMBERS, the argument NAME of OPERATOR, as a fresh vector of double-floats. Signals
-WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
+WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15."
   (unless (elements-p numbers #'quantity-p)
     (reject-argument operator name numbers "a list or vector of numbers from -1e15 to 1e15"))
   (map 'doubles #'double numbers))
@@ -24,14 +24,14 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
   (double (if (typep share 'single-float) (rationalize share) share)))
 
 (defun inner-share-p (value)
-  "True if VALUE is a number between 0 and 1, at least 1e-12 from either."
+  "True if VALUE is a number between 0 and 1, at least 1e-12 from both."
   (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
 (defmacro check-share (operator place)
   "Signal WRONG-ARGUMENT unless PLACE lies between 0 and 1; return it as a double-float."
   `(progn
      (check-argument ,operator ,place (inner-share-p ,place)
-                     "a number between 0 and 1, such as .95, at least 1e-12 from either")
+                     "a number between 0 and 1, such as .95, at least 1e-12 from both")
      (as-written ,place)))
 
 (defmacro check-count (operator place &optional (most '+largest+))
@@ -60,8 +60,8 @@ WRONG-ARGUMENT unless they are a list or vector of numbers from -1e15 to 1e15."
         finally (return sum)))
 
 (defun mean-of (sample)
-  "Return the mean of SAMPLE, which is not empty, corrected by the mean of the residuals: exact to
-the last digits, and for equal numbers that number."
+  "Return the mean of SAMPLE, which is not empty, corrected by the mean of the residuals. It is
+exact to the last digits; the mean of equal numbers is exactly that number."
   (declare (type doubles sample) #.*hot*)
   (let* ((size (double (length sample))) (rough (/ (sum sample) size)))
     (+ rough (/ (loop with rest of-type double-float = 0d0
@@ -85,8 +85,8 @@ Golub and LeVeque 1983, formula 1.7)."
 ;;; two, which loses nothing.
 
 (defun magnification (sample)
-  "Return the power of two by which to multiply the numbers of SAMPLE before they are squared or
-cubed: 1 unless all are very small."
+  "Return the power of two by which the numbers of SAMPLE are multiplied before they are squared or
+cubed. It is 1 unless all numbers are very small."
   (let ((largest (reduce #'max sample :key #'abs :initial-value 0d0)))
     (if (< 0d0 largest 1d-75)
         (scale-float 1d0 (min 1000 (- (nth-value 1 (decode-float largest)))))
@@ -115,7 +115,7 @@ has two numbers or more."
                        (prog1 (aref from j) (incf j)))))))
 
 (defun sorted (sample)
-  "Return SAMPLE, sorted in place, by merging runs of 1, 2, 4 ..."
+  "Sort SAMPLE in place, by merging runs of 1, 2, 4 and more numbers. Return SAMPLE."
   (declare (type doubles sample))
   (let* ((size (length sample)) (from sample)
          (to (make-array size :element-type 'double-float)))
@@ -128,7 +128,7 @@ has two numbers or more."
     (replace sample from)))
 
 (defun sorted-quantile (sample share)
-  "Return the quantile SHARE, from 0 to 1, of the sorted SAMPLE (Hyndman and Fan 1996, type 7)."
+  "Return the quantile of the sorted SAMPLE for SHARE, from 0 to 1 (Hyndman and Fan 1996, type 7)."
   (declare (type doubles sample) (type double-float share))
   (multiple-value-bind (index part) (floor (* share (1- (length sample))))
     (let ((below (aref sample index)))
@@ -142,13 +142,13 @@ has two numbers or more."
 ;;; For other layers.
 
 (defun mean (numbers)
-  "Return the mean of NUMBERS, a list or vector, as a double-float; NIL of none. Signals
-WRONG-ARGUMENT unless they are numbers from -1e15 to 1e15."
+  "Return the mean of NUMBERS, a list or vector, as a double-float; or NIL if NUMBERS is empty.
+Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
   (let ((sample (sample 'mean 'numbers numbers)))
     (when (plusp (length sample)) (mean-of sample))))
 
 (defun median (numbers)
-  "Return the median of NUMBERS, a list or vector; NIL if there are none. Signals WRONG-ARGUMENT
-unless they are numbers from -1e15 to 1e15."
+  "Return the median of NUMBERS, a list or vector; or NIL if NUMBERS is empty. Signals
+WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
   (let ((sample (sample 'median 'numbers numbers)))
     (when (plusp (length sample)) (sorted-quantile (sorted sample) .5d0))))

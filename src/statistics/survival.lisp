@@ -5,7 +5,8 @@
 ;;; If one time is an event and an equal time is censored, the censoring counts as later.
 
 (defun check-survival (operator times-name times events-name events)
-  "Signal WRONG-ARGUMENT unless TIMES and EVENTS, arguments with these names, fit together."
+  "Signal WRONG-ARGUMENT unless TIMES and EVENTS are valid and have the same length. TIMES-NAME and
+EVENTS-NAME are their names as arguments of OPERATOR."
   (unless (elements-p times #'amount-p)
     (reject-argument operator times-name times "a list or vector of numbers from 0 to 1e15"))
   (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
@@ -14,18 +15,20 @@
   (check-same-length operator events-name events times))
 
 (defun sorted-events (times events &optional mark)
-  "Return a vector of lists (time done-p mark), sorted by TIMES."
+  "Return a vector of lists (time done-p mark) for TIMES and EVENTS, sorted by time."
   (sort (map 'vector (lambda (time event) (list time (and (member event '(t 1)) t) mark))
              times events)
         #'< :key #'first))
 
 (defun next-time-start (dated start)
-  "Return the index of the first element of DATED that is later than the one at START."
+  "Return the index of the first element of DATED whose time is later than that of the element at
+START."
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
 
 (defun map-moments (function dated)
-  "Call FUNCTION with start and end, in DATED, of the elements of each time with an event."
+  "For each time at which an event occurs, call FUNCTION with the start and end index of the
+elements of DATED with that time."
   (loop with start = 0
         while (< start (length dated))
         do (let ((end (next-time-start dated start)))
@@ -39,8 +42,8 @@
 ;;; The curve.
 
 (defun survival-bounds (survival variance z highest)
-  "Return the bounds for SURVIVAL, for which Greenwood's sum is VARIANCE. If SURVIVAL is 0, the high
-one is HIGHEST, that of the step before."
+  "Return the bounds, low and high, for SURVIVAL, for which Greenwood's sum is VARIANCE. If SURVIVAL
+is 0, the high bound is HIGHEST, the high bound of the previous step."
   (if (zerop survival)
       (values 0d0 highest)
       (let ((factor (exponential (/ (* z (sqrt variance)) (- (logarithm survival))))))
@@ -48,16 +51,17 @@ one is HIGHEST, that of the step before."
 
 (addition survival-curve)
 (defun survival-curve (times events &key (confidence .95d0))
-  "Return the share that takes longer than each time, by the product-limit estimate (Kaplan and
-Meier 1958): a list of steps (time at-risk done survival low high), one for each time at which
-something was done. TIMES and EVENTS are lists or vectors. An event is T (or 1) if something was
-done at that time, NIL (or 0) if it was cut short (censored) then, as at a limit of ticks. The list
-is empty if nothing was done.
+  "Return the survival curve, the share of trials that take longer than each time, by the
+product-limit estimate (Kaplan and Meier 1958). The curve is a list of steps (time at-risk done
+survival low high), one for each time at which a trial was done; it is empty if no trial was done.
+TIMES and EVENTS are lists or vectors with an element for each trial. The event is T (or 1) if the
+trial was done at its time, NIL (or 0) if it was censored (cut short) at its time, for example by a
+limit of ticks.
 
-LOW and HIGH bound the survival at that time, by Greenwood's formula on the scale of log(-log)
-(Kalbfleisch and Prentice 2002, chapter 1). That gives no bounds once nothing is left: LOW is 0
-then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIMES are from 0 to
-1e15, EVENTS as many, and CONFIDENCE between 0 and 1."
+LOW and HIGH are the bounds of the survival at the time of the step, by Greenwood's formula on the
+scale of log(-log) (Kalbfleisch and Prentice 2002, chapter 1). The formula gives no bounds for a
+survival of 0: then LOW is 0, and HIGH is that of the previous step, or 1. Signals WRONG-ARGUMENT
+unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is between 0 and 1."
   (check-survival 'survival-curve 'times times 'events events)
   (let* ((z (normal-critical-value (check-share survival-curve confidence)))
          (dated (sorted-events times events)) (size (length dated))
@@ -75,9 +79,10 @@ then, and HIGH that of the step before, or 1. Signals WRONG-ARGUMENT unless TIME
 
 (addition median-survival)
 (defun median-survival (curve)
-  "Return the time by which half are done, by CURVE, a result of SURVIVAL-CURVE, and the bounds for
-it, low and high: the first times at which survival, its low and its high bound are a half or less
-(Brookmeyer and Crowley 1982). Each is NIL if that never comes. Signals WRONG-ARGUMENT."
+  "Return the median survival time of CURVE, a result of SURVIVAL-CURVE, and its bounds, low and
+high. These are the first times at which the survival, its low bound and its high bound are a half
+or less (Brookmeyer and Crowley 1982). A value is NIL if there is no such time. Signals
+WRONG-ARGUMENT."
   (check-argument median-survival curve
                   (and (proper-list-p curve)
                        (every (lambda (step)
@@ -91,7 +96,8 @@ it, low and high: the first times at which survival, its low and its high bound 
 ;;; Two groups.
 
 (defun expected-and-variance (at-risk first-at-risk done)
-  "Return the expected number of the DONE events in the first group, and its variance."
+  "Return the expected number of events in the first group, and its variance, if DONE events occur
+at a time at which AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group."
   (let ((share (/ first-at-risk at-risk)))
     (values (* done share)
             (if (= at-risk 1)
@@ -99,8 +105,8 @@ it, low and high: the first times at which survival, its low and its high bound 
                 (/ (* done share (- 1 share) (- at-risk done)) (1- at-risk))))))
 
 (defun log-rank-sums (dated)
-  "Return the observed and the expected number of events of the first group in DATED, which is
-marked, and the variance."
+  "Return the observed number of events of the first group in DATED, the expected number, and its
+variance. Elements of the first group are marked."
   (let ((observed 0) (expected 0d0) (variance 0d0) (gone 0)
         (marked (count t dated :key #'third)) (seen 0))
     (flet ((note (start end)
@@ -119,10 +125,10 @@ marked, and the variance."
 (addition log-rank-test)
 (defun log-rank-test (first-times first-events second-times second-events)
   "Return the p value of the log-rank test that two groups take equally long (Mantel 1966; Peto and
-Peto 1972). Times and events are as for SURVIVAL-CURVE. Further values: chi-square, of one degree of
-freedom; how many of the first group were done; how many were expected. The first value is 1 and the
-second 0 if nothing can be said, as for an empty group. Signals WRONG-ARGUMENT as SURVIVAL-CURVE
-does."
+Peto 1972). Times and events are as for SURVIVAL-CURVE. The other values are chi-square, with one
+degree of freedom; the number of trials of the first group that were done; and the expected number.
+If the groups cannot be compared, for example because one is empty, p is 1 and chi-square is 0.
+Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
   (check-survival 'log-rank-test 'first-times first-times 'first-events first-events)
   (check-survival 'log-rank-test 'second-times second-times 'second-events second-events)
   (multiple-value-bind (observed expected variance)

@@ -4,12 +4,14 @@
 
 (addition mcnemar-test)
 (defun mcnemar-test (first second)
-  "Return the p value of McNemar's exact test that two methods are equally good: of the same trials,
-FIRST succeeded only with one, SECOND only with the other. Trials with equal outcomes do not count.
-Its size is never above the level (McNemar 1947; Fagerland, Lydersen and Laake 2013, \"The McNemar
-test for binary matched-pairs data\"). The second value is the mid-p of the same paper, less
-conservative and usually nearer to the truth. Both are 1 without trials. Signals WRONG-ARGUMENT
-unless FIRST and SECOND are integers from 0 to 1e9."
+  "Return the p value of McNemar's exact test of the hypothesis that two methods are equally good.
+Both methods have made the same trials: FIRST is the number of trials in which only the first method
+succeeded, SECOND the number in which only the second succeeded. Trials with equal outcomes do not
+count. The test never rejects a true hypothesis more often than its level says (McNemar 1947;
+Fagerland, Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second
+value is the mid-p value of that paper, which is less conservative and usually more exact. Both
+values are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to
+1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
@@ -30,7 +32,8 @@ unless FIRST and SECOND are integers from 0 to 1e9."
 ;;; confidence intervals using importance sampling").
 
 (defun negative-share (x)
-  "Return the probability of a negative sign if a positive one has the odds e^(2X), with X >= 0."
+  "Return the probability of a negative sign if the odds of a positive sign are e^(2X), with X >=
+0."
   (declare (type double-float x))
   (let ((odds (exponential (* -2 (min x 300d0)))))
     (/ odds (+ 1 odds))))
@@ -41,7 +44,8 @@ unless FIRST and SECOND are integers from 0 to 1e9."
         sum (* size (- 1 (* 2 (negative-share (* size tilt))))) of-type double-float))
 
 (defun find-tilt (sizes sum)
-  "Return the tilt for which the mean sum of SIZES, the largest of which is 1, is SUM."
+  "Return the tilt of random signs for which the mean of the sum of SIZES, of which the largest is
+1, is SUM."
   (declare (type doubles sizes) (type double-float sum))
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
     (loop repeat 40
@@ -62,8 +66,8 @@ unless FIRST and SECOND are integers from 0 to 1e9."
         finally (return sum)))
 
 (defun tail-share (sizes sum grain resamples dice)
-  "Return the probability that SIZES, at most 1, with random signs sum up to at least SUM or at most
--SUM, by RESAMPLES tilted draws."
+  "Return the probability that the sum of SIZES, which are at most 1, with random signs is at least
+SUM or at most -SUM. It is estimated by RESAMPLES draws of tilted signs."
   (let* ((tilt (find-tilt sizes sum))
          (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
@@ -76,8 +80,8 @@ unless FIRST and SECOND are integers from 0 to 1e9."
          (1+ resamples)))))
 
 (defun rare-share (sizes sum grain resamples dice)
-  "Return the probability that SIZES with random signs sum up to at least SUM or at most -SUM, if
-that is small."
+  "Return the probability that the sum of SIZES with random signs is at least SUM or at most -SUM,
+estimated by importance sampling, for small probabilities."
   (let ((largest (reduce #'max sizes)))
     (min 1d0 (tail-share (map 'doubles (lambda (size) (/ size largest)) sizes)
                          (/ sum largest) (/ grain largest) resamples dice))))
@@ -90,15 +94,16 @@ that is small."
 ;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
 (defparameter *most-sums* (expt 2 18)
-  "The most sums, times the number of differences left.")
+  "The largest product of the number of sums and the number of differences left, for the exact
+test.")
 
 (deftype sums ()
-  "Sums, sorted, and their probabilities."
+  "A cons of a vector of sums, sorted, and a vector of their probabilities."
   '(cons doubles doubles))
 
 (defun merge-sums (sums difference grain)
-  "Return the SUMS after DIFFERENCE, 0 or more, is added or subtracted. Sums closer than GRAIN are
-joined."
+  "Return the sums that result from SUMS if DIFFERENCE, 0 or more, is added or subtracted with equal
+probability. Sums closer than GRAIN are joined."
   (declare (type sums sums) (type double-float difference grain) #.*hot*)
   (destructuring-bind (old . odds) sums
     (declare (type doubles old odds))
@@ -124,8 +129,8 @@ joined."
       (cons (subseq new 0 count) (subseq new-odds 0 count)))))
 
 (defun exact-share (sizes sum grain)
-  "Return the probability that SIZES with random signs sum up to at least SUM or at most -SUM; NIL
-if that is too much work. Sums within GRAIN are equal."
+  "Return the exact probability that the sum of SIZES with random signs is at least SUM or at most
+-SUM; or NIL if this takes too long. Sums that differ by at most GRAIN are equal."
   (loop with sums = (cons (coerce '(0d0) 'doubles) (coerce '(1d0) 'doubles))
         for size across sizes
         for left downfrom (length sizes)
@@ -137,18 +142,18 @@ if that is too much work. Sums within GRAIN are equal."
                               when (>= (abs found) (- sum grain)) sum odds))))
 
 (defun drawn-share (sizes sum grain resamples dice)
-  "Return the share of RESAMPLES draws whose sum is at least SUM or at most -SUM. The observed sum
-counts as a draw, so the share is never 0 (Phipson and Smyth 2010)."
+  "Return the share of RESAMPLES draws of random signs in which the sum of SIZES is at least SUM or
+at most -SUM. The observed sum counts as a draw, so the share is never 0 (Phipson and Smyth 2010)."
   (let ((shares (map 'doubles (constantly .5d0) sizes)))
     (/ (double (1+ (loop repeat resamples
                          count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
        (1+ resamples))))
 
 (defconstant +small-share+ .05d0
-  "The largest p that is drawn again with tilted signs, if RARE-TOO is true.")
+  "The largest p value that is estimated again with tilted signs if RARE-TOO is true.")
 
 (defun share-by-draws (sizes sum grain resamples seed rare-too)
-  "Return the DRAWN-SHARE; or the RARE-SHARE if that is small and RARE-TOO is true."
+  "Return the DRAWN-SHARE. If it is small and RARE-TOO is true, return the RARE-SHARE instead."
   (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
     (if (and rare-too (<= share +small-share+))
         (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
@@ -158,17 +163,18 @@ counts as a draw, so the share is never 0 (Phipson and Smyth 2010)."
 (defun permutation-test (differences &key (resamples 10000) (seed 0) rare-too)
   "Return the p value of the paired permutation test (Fisher 1935, The Design of Experiments, 21):
 the probability that the mean of DIFFERENCES, a list or vector of numbers, is at least as far from 0
-as it is, if each is as likely to have the other sign.
+as observed, if the sign of each difference is random.
 
-The second value is true if p is exact, by going through all signs (Pagano and Tritchler 1983). It
-is exact for up to 19 numbers, and for more if many are equal or whole. Else p comes from RESAMPLES
-draws with the dice for SEED, an integer, the same each time, and is never below 1/(RESAMPLES + 1).
-With RARE-TOO, a p of at most 1/20 is drawn again by importance sampling (Harrison 2012), which can
-find smaller ones: give this if the test is one of many.
+The second value is true if p is exact, computed from all combinations of signs (Pagano and
+Tritchler 1983). This is so for up to 19 numbers, and for more numbers if many are equal or whole.
+Otherwise p is estimated from RESAMPLES draws of signs and is never below 1/(RESAMPLES + 1). SEED,
+an integer, seeds the draws, so p is the same each time. If RARE-TOO is true, a p of at most 1/20 is
+estimated again by importance sampling (Harrison 2012), which can return smaller values; use it if
+the test is one of many.
 
-Sums that differ by rounding only are equal. p is 1 without numbers and if all are 0; of N numbers
-it is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to 1e15, and
-RESAMPLES from 100 to 1e7."
+Sums that differ only by rounding count as equal. Without numbers, or if all numbers are 0, p is 1;
+for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to
+1e15, and RESAMPLES from 100 to 1e7."
   (check-resampling permutation-test resamples seed)
   (let* ((sample (sample 'permutation-test 'differences differences))
          (sum (abs (sum sample)))
@@ -183,10 +189,11 @@ RESAMPLES from 100 to 1e7."
 
 (addition holm-adjusted)
 (defun holm-adjusted (p-values)
-  "Return a list of P-VALUES, a list or vector, corrected for their number (Holm 1979; Wright 1992
-for the adjustment): if you call all results of at most .05 significant, the probability that any of
-them is wrong is at most .05. The order is kept, and equal p values have equal results. Signals
-WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
+  "Return a list of the p values in P-VALUES, a list or vector, adjusted for the number of tests
+(Holm 1979; Wright 1992 for the adjustment). If you call all adjusted values of at most .05
+significant, the probability that any of these results is wrong is at most .05. The order is kept,
+and equal p values have equal results. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to
+1."
   (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
   (let ((shares (map 'doubles #'as-written p-values)))
@@ -202,11 +209,12 @@ WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
 
 (addition sequential-level)
 (defun sequential-level (look &key (level .05d0))
-  "Return the share of LEVEL that may be spent at LOOK, 1, 2, 3 ...: LEVEL / (LOOK (LOOK + 1)).
-These shares add up to LEVEL. So you may look at growing results again and again: if each time you
-take an interval with a confidence of 1 less that share, any of them is wrong with a probability of
-at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals WRONG-ARGUMENT
-unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
+  "Return the level to use when you look at growing results for the LOOK-th time: LEVEL / (LOOK
+(LOOK + 1)). The levels of all looks add up to LEVEL. So you may look again and again: if each time
+you take an interval with a confidence of 1 minus the returned level, the probability that any of
+these intervals is wrong is at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets
+1983). Signals WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and
+1."
   (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
   (/ (check-share sequential-level level) (* look (1+ look))))
 
@@ -217,21 +225,22 @@ unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
 
 (addition rate-evidence)
 (defun rate-evidence (successes trials rate)
-  "Return the evidence of SUCCESSES of TRIALS against a probability of success of RATE: the
-logarithm of how much more likely they are on average over all probabilities, each weighted equally.
-If the probability is RATE, this ever exceeds log(1/LEVEL), after any number of trials, with a
-probability of at most LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard, Ramdas,
-McAuliffe and Sekhon 2021). It is 0 without trials; below 0 it supports RATE. Signals WRONG-ARGUMENT
+  "Return the evidence that SUCCESSES successes in TRIALS trials give against a probability of
+success of RATE. The evidence is the logarithm of a likelihood ratio: the average likelihood over
+all probabilities, weighted equally, divided by the likelihood of RATE. If the true probability is
+RATE, the evidence exceeds log(1/LEVEL) after any number of trials with a probability of at most
+LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard, Ramdas, McAuliffe and Sekhon
+2021). Without trials the evidence is 0; a value below 0 supports RATE. Signals WRONG-ARGUMENT
 unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
   (check-trials rate-evidence successes trials)
   (log-evidence successes trials (check-share rate-evidence rate)))
 
 (addition rate-verdict)
 (defun rate-verdict (successes trials rate &key (level .05d0))
-  "Return :ABOVE or :BELOW if SUCCESSES of TRIALS show that success is more, or less, probable than
-RATE; NIL if they do not show it yet. You may call it after each trial and stop when it answers: the
-probability of an answer where there is no difference is at most LEVEL, between 0 and 1. See
-RATE-EVIDENCE, also for errors."
+  "Return :ABOVE or :BELOW if SUCCESSES successes in TRIALS trials show that the probability of
+success is above or below RATE; or NIL if they do not show either yet. You may call this function
+after each trial and stop when the value is not NIL: if the probability is RATE, this ever happens
+with a probability of at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
   (check-trials rate-verdict successes trials)
   (let ((rate (check-share rate-verdict rate)))
     (when (>= (log-evidence successes trials rate) (- (logarithm (check-share rate-verdict level))))

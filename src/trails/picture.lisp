@@ -18,7 +18,7 @@ this order too, so that failures, which matter most, lie above others.")
   (remove outcome ways :key #'way-outcome :test-not #'string=))
 
 (defun way-opacity (count)
-  "Return the opacity of each of COUNT ways with the same outcome."
+  "Return the opacity of each way if COUNT ways have the same outcome."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
 (defun draw-line-of-way (canvas points look)
@@ -50,8 +50,8 @@ this order too, so that failures, which matter most, lie above others.")
            (snapshot-robots snapshot)))
 
 (defun starts-of (ways snapshot)
-  "Return the points (x y), in metres, where WAYS begin, each once, except where SNAPSHOT has a
-robot."
+  "Return the points (x y), in metres, at which WAYS begin, without duplicates and without the
+points at which SNAPSHOT shows a robot."
   (remove-duplicates (loop for way in ways
                            for ((piece)) = (list (way-pieces way))
                            for (x . y) = (first piece)
@@ -74,7 +74,7 @@ robot."
         (draw-marker-of canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS, so faint that many can be told apart, above the dots of their jumps."
+  "Draw WAYS so faint that many of them can be distinguished, above the dots of their jumps."
   (flet ((draw (function way)
            (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
              (funcall function canvas way))))
@@ -89,7 +89,8 @@ robot."
     (with-opacity (canvas +end-opacity+) (draw-marker-of canvas look (+ x 4) y))))
 
 (defun outcome-entries (ways what)
-  "Return the entries of the legend for the outcomes of WAYS. WHAT is a noun, such as trial."
+  "Return the entries of the legend for the outcomes of WAYS. WHAT is the noun for a trial, such as
+\"trial\"."
   (loop for (outcome . look) in *outcome-looks*
         for ended = (ways-of-outcome outcome ways)
         for count = (length (remove-duplicates (mapcar #'way-trial ended)))
@@ -98,7 +99,8 @@ robot."
                                 (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
 
 (defun bundle-entries (snapshot ways what)
-  "Return the entries of the legend for WAYS in the world of SNAPSHOT; WHAT as for OUTCOME-ENTRIES."
+  "Return the entries of the legend for WAYS in the world of SNAPSHOT. For WHAT see
+OUTCOME-ENTRIES."
   (append (outcome-entries ways what)
           (and (starts-of ways snapshot)
                (list (entry-with-sample (canvas x y) "start of a way"
@@ -107,12 +109,12 @@ robot."
                         snapshot black*)))
 
 (defun map-opacity (color-p)
-  "Return the opacity of the map below ways; COLOR-P is true for a picture in colours."
+  "Return the opacity of the map below the ways. COLOR-P is true for a picture in colours."
   (if color-p 1/2 1))
 
 (defun draw-bundle (canvas snapshot ways layers)
-  "Draw the world of SNAPSHOT, its map faintly if there are colours, and WAYS in it. Their ends are
-above robots and things."
+  "Draw the world of SNAPSHOT and WAYS in it. In a picture in colours the map is faint. The ends of
+WAYS are drawn above robots and things."
   (let ((ways (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways))))
     (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
@@ -126,14 +128,15 @@ above robots and things."
     (when (member :names layers) (draw-names canvas snapshot layers))))
 
 (defun bundle-text (snapshot ways what &rest look &key layers in-color &allow-other-keys)
-  "Return an SVG document of SNAPSHOT and WAYS in it. WHAT as for OUTCOME-ENTRIES, LOOK as for
-FRAMED-TEXT."
+  "Return an SVG document that shows SNAPSHOT and WAYS in it. For WHAT see OUTCOME-ENTRIES, for LOOK
+see FRAMED-TEXT."
   (apply #'framed-text snapshot (lambda (canvas) (draw-bundle canvas snapshot ways layers))
          :more (bundle-entries snapshot ways what)
          :legend (list :opacity (map-opacity in-color)) look))
 
 (defun ways-in-part (part ways)
-  "Return those of WAYS that touch PART (left top right bottom), in cells; all if PART is NIL."
+  "Return a list of the WAYS that touch the part of the map PART (left top right bottom), in cells;
+or all WAYS if PART is NIL."
   (if part
       (let ((graphics-scale* 8))
         (remove-if-not (lambda (way)
@@ -142,8 +145,8 @@ FRAMED-TEXT."
       ways))
 
 (defun not-shown-text (what all ways)
-  "Return a sentence with the number of trials, called WHAT, in ALL ways but not in WAYS; or an
-empty text."
+  "Return a sentence with the number of trials that have a way in the list ALL but none in WAYS; or
+an empty text. WHAT is the noun for a trial."
   (flet ((count-in (ways) (length (remove-duplicates (mapcar #'way-trial ways)))))
     (let ((unseen (- (count-in all) (count-in ways))))
       (if (plusp unseen)
@@ -152,10 +155,10 @@ empty text."
 
 (defun save-bundle (operator what file snapshot ways-of own-title subtitle
                     &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
-  "Save in FILE, for OPERATOR, a picture of SNAPSHOT and of the ways that the function WAYS-OF
-returns. Return the truename. WHAT is a noun for a trial. Above are TITLE, or if it is NIL
-OWN-TITLE, and SUBTITLE. PART (left top right bottom), in cells, is the part of the map, or NIL for
-all. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
+  "Save in FILE a picture of SNAPSHOT and of the ways that the function WAYS-OF returns. Return the
+truename of FILE. Errors name OPERATOR. WHAT is the noun for a trial. At the top are TITLE, by
+default OWN-TITLE, and SUBTITLE. PART (left top right bottom), in cells, is the part of the map to
+show, or NIL for the whole map. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
     (check-map-options operator :title title :layers layers :scale scale)
     (let* ((snapshot (in-part snapshot part operator))

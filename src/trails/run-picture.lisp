@@ -9,15 +9,16 @@
 (defconstant +note-step+ 16 "The distance between lines of notes, in pixels.")
 
 (defun robot-of (moment simulation)
-  "Return the robot of MOMENT in SIMULATION: the named one, or if none is named the only one; or
-NIL."
+  "Return the robot in SIMULATION that MOMENT names. If MOMENT names no robot, return the only robot
+of SIMULATION, or NIL if there are several."
   (let ((robots (simulation-robots simulation)))
     (if (moment-robot moment)
         (find (moment-robot moment) robots :key #'robot-name :test #'same-name-p)
         (and (null (rest robots)) (first robots)))))
 
 (defun place-moment (moment simulation)
-  "Return MOMENT, which is now. If it has no place, add that of its robot, if known."
+  "Return MOMENT, which is at the current tick. If MOMENT has no position, return a copy with the
+position of its robot, if the robot is known."
   (let ((robot (robot-of moment simulation)))
     (if (or (moment-x moment) (null robot))
         moment
@@ -34,9 +35,9 @@ SIMULATION."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun watch-run (journal until own)
-  "Replay JOURNAL up to UNTIL. Return four values: a snapshot of its end; lists of the name of each
-robot and the pieces of its way; the moments found; and the moments OWN with their places. Signals
-WRONG-ARGUMENT if OWN name other robots."
+  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; lists of the name
+of each robot and the pieces of its way; the moments found; and the user's moments OWN with their
+positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
       (flet ((look (simulation)
@@ -58,7 +59,7 @@ WRONG-ARGUMENT if OWN name other robots."
 ;;; Ways.
 
 (defun moved-p (way)
-  "True if WAY, a list of a robot's name and of pieces, has several points or pieces."
+  "True if WAY, a list of a robot's name and pieces, has more than one point or piece."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
@@ -74,7 +75,7 @@ WRONG-ARGUMENT if OWN name other robots."
 (defconstant +tile+ 6 "The side of the boxes that cover a line, in pixels.")
 
 (defun boxes-along (points)
-  "Return boxes that together cover the line through POINTS, x y ... in pixels."
+  "Return a list of boxes that together cover the line through POINTS, x y ... in pixels."
   (let ((tiles (make-hash-table :test #'equal)))
     (loop for (x y next-x next-y) on points by #'cddr
           while next-y
@@ -85,14 +86,15 @@ WRONG-ARGUMENT if OWN name other robots."
                         (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
 
 (defun moved-robot-entry (name position)
-  "Return an entry for the robot called NAME, at POSITION among those of its world, and for its
-way."
+  "Return an entry of the legend for the robot NAME and its way. POSITION is the position of the
+robot in the list of robots of its world."
   (named-entry-with-sample (canvas x y) (name " and its way" 54)
     (draw-ring canvas (- x 18) y 6 0 position)
     (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (nth-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
-  "Return the entries of the legend for the robots that SNAPSHOT shows, or whose WAYS it shows."
+  "Return the entries of the legend for the robots that are visible in SNAPSHOT or whose WAYS are
+visible."
   (loop with box = (pixels-of (shown-part snapshot))
         for way in ways
         for position from 0
@@ -103,13 +105,13 @@ way."
                collect (robot-entry (drawn-name name) position)))
 
 (defun start-seen-p (way snapshot)
-  "True if SNAPSHOT shows the ring at the start of WAY."
+  "True if the ring at the start of WAY is visible in the part of the map that SNAPSHOT shows."
   (and (moved-p way)
        (destructuring-bind (x . y) (first (second way))
          (way-seen-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
 (defun run-entries (snapshot ways spots)
-  "Return the entries of the legend for WAYS and SPOTS of a run that ended as SNAPSHOT shows."
+  "Return the entries of the legend for WAYS and SPOTS of a run. SNAPSHOT shows the end of the run."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
             (list (entry-with-sample (canvas x y) "start of a way" (draw-start canvas x y black*))))
@@ -121,7 +123,7 @@ way."
 ;;; The whole.
 
 (defun draw-run (canvas snapshot ways spots layers)
-  "Draw the map of SNAPSHOT, and on it the run: WAYS, SPOTS, and what LAYERS list."
+  "Draw the map of SNAPSHOT and the run on it: WAYS, SPOTS, and the layers in the list LAYERS."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-robot-ways canvas ways)
   (draw-movers canvas snapshot (remove :names layers))
@@ -131,8 +133,8 @@ way."
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
 (defun draw-notes (canvas notes left y width)
-  "Write NOTES, lists of a number or NIL and a text, below each other from Y, at most WIDTH pixels
-wide. Return the Y after the last."
+  "Write NOTES, lists of a number or NIL and a text, below each other from Y on, at most WIDTH
+pixels wide. Return the Y below the last note."
   (let ((most (max 20 (floor (- width 24) (character-width canvas +note-size+)))))
     (loop for (number text) in notes
           do (when number
@@ -144,8 +146,8 @@ wide. Return the Y after the last."
     y))
 
 (defun moments-in (part moments)
-  "Return those of MOMENTS in PART (left top right bottom) of the map or without a place, all if
-PART is NIL; and the others."
+  "Return a list of the MOMENTS that have no position or are in PART (left top right bottom) of the
+map; and a list of the others. If PART is NIL, return MOMENTS."
   (flet ((elsewhere-p (moment)
            (destructuring-bind (left top right bottom) part
              (and (moment-x moment)
@@ -156,15 +158,16 @@ PART is NIL; and the others."
         moments)))
 
 (defun spots-and-notes-in (part moments limit several-p reach)
-  "Return the values of SPOTS-AND-NOTES for those of MOMENTS in PART, with a note that counts the
-others."
+  "Return the values of SPOTS-AND-NOTES for the MOMENTS in PART, with an additional note that counts
+the other moments."
   (multiple-value-bind (moments others) (moments-in part moments)
     (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
       (values spots
               (append notes (not-shown-note "Not shown, outside of this part" others))))))
 
 (defun run-picture-text (snapshot ways moments &key limit title subtitle layers in-color scale)
-  "Return an SVG document of a run that ended as SNAPSHOT shows, with WAYS and MOMENTS."
+  "Return an SVG document that shows a run with WAYS and MOMENTS. SNAPSHOT shows the end of the
+run."
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
                           (and (rest ways) t)
@@ -183,7 +186,8 @@ others."
                                   (- width left 16))))))))))
 
 (defun check-run-picture (journal moments until &key kinds limit title layers scale)
-  "Return MOMENTS, an argument of SAVE-RUN-PICTURE, as moments. Signals WRONG-ARGUMENT."
+  "Check the arguments of SAVE-RUN-PICTURE. Return MOMENTS as a list of moments. Signals
+WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
                   "a whole number, the most lines below the map, or NIL for all")
   (check-kinds 'save-run-picture kinds)
@@ -197,22 +201,25 @@ others."
                (layers (remove :tracks *picture-layers*)) (in-color t) scale anyway)
   "Save in FILE, replacing it, a picture of a run: its world at the end, the ways of its robots, and
 numbers that refer to events listed below the map. Return the file's truename. JOURNAL is a journal
-or a file with one, by default that of the current simulation; UNTIL is the last tick, by default
-that of its end.
+or a file with a journal, by default the journal of the current simulation; UNTIL is the last tick,
+by default the end of JOURNAL.
 
-Events are that a robot grasped, released or stowed something, that a command failed, that a plan or
-a part of one failed or was ended, and errors in your code. KINDS, a list, chooses among :GRASP,
-:RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE. MOMENTS are your own events, always
-shown: moments, or lists of a tick, a string and, if you like, the name of a robot of the run.
+The picture shows these events: a robot grasps, releases or stows a thing; a command fails; a plan
+or a part of a plan fails or is ended; an error occurs in your code. KINDS is a list of the kinds of
+events to show, from :GRASP, :RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE. MOMENTS are
+events of your own, which are always shown: moments, or lists of a tick, a string and, optionally,
+the name of a robot of the run.
 
-LIMIT is the most lines below the map; your own events may need more. NIL lists all events with all
-ticks. What does not fit is left out and counted, the least important first: that a robot was
-blocked or lost a track, as plans expect; then other failures of commands and of parts of plans.
+LIMIT is the largest number of lines below the map, but your own events are always listed. If LIMIT
+is NIL, all events are listed with all ticks. Events that do not fit are left out and counted, the
+least important first: blocked robots and lost tracks, which plans expect; then other failures of
+commands and of parts of plans.
 
-PART (left top right bottom), in cells, is the part of the map, by default all. TITLE stands above.
-ANYWAY accepts a run whose definitions are not the present ones, though it may have gone
-differently. FILE and the other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, what
-REPLAY does, and MISUSE without the program that PNG needs or if no journal is kept."
+PART (left top right bottom), in cells, is the part of the map to show, by default the whole map.
+TITLE is printed above the picture. If ANYWAY is true, definitions may have changed since the run,
+but then the picture may differ from the original run. FILE and the other arguments are those of
+SAVE-PICTURE. Signals WRONG-ARGUMENT, the errors of REPLAY, and MISUSE without the program that PNG
+needs or if there is no journal."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (resolve-journal journal 'save-run-picture))
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title

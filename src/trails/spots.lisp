@@ -7,13 +7,14 @@
 ;;; counted.
 
 (defstruct (spot (:constructor make-spot (x y)) (:copier nil))
-  "A place, in metres, where something happened, and its NUMBER on the map."
+  "A point of the map, in metres, at which events happened, with its NUMBER in the picture."
   (x 0 :type real :read-only t)
   (y 0 :type real :read-only t)
   (number 0 :type fixnum))
 
 (defstruct (moment-group (:constructor make-moment-group (spot words weight)) (:copier nil))
-  "MOMENTS, the latest first, at SPOT, or NIL if it is unknown, with the same WORDS."
+  "A group of MOMENTS, the latest first, with the same text WORDS at the same SPOT, which is NIL if
+unknown."
   (spot nil :type (or null spot) :read-only t)
   (words "" :type string :read-only t)
   (weight 0 :type fixnum :read-only t)
@@ -25,8 +26,8 @@
            spots))
 
 (defun group-moments (moments several-p reach)
-  "Return MOMENTS as groups. Moments less than REACH metres apart are at one spot. SEVERAL-P: texts
-name the robots."
+  "Return a list of groups of MOMENTS. Moments less than REACH metres apart are at the same spot. If
+SEVERAL-P is true, texts name the robots."
   (let ((spots '()) (groups '()))
     (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-weight)
                     (nreverse groups))
@@ -49,21 +50,21 @@ name the robots."
       (< (moment-group-weight one) (moment-group-weight other))))
 
 (defun number-spots (groups)
-  "Number the spots of GROUPS, in order. Return them."
+  "Number the spots of GROUPS in order. Return a list of these spots."
   (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot groups))
                                   :from-end t)))
     (loop for spot in spots for number from 1 do (setf (spot-number spot) number))
     spots))
 
 (defun ticks-text (ticks most)
-  "Return TICKS, in order, as text: at most MOST of them, or all if MOST is NIL."
+  "Return a text that lists TICKS in order: at most MOST ticks, or all if MOST is NIL."
   (let ((more (if most (- (length ticks) most) 0)))
     (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
 (defun group-note (group most)
-  "Return a note of GROUP: a list of the number of its spot, or NIL, and a text with at most MOST
-ticks, NIL for all."
+  "Return a note about GROUP: a list of the number of its spot, or NIL, and a text with at most MOST
+ticks, or with all ticks if MOST is NIL."
   (list (and (moment-group-spot group) (spot-number (moment-group-spot group)))
         (format nil "~A: ~A"
                 (ticks-text (sort (mapcar #'moment-tick (moment-group-moments group)) #'<) most)
@@ -75,10 +76,11 @@ ticks, NIL for all."
     (:plan "plan that failed or was ended" "plans that failed or were ended")
     (:part "failure or end within a plan" "failures or ends within plans")
     (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))
-  "Lists (kind one several) of the words for moments of each kind.")
+  "Lists (kind singular plural) of the words for moments of each kind.")
 
 (defun not-shown-note (words moments)
-  "Return a list of a note that counts MOMENTS by kind, after WORDS; or an empty list."
+  "Return a list of one note, whose text is WORDS and the counts of MOMENTS by kind; or an empty
+list if there are no MOMENTS."
   (when moments
     (list (list nil (format nil "~A: ~{~A~^, ~}."
                             words
@@ -94,10 +96,11 @@ ticks, NIL for all."
 (define-constant +reason-mark+ "failed: "
   :test #'cl:equal
   :documentation "The text before the reason why a plan failed.")
-(defconstant +longest-reason+ 40 "The most characters of the reason.")
+(defconstant +longest-reason+ 40 "The largest number of characters of the reason why a plan
+failed.")
 
 (defun short-reason (reason)
-  "Return REASON, why a plan failed, abridged and without code."
+  "Return REASON, a text about why a plan failed, abridged and without code."
   (let* ((prefix "Plan failure ")
          (own-p (eql 0 (search prefix reason)))
          (words (if own-p (string-downcase (subseq reason (length prefix))) reason))
@@ -106,7 +109,7 @@ ticks, NIL for all."
     (cut (string-trim " :" (subseq words 0 second)) +longest-reason+)))
 
 (defun abridge-failures (moments)
-  "Return MOMENTS with abridged texts of failures; each reason is given only once."
+  "Return copies of MOMENTS with abridged texts about failures. Each reason is given only once."
   (let ((told '()))
     (flet ((brief (moment)
              (let* ((text (moment-text moment)) (at (search +reason-mark+ text))
@@ -126,8 +129,9 @@ ticks, NIL for all."
                (moment-robot moment) (moment-code moment)))
 
 (defun spots-and-notes (moments limit several-p reach)
-  "Return the numbered spots of MOMENTS, and notes, lists of a number or NIL and a text: at most
-LIMIT, or more if there are more of the user's own; all if LIMIT is NIL. See GROUP-MOMENTS."
+  "Return a list of the numbered spots of MOMENTS; and a list of at most LIMIT notes, each a list of
+a number or NIL and a text. Notes about the user's own moments are always included; if LIMIT is NIL,
+so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))
@@ -156,8 +160,8 @@ LIMIT, or more if there are more of the user's own; all if LIMIT is NIL. See GRO
     (draw-words canvas draw-gcontext* x (+ y 4) text :size 11 :anchor :middle)))
 
 (defun ring-radius (snapshot x y)
-  "Return the radius, in pixels, of the ring around the spot at X, Y on the map of SNAPSHOT. A thing
-that lies right there, such as one released there, is inside the ring."
+  "Return the radius, in pixels, of the ring around the spot at X, Y on the map of SNAPSHOT. If a
+thing lies at the spot, for example because it was released there, the ring is around the thing."
   (flet ((reach (image)
            (let ((off (max (abs (- (to-pixels (thing-image-x image)) x))
                            (abs (- (to-pixels (thing-image-y image)) y))))
@@ -166,7 +170,7 @@ that lies right there, such as one released there, is inside the ring."
     (reduce #'max (snapshot-things snapshot) :key #'reach :initial-value +ring-radius+)))
 
 (defun boxes-to-avoid (snapshot spots)
-  "Return boxes around robots, spots and things, which no number should hide."
+  "Return a list of boxes around robots, spots and things that no number should hide."
   (flet ((box (x y half) (box-around (to-pixels x) (to-pixels y) half)))
     (append (loop for robot in (snapshot-robots snapshot)
                   collect (box (robot-image-x robot) (robot-image-y robot)
@@ -177,15 +181,16 @@ that lies right there, such as one released there, is inside the ring."
                                (max 4 (to-pixels 1/2)))))))
 
 (defun places-around (x y radius)
-  "Return points (x y), the nearest first, for the number of a spot at X, Y with a ring of RADIUS."
+  "Return a list of points (x y), the nearest first, at which the number of a spot at X, Y with a
+ring of RADIUS could be drawn."
   (loop for distance in '(12 20 30 42 56)
         append (loop for turn below 12
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))
                      collect (point-at-distance x y angle (+ radius distance)))))
 
 (defun free-place-p (place shown taken)
-  "True if a number at PLACE, a point (x y), is within the box SHOWN and meets none of the boxes
-TAKEN."
+  "True if a number at PLACE, a point (x y), is inside the box SHOWN and does not overlap any of the
+boxes TAKEN."
   (destructuring-bind (x y) place
     (let ((box (box-around x y (1+ +number-radius+))))
       (and (every #'<= (subseq shown 0 2) box)
@@ -193,8 +198,8 @@ TAKEN."
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
 (defun move-inside (shown place)
-  "Return the point nearest to PLACE at which a number is completely within the box SHOWN; its
-middle if SHOWN is too small."
+  "Return the point nearest to PLACE at which a number is completely inside the box SHOWN. If SHOWN
+is too small, return its middle."
   (let ((reach (1+ +number-radius+)))
     (flet ((within (at low high)
              (if (< (- high low) (* 2 reach))
@@ -203,15 +208,17 @@ middle if SHOWN is too small."
       (mapcar #'within place shown (subseq shown 2)))))
 
 (defun place-for-number (shown x y radius taken rather-not)
-  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS: in the box SHOWN
-and, if possible, clear of the boxes TAKEN and RATHER-NOT."
+  "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS. The number is
+inside the box SHOWN and, if possible, does not overlap the boxes TAKEN and RATHER-NOT; TAKEN are
+more important."
   (let ((places (places-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-place-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
           (move-inside shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
-  "Draw a ring of RADIUS around X, Y, its number TEXT at PLACE, and a line between them."
+  "Draw a ring of RADIUS around the spot at X, Y, its number TEXT at PLACE, and a line between
+them."
   (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
          (edge (point-at-distance x y angle radius)))
     (with-halo (black*)
@@ -220,8 +227,8 @@ and, if possible, clear of the boxes TAKEN and RATHER-NOT."
     (draw-number canvas (first place) (second place) text)))
 
 (defun draw-spots (canvas snapshot spots ways)
-  "Draw SPOTS on the map of SNAPSHOT. Numbers avoid the boxes WAYS if possible. Return the boxes of
-the numbers."
+  "Draw SPOTS on the map of SNAPSHOT. If possible, numbers do not overlap the boxes WAYS. Return a
+list of the boxes around the numbers."
   (let ((spared (boxes-to-avoid snapshot spots)) (boxes '()))
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))

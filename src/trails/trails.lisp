@@ -5,17 +5,20 @@
 (export '(note-places ways-along straightened))
 
 (define-record (way (:constructor make-way (trial outcome pieces)))
-  "The way of a robot in a trial."
+  "The way that a robot went in a trial."
   (trial 0 integer "the number of the trial of the way" :export)
-  (outcome "" string "its outcome: \"success\", \"failure\", \"limit\" or \"error\"" :export)
+  (outcome "" string "the outcome of the trial: \"success\", \"failure\", \"limit\" or
+\"error\"" :export)
   (pieces '() list "the pieces of the way, lists of points (x . y), in order" :export))
 
 (define-record (trail (:constructor make-trail (robot)))
-  "The places of ROBOT so far."
+  "The positions of ROBOT from the beginning of a run up to now."
   (robot nil robot)
   (placements nil (or null fixnum)
-              "how often it had been put somewhere at the last place, or NIL" :writable)
-  (pieces '() list "pieces like those of a way, latest first, as are their points" :writable))
+              "how many times the robot had been put somewhere when its last position was recorded,
+or NIL" :writable)
+  (pieces '() list "the pieces, like those of a way, but the latest piece first and in each piece
+the latest point first" :writable))
 
 (defun note-point (trail x y)
   "Extend the last piece of TRAIL to X, Y."
@@ -23,7 +26,8 @@
     (push (cons x y) (first (trail-pieces trail)))))
 
 (defun note-placement (trail)
-  "Begin a new piece of TRAIL where its robot has been put. It may have driven on since."
+  "Begin a new piece of TRAIL at the point where its robot has been put. The robot may have driven
+on since then."
   (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
     (setf (trail-placements trail) (robot-placements robot))
     (push '() (trail-pieces trail))
@@ -35,7 +39,8 @@
     (note-point trail (robot-x robot) (robot-y robot))))
 
 (defun note-places (simulation trails)
-  "Add the places of the robots of SIMULATION to TRAILS, a list, latest first. Return the list."
+  "Add the current positions of the robots of SIMULATION to TRAILS, a list of their trails. A robot
+without a trail gets one at the front. Return the list."
   (dolist (robot (simulation-robots simulation) trails)
     (note-place (or (find robot trails :key #'trail-robot)
                     (first (push (make-trail robot) trails))))))
@@ -44,8 +49,9 @@
   (reverse (mapcar #'reverse (trail-pieces trail))))
 
 (defun ways-along (trails trial outcome)
-  "Return the ways of TRAILS, a value of NOTE-PLACES, in TRIAL, which ended with OUTCOME. A trial
-without trails, which failed at once, has one way without points, so that it is counted."
+  "Return the ways of the trial TRIAL, which ended with OUTCOME, from TRAILS, a value of
+NOTE-PLACES. A trial without trails, which failed at once, has one way without points, so that the
+trial is counted."
   (if trails
       (loop for trail in (reverse trails) collect (make-way trial outcome (pieces-along trail)))
       (list (make-way trial outcome '()))))
@@ -53,7 +59,8 @@ without trails, which failed at once, has one way without points, so that it is 
 ;;; A way has a point for each tick. Nearly straight parts need only their ends.
 
 (defun distance-from-line (point start end)
-  "Return the distance of POINT from the line from START to END, or from START if both are equal."
+  "Return the distance of POINT from the line between START and END, or from START if START and END
+are equal."
   (destructuring-bind ((x . y) (x1 . y1) (x2 . y2)) (list point start end)
     (let* ((dx (- x2 x1)) (dy (- y2 y1)) (square (+ (* dx dx) (* dy dy)))
            (share (if (zerop square)
@@ -62,8 +69,8 @@ without trails, which failed at once, has one way without points, so that it is 
       (sqrt (+ (expt (- x x1 (* share dx)) 2) (expt (- y y1 (* share dy)) 2))))))
 
 (defun straightened (points tolerance)
-  "Return some of POINTS, a list, such that all others are at most TOLERANCE from the line through
-them (Douglas and Peucker 1973)."
+  "Return a simplified line: a list of some of POINTS, such that all other points are at most
+TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (let ((points (coerce points 'simple-vector)) (kept '()))
     (labels ((visit (start end)
                (let ((place nil) (most tolerance))
@@ -94,13 +101,14 @@ them (Douglas and Peucker 1973)."
 
 (defparameter *trajectory-columns*
   '("tick" "robot" "x" "y" "angle" "estimated_x" "estimated_y" "estimated_angle" "holding" "place")
-  "The columns of a trajectory.")
+  "The names of the columns of a trajectory, as SAVE-TRAJECTORY writes it.")
 
 (note-kind-of-file :trajectory (format nil "~{~A,~}" (subseq *trajectory-columns* 0 5))
-                   "it is a table of where robots were; any program that reads CSV reads it")
+                   "the file is a table of the positions of robots; any program that reads CSV can ~
+                    read it")
 
 (defun full-number-text (number)
-  "Return NUMBER in full precision, as text that any program can read."
+  "Return the text of NUMBER in full precision, so that other programs can read it."
   (let ((*read-default-float-format* 'double-float)) (princ-to-string number)))
 
 (defun trajectory-row (robot tick)
@@ -114,14 +122,14 @@ them (Douglas and Peucker 1973)."
                   (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
-  "Write a row for each robot of SIMULATION to OUT; only for those in the list NAMES unless it is
-NIL."
+  "Write a row for each robot of SIMULATION to OUT. If NAMES is not NIL, write rows only for the
+robots with these names."
   (dolist (robot (simulation-robots simulation))
     (when (or (null names) (member (robot-name robot) names :test #'same-name-p))
       (write-string (csv-line (trajectory-row robot (simulation-tick simulation))) out))))
 
 (defun write-trajectory (journal out every until names)
-  "Replay JOURNAL up to UNTIL and write rows to OUT every EVERY ticks."
+  "Replay JOURNAL up to the tick UNTIL, and write rows to OUT every EVERY ticks."
   (write-string (csv-line *trajectory-columns*) out)
   (flet ((look (simulation)
            (when (zerop (mod (simulation-tick simulation) every))
@@ -132,7 +140,8 @@ NIL."
   (check-argument save-trajectory file
                   (and (typep file '(or string pathname)) (not (many-files-p file))
                        (pathname-name file))
-                  "the name of a file, such as \"run.csv\"; before each * ? and [ in it write \\\\")
+                  "the name of a file, such as \"run.csv\"; in the name, write \\\\ before each * ?
+and [")
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
   (checked-end-tick 'save-trajectory journal until)
@@ -140,21 +149,22 @@ NIL."
                        (getf (journal-header journal) :robots))))
     (dolist (name robots)
       (unless (member name known :test #'same-name-p)
-        (reject-name "robot of that run" name known)))))
+        (reject-name "robot in the run of the journal" name known)))))
 
 (addition save-trajectory)
 (define-with-keywords save-trajectory
     (file &key journal (every 1) until robots anyway)
-  "Replay a run and write the places of its robots to FILE, a CSV table. Return the truename.
-JOURNAL is a journal or a file with one, by default that of the current simulation so far. There is
-a row every EVERY ticks, up to the tick UNTIL, for each robot, or only for those of ROBOTS, a name
-or a list of names. It has the tick, the robot, x and y in metres and the heading in radians; the
-same three as its main odometer estimates them, in coordinates of the map; what its hands hold; and
-the place type that it sensed last. ANYWAY accepts a run whose definitions are not the present ones.
+  "Replay a run and write the positions of its robots to FILE, a CSV table. Return the truename of
+FILE. JOURNAL is a journal or a file with a journal, by default the journal of the current
+simulation up to now. There is a row every EVERY ticks, up to the tick UNTIL, for each robot, or
+only for the robots that ROBOTS, a name or a list of names, names. A row has the tick; the robot;
+its x and y in metres and its heading in radians; the same three numbers as estimated by the robot's
+main odometer, in coordinates of the map; the things in its hands; and the place type that the robot
+sensed last. If ANYWAY is true, definitions may have changed since the run.
 
-FILE may be new, empty, or another such table, which is replaced. Signals WRONG-ARGUMENT,
-UNKNOWN-NAME, and what REPLAY does; and MISUSE if there is no journal, or if FILE is something else
-or cannot be written, and then FILE is unchanged."
+FILE may be new, empty, or a table that SAVE-TRAJECTORY has written, which is replaced. Signals
+WRONG-ARGUMENT, UNKNOWN-NAME, the errors of REPLAY, and MISUSE if there is no journal, or if FILE is
+another file or cannot be written. After an error FILE is unchanged."
   (let ((journal (resolve-journal journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory file every until robots journal)
     (check-not-foreign file :trajectory "trajectory")
