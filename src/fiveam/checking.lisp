@@ -126,8 +126,8 @@ most 300. Trial T has the seed SEED + T. Parameters have the values of the manua
 PARAMETERS: lists (name form) as in DEFEXPERIMENT, or a form that returns lists (name value). If
 CLEAN is true, trials have no noise.
 
-FORM may also be (:experiment NAME) or (:experiment NAME :condition C). Then the trials are those of
-that experiment, which determines robots, seed, parameters and limit.
+FORM may also be (:experiment NAME) or (:experiment NAME :condition C). Then the check runs trials
+of the experiment NAME, which determines robots, seed, parameters and limit.
 
 At most TRIALS trials are run: by default 200, or the number that the experiment specifies. The
 check fails as soon as the rate is clearly lower than AT-LEAST, and passes as soon as it is clearly

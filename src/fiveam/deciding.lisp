@@ -51,11 +51,12 @@ RATE."
     next))
 
 (defun pass-probability (rate &key (at-least .95) (trials 200) (level .05))
-  "Return the probability that IS-SUCCESS-RATE passes, with these arguments, if trials succeed with
-the probability RATE; and the average number of trials. Use this function to see which rates a check
-accepts: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with .20, and 85 %
-with .003. Both values are exact except for rounding: the function adds up all sequences of
-successes and failures, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
+  "Return the probability that a check by IS-SUCCESS-RATE with these arguments passes if each trial
+succeeds with the probability RATE; and the average number of trials. Use this function to see which
+rates a check accepts: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with
+.20, and 85 % with .003. The two returned values are exact except for rounding: PASS-PROBABILITY
+adds up all sequences of successes and failures, which takes a second for 5,000 trials. Signals
+WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rates 'pass-probability at-least trials level)
   (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))

@@ -137,7 +137,7 @@ worker, run only one trial."
              (coerce results 'list)))))
 
 (defun run-check (check)
-  "Run trials of CHECK until it has a verdict. Return CHECK."
+  "Run trials of CHECK until the verdict is :PASSED or :FAILED. Return CHECK."
   (loop for first = (1+ (length (check-results check)))
         until (loop for result in (run-some-trials check first)
                       thereis (count-result check result)))

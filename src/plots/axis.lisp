@@ -85,8 +85,8 @@ does not show the scale, is used only if no candidate has two marks."
 ;;; Axes across.
 
 (defun step-candidates (low high start end percent &optional (least-step 0))
-  "Return candidates for the marks between START and END, the longest list first. Each is a list of
-marks that are at least LEAST-STEP apart, and at most 10 between LOW and HIGH."
+  "Return several lists of possible marks between START and END, the longest list first. The marks
+of a list are at least LEAST-STEP apart, and at most 10 of them are between LOW and HIGH."
   (loop for most in '(10 8 6 5 4 3 2 1)
         for step = (max least-step (round-step (- high low) most))
         collect (step-marks step start end percent)))
@@ -102,8 +102,8 @@ exponent EVERY divides."
                          collect (list value (plain-text value 4)))))
 
 (defun logarithmic-candidates (low high percent)
-  "Return candidates for the marks of a logarithmic axis from LOW to HIGH, which are logarithms.
-Each is a list of marks; the longest list comes first."
+  "Return several lists of possible marks of a logarithmic axis from LOW to HIGH, which are
+logarithms. The longest list comes first."
   (if (< (- high low) 1)
       (let ((least (antilogarithm low)) (most (antilogarithm high)))
         (step-candidates least most least most percent))

@@ -115,9 +115,9 @@
         finally (return (max 1 (1- count)))))
 
 (defun place-to-break (word count)
-  "Return the position at which to break WORD, whose first COUNT characters fit in a line. It is
-after the last dash, slash or similar character in that part, but not at the beginning of WORD;
-without such a character it is COUNT."
+  "Return the position at which to break WORD, whose first COUNT characters fit in a line. WORD is
+broken after the last dash, slash or similar character in that part, but not at its beginning;
+without such a character WORD is broken at COUNT."
   (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))
@@ -169,7 +169,7 @@ for a further line."
       (incf y step))))
 
 (defun write-lines-upward (canvas x y lines)
-  "Write LINES as vertical text, side by side around X. They end at Y."
+  "Write LINES as vertical text, side by side around X. The texts end at Y."
   (with-ink (+ink+)
     (loop for line in lines
           for shift from (- (/ (1- (length lines)) 2))
@@ -203,7 +203,7 @@ for a further line."
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the
 truename of FILE. The name of FILE ends in .svg or, if the program rsvg-convert is installed, .png.
-Signals WRONG-ARGUMENT, and MISUSE without that program."
+Signals WRONG-ARGUMENT, and MISUSE for .png without rsvg-convert."
   (check-argument save-chart chart (stringp chart) "an SVG document from a function such as
 LINE-CHART")
   (save-svg chart file (picture-kind 'save-chart file)))

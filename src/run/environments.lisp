@@ -8,8 +8,8 @@
 ;;; are global. A fork keeps their values, and they are bound while code works in it.
 
 (defvar *simulation-variables* '()
-  "Symbols that a headless simulation binds to their current values, so that assignments in it are
-undone at its end and do not affect other simulations.")
+  "The symbols that a headless simulation binds to their current values. So assignments in the
+simulation are undone at its end and do not affect other simulations.")
 
 (pushnew '*simulation-variables* *kept-variables*)
 
@@ -61,7 +61,8 @@ simulation, is about to set them while another live run is current outside."
 
 (defun publish-variables (simulation)
   "If SIMULATION is live, set the global values of *SIMULATION-VARIABLES* to their values in this
-thread, for all threads of SIMULATION. A headless simulation around it may have bound them."
+thread, for all threads of SIMULATION. The variables may be bound in this thread, by a headless
+simulation in which SIMULATION was started."
   (when (live-p simulation)
     (note-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
@@ -85,7 +86,8 @@ the dice that SIMULATION was loaded with, if any."
             environment))))
 
 (defun adopt-environment (simulation)
-  "Set the variables of SIMULATION, to which this thread returns, to the values stored in it."
+  "Set the variables of SIMULATION, to which this thread returns, to the values that are stored in
+SIMULATION."
   (when (headless-p simulation)
     (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))

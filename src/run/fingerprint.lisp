@@ -134,7 +134,7 @@ ignored."
 ;;; Their digests.
 
 (defun sum-of-digests (numbers)
-  "Return one number for NUMBERS that does not depend on their order."
+  "Return one number computed from NUMBERS, which does not depend on their order."
   (ldb (byte 64 0) (reduce #'+ numbers)))
 
 (defun current-digest (definition sources)
@@ -152,7 +152,7 @@ of all definitions that are compared."
               (or entry methods files)))))
 
 (defun current-definitions (definitions)
-  "Return those of DEFINITIONS that are loaded, with their current digests."
+  "Return a list of the DEFINITIONS that are loaded, with their current digests."
   (loop with sources = (sources-of definitions)
         for definition in definitions
         for (number there) = (multiple-value-list (current-digest definition sources))

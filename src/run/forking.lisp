@@ -84,8 +84,8 @@ has no dice for CL:RANDOM, which is so if it is live, new dice are made."
                         (let-participants-act fork)))))
 
 (defun fork-now (simulation continuations decisions)
-  "Return a fork of SIMULATION, which is between ticks; see FORK-OPTIONS. Signals MISUSE inside a
-tick, and CANNOT-FORK."
+  "Return a fork of SIMULATION, which is between ticks. For CONTINUATIONS and DECISIONS see
+FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
   (when (simulation-ticking-p simulation)
     (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
   (when (eq simulation *simulation*) (record-settings simulation))
@@ -103,8 +103,8 @@ tick, and CANNOT-FORK."
 ;;; A participant may be busy in another thread.
 
 (defun call-nested (caller participants function)
-  "Call FUNCTION inside nested calls of CALLER, such as PARTICIPANT-AT-REST, one for each of the
-PARTICIPANTS. Return its value."
+  "Call FUNCTION inside nested calls of CALLER, such as PARTICIPANT-AT-REST, one call for each of
+the PARTICIPANTS. Return the value of FUNCTION."
   (if participants
       (funcall caller (first participants)
                (lambda () (call-nested caller (rest participants) function)))
@@ -190,8 +190,8 @@ would, given the same requests. ARGUMENTS are the simulation, by default the cur
                   they close over; by default only continuations of plans are called in the fork
 - Each run has its own state of fluents and valves, even of those in global variables. WITH-FORK
   binds the robots' names; other global variables are shared.
-- Changing or commanding the original run from inside the fork is MISUSE: COUNTERPART returns the
-  fork's own objects.
+- Code that runs in the fork must not change or command the original run: that signals MISUSE.
+  COUNTERPART returns the fork's own objects.
 - A live run is forked between two ticks. In a live run, CL:RANDOM uses the dice of each thread; in
   the fork it draws other numbers. All else continues as in the original.
 - Observers stay with the original.
@@ -254,7 +254,7 @@ If FORK was rewound, its successor is used."
 
 (defgeneric counterpart-in-current-run (object)
   (:documentation "Return the copy, in the current simulation, of OBJECT, which belongs to the run
-that was forked; or NIL. Signals WRONG-ARGUMENT for an object that is not of a run.")
+that was forked; or NIL. Signals WRONG-ARGUMENT for an object that does not belong to a run.")
   (:method (object)
     (reject-argument 'counterpart "object" object
                      (one-line "a robot, a part of one, a thing, a designator, an odometer, a

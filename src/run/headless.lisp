@@ -7,9 +7,9 @@
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
 
 (defun fresh-simulation (robots &key (seed 0) journal (thinking :free))
-  "Return a simulation, at tick 0, of a fresh world that holds the things of its map and fresh
-ROBOTS, a list of names or robots of one map. If JOURNAL is true, the simulation keeps a journal.
-THINKING is the thinking mode."
+  "Return a new simulation of a fresh world, at tick 0. ROBOTS is a list of robots of one map or
+their names; the world contains fresh robots and the things of the map. If JOURNAL is true, the
+simulation keeps a journal. THINKING is the thinking mode."
   (let* ((blueprints (mapcar (lambda (robot)
                                (if (robot-p robot) (robot-blueprint robot) (find-blueprint robot)))
                              robots))
@@ -28,9 +28,10 @@ THINKING is the thinking mode."
 (addition call-with-simulation)
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
                                                (thinking :free) (errors :report) variables)
-  "Call FUNCTION, with no arguments, in a fresh headless simulation of ROBOTS, a robot, its name or
-a list of such, and return its values: what WITH-SIMULATION does with its body. VARIABLES are
-further symbols, of any package, that name some of the ROBOTS in FUNCTION."
+  "Call FUNCTION, without arguments, in a fresh headless simulation of ROBOTS, and return the values
+of FUNCTION. ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are further
+symbols, of any package, that are bound to the ROBOTS with these names. The other arguments are the
+options of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
@@ -47,9 +48,9 @@ further symbols, of any package, that name some of the ROBOTS in FUNCTION."
                          :variables variables :keep keep)))))
 
 (defun call-as-headless (function simulation &key variables keep)
-  "Call FUNCTION with the headless SIMULATION as the current one and its robots as the values of
-their names and of VARIABLES, symbols that name some of them. KEEP says how many forks the run
-keeps, see KEEP-FORKS. The run is over at the end."
+  "Call FUNCTION with the headless SIMULATION as the current simulation. Its robots are the values
+of their names and of VARIABLES, further symbols that name some of the robots. KEEP says how many
+forks the run keeps, see KEEP-FORKS. The run is over at the end."
   (when *simulation* (note-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
@@ -78,8 +79,8 @@ keeps, see KEEP-FORKS. The run is over at the end."
         (restore-outer-globals)))))
 
 (defun call-reporting-errors (function simulation)
-  "Call FUNCTION in the headless SIMULATION; then end the run. Show or signal unread errors, by the
-error policy of its message queue."
+  "Call FUNCTION in the headless SIMULATION; then end the run. Unread errors are shown or signalled,
+as the error policy of the message queue of SIMULATION says."
   (let ((queue (simulation-messages simulation)) (left-p t))
     (multiple-value-prog1
         (in-any-case
@@ -97,9 +98,9 @@ error policy of its message queue."
       (signal-trouble queue))))
 
 (defun warn-at-end (simulation left-p)
-  "Warn if SIMULATION, which ends, has passed no ticks or too few for its requests. Do not warn if
-LEFT-P is true, that is, after a non-local exit such as an error. Do not warn either if SIMULATION
-was forked, because ticks may have passed in the fork."
+  "Warn at the end of SIMULATION if no ticks have passed, or too few for its requests. Do not warn
+if LEFT-P is true, that is, after a non-local exit such as an error. Do not warn either if
+SIMULATION was forked, because ticks may have passed in the fork."
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
@@ -122,7 +123,7 @@ last successor.")
       (tell-listeners *rewound-end-hooks* simulation last))))
 
 (defun variables-among (names)
-  "Return the symbols among NAMES, a list or a single name, that can be variables."
+  "Return a list of the symbols in NAMES, a list of names or a single name, that can be variables."
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
@@ -189,7 +190,8 @@ settings without a quote."
              (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
 
 (defun settings-form (form)
-  "Return FORM, the value of :parameters. Signals MALFORMED-DEFINITION if its quote is missing."
+  "Return FORM, the value of the option :parameters. Signals MALFORMED-DEFINITION if FORM lacks a
+quote."
   (when (unquoted-settings-p form)
     (reject-clause "with-simulation" (list :parameters form)
                    (let ((*print-case* :downcase))
@@ -214,10 +216,10 @@ or a variable that is not the name of a robot. Options:
 - THINKING says how much time thinking costs, see SET-THINKING.
 - ERRORS says how errors in user code and failures of plans are reported: :REPORT, :SIGNAL or
   :COLLECT, see below.
-Only the thread of BODY sees the bindings. In another thread, a robot's name means the robot at top
-level, so pass the robot itself to the thread; a command to a robot at top level that is in no run
-queues a warning. Messages go to the message queue of the run. When BODY ends, the run is over:
-commands in progress are interrupted, and the robots take no more commands.
+Only the thread of BODY sees the bindings of robots and parameters. In another thread, a robot's
+name means the robot at top level, so pass the robot itself to the thread; a command to a robot at
+top level that is in no run queues a warning. Messages go to the message queue of the run. When BODY
+ends, the run is over: commands in progress are interrupted, and the robots take no more commands.
 
 After an error in user code or a failure of a plan, the run continues. ERRORS says how it is
 reported:

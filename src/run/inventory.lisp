@@ -164,7 +164,7 @@ same structure can be made. Signals MISUSE."
 ;;; Finding objects.
 
 (defun add-to-batch (object inventory)
-  "Add OBJECT to its batch in INVENTORY."
+  "Add OBJECT to the batch of objects with the same shape in INVENTORY."
   (let* ((shape (shape-in-inventory object inventory))
          (batch (or (gethash shape (inventory-batches inventory))
                     (progn (push shape (inventory-shapes inventory))
@@ -192,7 +192,7 @@ surveyed later."
              (mark-found object t inventory)
              (push object (inventory-waiting inventory)))
             (other-p
-             (reject-object object "It has been defined anew, or is no longer defined"
+             (reject-object object "This object has been defined anew, or is no longer defined"
                             inventory))
             (t (setf (gethash object (inventory-states inventory)) :numbered)
                (push (cons object name) (inventory-outer inventory)))))))
@@ -229,7 +229,7 @@ if there is room for them."
                       (mark-numbered value inventory)))
     (symbol (reserve-room (+ 10 (* 2 (length (symbol-name value)))) inventory)
      (when (unprintable-atom-p value)
-       (reject-object value "The name of its package contains ::" inventory)))
+       (reject-object value "The package of this symbol has a name with ::" inventory)))
     (number (reserve-room 50 inventory)
      (when (unprintable-atom-p value) (reject-object value "This number is too long" inventory)))
     (cons (survey-list value (1+ depth) inventory))

@@ -69,7 +69,8 @@
       (error "~[the head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
 
 (defun read-data (in)
-  "Return a list of all data of the journal in the stream IN. Signals errors that name the entry."
+  "Return a list of all data of the journal in the stream IN. Signals errors that name the damaged
+entry."
   (loop with sum = 0
         for number from 0
         for line = (next-line in)
@@ -189,9 +190,9 @@ a valid journal."
     journal))
 
 (defun read-journal (file &optional (operator 'read-journal))
-  "Return the journal in FILE, an argument of OPERATOR. Signals DAMAGED-JOURNAL, which names the
-wrong entry, if FILE does not contain a complete journal; WRONG-ARGUMENT unless FILE is a file
-name."
+  "Return the journal in FILE. Errors name OPERATOR, whose argument FILE is. Signals
+DAMAGED-JOURNAL, which names the wrong entry, if FILE does not contain a complete journal;
+WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file
                      "a journal, or the name of a file that holds a journal"))

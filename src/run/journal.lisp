@@ -11,8 +11,8 @@
 
 (addition *journal-limit*)
 (defparameter *journal-limit* 1000000
-  "The most entries of a journal (about 200 bytes each). When a journal is full, a warning says so;
-such a journal repeats the run only up to that tick.")
+  "The largest number of entries of a journal, each of about 200 bytes. When a journal is full, a
+warning says so; such a journal repeats the run only up to that tick.")
 
 (addition journal-p)
 (define-record (journal (:constructor make-journal (header)))
@@ -84,8 +84,8 @@ limit."
            (setf (journal-end journal) tick))))
 
 (defun arguments-to-keep (arguments)
-  "Return the externalized ARGUMENTS for a journal entry: functions are copied with the values they
-close over. See RESTORED-ARGUMENTS."
+  "Return the externalized ARGUMENTS for a journal entry: functions are copied with the values that
+they close over. See RESTORED-ARGUMENTS."
   (if (some #'functionp arguments) (memorize-arguments arguments) arguments))
 
 (defun restored-arguments (arguments simulation)
@@ -104,11 +104,12 @@ current tick, in the journal and the past of SIMULATION, if SIMULATION keeps the
       (remember simulation operator arguments request))))
 
 (defun settings-by-name (settings)
-  "Return SETTINGS, lists (symbol value), with the names of the parameters as strings."
+  "Return SETTINGS, lists (symbol value), as lists (name value) with the parameters' names as
+strings."
   (loop for (symbol value) in settings collect (list (string-downcase symbol) value)))
 
 (defun settings-by-symbol (settings)
-  "Return SETTINGS, lists (name value), with the symbols of the parameters."
+  "Return SETTINGS, lists (name value), as lists (symbol value) with the parameters' symbols."
   (loop for (name value) in settings
         collect (list (parameter-symbol (find-parameter name)) value)))
 

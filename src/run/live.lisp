@@ -86,8 +86,9 @@ and run. Return the run."
        (or (not journal) (simulation-journal simulation))))
 
 (defun run-to-start (world seed journal)
-  "Return the simulation of WORLD to run live. It is a new simulation if ticks of the old one have
-passed, or if JOURNAL is true and the old one keeps no journal. SEED, if given, seeds the dice."
+  "Return the simulation of WORLD to run live. Make a new simulation if ticks of the last simulation
+of WORLD have passed, or if JOURNAL is true and that simulation keeps no journal. SEED, if given,
+seeds the dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (startable-p simulation journal))
            (end-simulation simulation "it has been started anew")
@@ -135,7 +136,7 @@ current simulation, see MAKE-CURRENT. Return the run."
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
 (defun start-live (robot rate seed journal keep thinking)
-  "Run the world of ROBOT as START-WORLD does. Return false if another thread has replaced ROBOT
+  "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT
 meanwhile."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
@@ -166,14 +167,14 @@ hooks."
                   &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
                     (thinking :real)
                   &allow-other-keys)
-  "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make it
-the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either. A world
-that has run before starts anew, with SEED if SEED is given. The run keeps a journal unless JOURNAL
-is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks, so that
-it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see SET-THINKING:
-with :REAL, plans have a separate thread; otherwise plans react within the ticks. Return the robot
-(manual A). STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the
-robot no longer fits into its map. See reading 238."
+  "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make
+the run the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either.
+A world that has run before starts anew, with SEED if SEED is given. The run keeps a journal unless
+JOURNAL is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks,
+so that it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see
+SET-THINKING: with :REAL, plans have a separate thread; otherwise plans react within the ticks.
+Return the robot (manual A). STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
+MISUSE if the robot no longer fits into its map. See reading 238."
   (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
@@ -190,8 +191,8 @@ robot no longer fits into its map. See reading 238."
 ;; Lisp itself only says that the number of keyword arguments is odd.
 (define-compiler-macro simulator (&whole form &rest arguments)
   (when (and arguments (evenp (length arguments)) (not (keywordp (second arguments))))
-    (doubt-definition "simulator takes one robot, and then keywords: all robots of its map are in ~
-                       its world."))
+    (doubt-definition "simulator takes one robot and keyword arguments; its world contains all ~
+                       robots of the robot's map."))
   form)
 
 (addition stop-simulator)

@@ -76,7 +76,7 @@ missing."
           collect (second datum))))
 
 (defun read-entries (reading)
-  "Return the entries of the journal in READING, and the datum after them."
+  "Return a list of the entries of the journal in READING, and the datum after the entries."
   (loop for datum = (next-datum reading)
         until (tagged-p :end datum)
         collect datum into entries
@@ -113,7 +113,8 @@ journal."
 ;;; Putting the run together.
 
 (defun sole-object (type loaded)
-  "Return the only object of TYPE, a kind, in LOADED. Signals an error unless there is exactly one."
+  "Return the only object of the kind TYPE in LOADED. Signals an error unless there is exactly one
+object of TYPE."
   (let ((objects (remove-if-not (lambda (object) (typep object type)) (loaded-objects loaded))))
     (unless (= 1 (length objects))
       (error "the file has ~R objects of the kind ~(~A~), but a run has one" (length objects) type))

@@ -32,11 +32,12 @@ function."
   (values))
 
 (define-participation participant-origin (participant)
-  "Return the name of PARTICIPANT for messages and restarts, as CALL-USER-CODE takes it."
+  "Return the name of PARTICIPANT for messages and restarts, in the form that CALL-USER-CODE
+requires."
   "a participant of the run")
 
 (define-participation participant-busy-p (participant simulation)
-  "True if PARTICIPANT needs the ticks of SIMULATION to go on."
+  "True if PARTICIPANT needs further ticks of SIMULATION, so that SIMULATION is not idle."
   nil)
 
 (define-participation participant-at-work-p (participant)

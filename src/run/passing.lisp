@@ -8,8 +8,8 @@
 
 (defun check-headless (simulation operator)
   (when (simulation-thread simulation)
-    (reject-use "~(~A~): this simulation runs live, its ticks pass by themselves. ~
-                 Use (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
+    (reject-use "~(~A~): this simulation runs live, so its ticks pass by themselves. Use ~
+                 (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
 (defun check-passable (simulation)
   "Signal MISUSE if this thread is already passing ticks of SIMULATION."
@@ -66,7 +66,7 @@ stopped."
 
 (addition run-ticks)
 (defun run-ticks (count &optional (simulation (current-simulation)))
-  "Pass COUNT ticks of the headless SIMULATION, at most 1e9. Return the tick that is reached. If
+  "Pass COUNT ticks, at most 1e9, of the headless SIMULATION. Return the tick that is reached. If
 SIMULATION is a fork that was rewound, its successor is used. Signals WRONG-ARGUMENT, and MISUSE if
 SIMULATION runs live or is inside a tick, or if another thread passes its ticks. If the error policy
 is :SIGNAL, signals USER-CODE-ERROR after the tick in which the first error in user code occurs. The
@@ -114,17 +114,17 @@ default, that is, LIMIT-P is false, warn once in the run."
   (cond (answer (note-looked-after (simulation-world simulation)))
         ((not (or limit-p (simulation-over simulation)))
          (warn-once '(:limit :run-until) (simulation-world simulation)
-                    (format nil "run-until: its test was still false after ~D ticks, at tick ~D, ~
-                                 and it returned NIL. ~D is the default; (run-until TEST :limit ~
-                                 TICKS) sets another."
+                    (format nil "run-until returned NIL, because its test was still false after ~D ~
+                                 ticks, at tick ~D. The default limit is ~D ticks; (run-until TEST ~
+                                 :limit TICKS) sets another."
                             limit (simulation-tick simulation) limit)))))
 
 (addition run-until)
 (define-with-keywords run-until (predicate &key (limit 100000 limit-p)
                                            (simulation (current-simulation)))
   "Pass ticks of the headless SIMULATION until PREDICATE, a function without arguments, returns
-true, but at most LIMIT. Return the value of PREDICATE and the tick reached; a value of NIL means
-that LIMIT ticks have passed. If no LIMIT was given, a warning says so once in a run. Signals
+true, but at most LIMIT ticks. Return the value of PREDICATE and the tick reached; a value of NIL
+means that LIMIT ticks have passed. If no LIMIT was given, a warning says so once in a run. Signals
 WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
   (check-argument run-until predicate (or (functionp predicate)
                                         (and (symbolp predicate) (fboundp predicate)))
@@ -191,7 +191,8 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
          (settled-p simulation))))
 
 (defun wait-until-idle (simulation seconds)
-  "Wait as AWAIT-IDLE does for a live SIMULATION that another thread paces."
+  "Wait at most SECONDS until the live SIMULATION, whose ticks another thread passes, is idle.
+Return true if it is idle."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (settled-p simulation) (signal-semaphore idle))))

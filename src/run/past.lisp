@@ -168,7 +168,7 @@ tick.")
   "The estimated number of octets that the kept forks of a run may take at most.")
 
 (defun room-for-forks (simulation past)
-  "Return how many forks SIMULATION, which has PAST, may keep."
+  "Return the number of forks that SIMULATION, which has PAST, may keep."
   (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
     (clamp (floor *most-kept-octets* octets) 3 (max 3 (past-limit past)))))
 
@@ -265,7 +265,7 @@ have stopped."
   "a number of forks from 2 to 1000, T for 30 forks, or NIL for none")
 
 (defun begin-keeping (simulation limit)
-  "Make SIMULATION, which this thread owns, keep forks, at most LIMIT, from now on."
+  "Make SIMULATION, which this thread owns, keep at most LIMIT forks from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit))))
     (when (eq simulation *simulation*) (update-rolled-dice simulation past))
     ;; Requests made before this tick, the earliest for REWIND, are not undone by it.

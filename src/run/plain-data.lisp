@@ -239,7 +239,7 @@ symbol."
     (values (word-meaning (subseq text start end)) end)))
 
 (defun tail-follows-p (text position)
-  "True if the tail of a dotted list follows in TEXT at POSITION."
+  "True if TEXT has a dot and the tail of a dotted list at POSITION."
   (and *numbered*
        (char= #\. (char text position))
        (char= #\Space (char-at text (1+ position)))))

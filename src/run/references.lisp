@@ -9,7 +9,7 @@
 ;;; (:the :list ...), dotted lists as (:the :list* ...).
 
 (defun nameable-p (object)
-  "True if DEREFERENCE can find OBJECT by its reference."
+  "True if OBJECT is of a type for which DEREFERENCE can find objects by references."
   (typep object '(or thing attachment robot part designator odometer map kicker recipe)))
 
 (defun externalize-list (list)
@@ -45,7 +45,7 @@ names.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
                  (find-kind-name kind 'part))
-      (reject-use "~S is no reference to an object of a run." (cons kind arguments)))
+      (reject-use "~S is not a reference to an object of a run." (cons kind arguments)))
     (robot-part (robot-in simulation (first arguments)) kind (second arguments))))
 
 (defmacro define-dereference (kind lambda-list &body body)
@@ -61,7 +61,7 @@ reference, and SIMULATION to the simulation."
   (handler-case (dereference (first reference) (internalize-all (rest reference) simulation)
                              simulation)
     (ars-magna-error (trouble) (error trouble))
-    (error () (reject-use "~A is no reference to an object of a run." (short-text reference)))))
+    (error () (reject-use "~A is not a reference to an object of a run." (short-text reference)))))
 
 (defun internalize-all (list simulation)
   (mapcar (lambda (tree) (internalize-tree tree simulation)) list))

@@ -150,8 +150,8 @@ simulation when the entries before the first tick have been repeated."
 (addition with-replay)
 (define-user-macro with-replay ((journal &key until anyway keep) &body body)
   "Run BODY in a fresh headless simulation in which JOURNAL (a journal or the name of its file) has
-been repeated, up to the tick UNTIL or the end of JOURNAL. Robots and parameters are bound as in
-WITH-SIMULATION. Return the values of BODY.
+been repeated, up to the tick UNTIL or the end of JOURNAL. Robots and parameters are bound in BODY
+as in WITH-SIMULATION. Return the values of BODY.
 - BODY begins before any request or change that was made after the tick UNTIL, even by
   continuations.
 - Commands are repeated without their continuations.
@@ -183,7 +183,8 @@ or NIL for the journal of the current simulation up to now."
 
 (addition replay)
 (defun replay (journal &key until anyway)
-  "Repeat JOURNAL as WITH-REPLAY does. Return the simulation and its STATE-DIGEST."
+  "Repeat JOURNAL in a fresh headless simulation, see WITH-REPLAY. Return the simulation and its
+STATE-DIGEST."
   (with-replay ((read-journal-if-file journal 'replay) :until until :anyway anyway)
     (values (current-simulation) (state-digest))))
 

@@ -32,8 +32,8 @@
                          (and (symbolp (first designators)) (first designators)))))
 
 (defun robot-to-start (designator)
-  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of either.
-If the map or definition of a robot has been replaced, the current robot of the same name is
+  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of a robot
+or map. If the map or definition of a robot has been replaced, the current robot of the same name is
 returned."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
@@ -47,7 +47,7 @@ returned."
         robot)))
 
 (defun bind-robot-name (blueprint robot)
-  "Set the global value of the variable named by BLUEPRINT to ROBOT."
+  "Set the global value of the variable that has the name of BLUEPRINT to ROBOT."
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)

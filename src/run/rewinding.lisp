@@ -237,11 +237,11 @@ tick."
 (addition rewind)
 (defun rewind (ticks &optional (simulation (current-simulation)))
   "Take SIMULATION back TICKS ticks, plans included. Return the new simulation, which continues from
-that tick. It becomes the current simulation, with its robots as the values of their variables, and
-is live, at the same rate, if SIMULATION was live. SIMULATION itself is over; its robots take no
-more commands. SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0 to the number of
-ticks that have passed since SIMULATION began to keep forks; 0 undoes the requests and changes since
-the last tick.
+that tick. The new simulation becomes the current simulation, with its robots as the values of their
+variables, and is live, at the same rate, if SIMULATION was live. SIMULATION itself is over; its
+robots take no more commands. SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0
+to the number of ticks that have passed since SIMULATION began to keep forks; 0 undoes the requests
+and changes since the last tick.
 - Requests and changes after that tick are undone. The journal records the rewind.
 - Commands and plans in progress at that tick continue, but programs do not. Continuations of
   commands that are in progress when REWIND is called receive :INTERRUPT; continuations of commands

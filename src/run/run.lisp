@@ -11,7 +11,8 @@
 
 (addition simulation-p)
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
-    "One run: a timeline and a world, with the journal, messages, observers and participants."
+    "A run of a world: its timeline and world, with the journal, messages, observers and
+participants."
   (:fixed
    (timeline nil (or null timeline) "the timeline of the simulation" :part :export)
    (world nil (or null world) "the world that the simulation changes" :part :addition))
@@ -37,7 +38,7 @@ that were rewound to it; or NIL if there was no rewinding")
    (output nil (or null stream) "the stream of an editor to which the simulation's threads write, or
 NIL")
    (messages *message-queue* message-queue
-             "the message queue that the simulation reports to" :export)
+             "the message queue of the simulation" :export)
    (forked-p nil boolean "true if the simulation was forked, perhaps to look ahead")
    (gate nil (or null function) "a function of the simulation that returns how many ticks may pass
 before it is called again" :export)
@@ -55,7 +56,7 @@ altered, because forks share it"
 
 (addition simulation-name)
 (defun simulation-name (simulation)
-  "Return the name of SIMULATION, which is that of its map."
+  "Return the name of SIMULATION, which is the name of its map."
   (timeline-name (simulation-timeline simulation)))
 
 (addition simulation-tick)
@@ -184,7 +185,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 (defun add-observer (function &optional (simulation (current-simulation)))
   "Call FUNCTION with SIMULATION after each of its ticks. Return FUNCTION. Signals WRONG-ARGUMENT."
   (check-argument add-observer function (typep function '(or function (and symbol (not null))))
-                  "a function of a simulation")
+                  "a function with one argument, the simulation")
   (asking (simulation)
     (setf (simulation-observers simulation)
           (append (simulation-observers simulation) (list function))))
@@ -308,8 +309,8 @@ in progress or waiting, are interrupted; further requests are refused."
 
 (defun state-digest (&optional (simulation (current-simulation)) participants)
   "Return a 64-bit number computed from the exact state of SIMULATION. Two runs with the same digest
-at a tick go the same way from there, given the same requests. The digest covers the world, robots
-and parts, commands in progress, parameters and dice: everything that DEFINE-KIND declares as state.
+at a tick continue in the same way, given the same requests. The digest covers the world, robots and
+parts, commands in progress, parameters and dice: everything that DEFINE-KIND declares as state.
 - Requests made since the last tick count only after the next tick.
 - Continuations of commands do not count.
 - Plans count if PARTICIPANTS is true.

@@ -25,7 +25,7 @@ the first element and a space before each other element."
                   (write-value tail inventory out))))
 
 (defun write-value (value inventory out)
-  "Write VALUE to OUT, or its number in INVENTORY, if it has one."
+  "Write VALUE to OUT. If VALUE has a number in INVENTORY, write the number instead."
   (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
     (cond (number (format out "@~D" number))
           ((consp value) (write-elements value inventory out #\()
@@ -104,13 +104,14 @@ OBJECT is an array. Return what is left after this line, in the same form, or NI
   (mapcar (lambda (field) (symbol-name (kind-slot-name field))) fields))
 
 (defun batch-line (batch)
-  "Return the line that defines the numbers of BATCH."
+  "Return the line that says how many objects of which shape BATCH has; so it defines their
+numbers."
   (destructuring-bind (kind . more) (batch-shape batch)
     (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
                        ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))
 
 (defun inventory-lines (inventory seal)
-  "Call the function SEAL with each line, a string, for INVENTORY."
+  "Call the function SEAL with each line, a string, of the text of INVENTORY."
   (loop for (nil . name) in (inventory-outer inventory)
         do (funcall seal (datum-text (cons :found name))))
   (let ((batches (batches-in-order inventory)))

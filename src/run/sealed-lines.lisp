@@ -94,7 +94,7 @@ Signals an error if LINE is damaged."
       (values datum sum))))
 
 (defun next-line (in)
-  "Return the next line of IN that is no comment, or NIL."
+  "Return the next line of IN that is not a comment, or NIL at the end."
   (loop for line = (read-short-line in)
         unless (and line (comment-line-p line)) return line))
 
@@ -136,5 +136,6 @@ sentence."
 (defun check-format (found expected)
   "Signal an error unless FOUND, the format number of a file, is EXPECTED."
   (unless (eql expected found)
-    (error "another version of the simulator wrote it, in format ~A; this one reads format ~D"
+    (error "another version of the simulator wrote the file, in format ~A; this version reads ~
+            format ~D"
            (safe-text found) expected)))

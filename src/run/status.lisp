@@ -65,7 +65,7 @@ slots with the roles :STATE and :MEMORY."))
         :contents (mapcar #'princ-to-string (storage-bin-contents bin))))
 
 (defun designator-status (designator)
-  "Return the plist of DESIGNATOR for STATUS."
+  "Return the property list that describes DESIGNATOR in the value of STATUS."
   (let ((data (designator-data designator)))
     (list :number (designator-number designator)
           :type (designator-type designator)
@@ -120,8 +120,8 @@ it; or NIL."
            :designators (mapcar #'designator-status (live-designators robot))))))
 
 (defun resolve-robot (robot operator)
-  "Return the robot that ROBOT, an argument of OPERATOR, means: a robot, the name of one, or, if it
-is NIL, the first of the current simulation."
+  "Return the robot that ROBOT means: a robot, the name of a robot, or NIL for the first robot of
+the current simulation. Errors name OPERATOR."
   (if robot
       (find-robot robot)
       (or (first (simulation-robots (current-simulation)))

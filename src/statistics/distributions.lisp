@@ -37,8 +37,8 @@ for k (Lentz's method as in Thompson and Barnett 1986)."
 ;;; binomial probabilities").
 
 (defun stirling-error (x)
-  "Return log gamma(X+1) less Stirling's formula, (X+1/2) log X - X + log sqrt(2 pi), for X from
-1/2: by DLMF 5.11.1 from 16 on, and below by Gudermann's steps of 1845."
+  "Return the error of Stirling's formula, log gamma(X+1) - ((X+1/2) log X - X + log sqrt(2 pi)),
+for X from 1/2: for X from 16 by DLMF 5.11.1, below by the recurrence of Gudermann (1845)."
   (declare (type double-float x) #.*hot*)
   (let ((rest 0d0))
     (declare (type double-float rest))
@@ -94,14 +94,14 @@ fraction (the even part of DLMF 8.9.2)."
         (t (* a (poisson-density a x) (gamma-fraction a x)))))
 
 (defun chi-square-tail (x freedom)
-  "Return the probability that chi-square of FREEDOM degrees, 1 or more, is above X, 0 or more
-(Abramowitz and Stegun 26.4.19)."
+  "Return the probability that a chi-square variable with FREEDOM degrees of freedom, 1 or more, is
+above X, 0 or more (Abramowitz and Stegun 26.4.19)."
   (upper-gamma (/ (double freedom) 2) (/ (double x) 2)))
 
 ;;;; The normal distribution
 
 (defun normal-probability (z)
-  "Return the probability that a standard normal number is below Z (DLMF 7.11.2)."
+  "Return the probability that a standard normal variable is below Z (DLMF 7.11.2)."
   (declare (type double-float z))
   (let ((half (/ (* z z) 2)))
     (if (minusp z)
@@ -109,7 +109,8 @@ fraction (the even part of DLMF 8.9.2)."
         (- 1 (/ (upper-gamma .5d0 half) 2)))))
 
 (defmacro ratio-of-polynomials (x above below)
-  "Return the ratio of the polynomials of X with the coefficients ABOVE and BELOW, from X^0 on."
+  "Return the ratio of two polynomials of X. ABOVE and BELOW are the lists of their coefficients,
+from X^0 on."
   (flet ((horner (coefficients)
            (reduce (lambda (coefficient form) `(+ ,coefficient (* ,x ,form)))
                    coefficients :from-end t)))
@@ -161,7 +162,8 @@ fraction (the even part of DLMF 8.9.2)."
           (if (minusp q) (- size) size)))))
 
 (defun normal-critical-value (confidence)
-  "Return the z for which standard normal numbers are from -z to z with probability CONFIDENCE."
+  "Return the z for which a standard normal variable is between -z and z with the probability
+CONFIDENCE."
   (declare (type double-float confidence))
   (- (normal-quantile (/ (- 1 confidence) 2))))
 
@@ -262,8 +264,8 @@ integer from -1 to TRIALS."
 ;;; Student's t.
 
 (defun student-critical-value (confidence freedom)
-  "Return the t for which Student's t of FREEDOM degrees is from -t to t with a probability of
-CONFIDENCE."
+  "Return the t for which a variable with Student's distribution of FREEDOM degrees of freedom is
+between -t and t with the probability CONFIDENCE."
   (declare (type double-float confidence freedom))
   (multiple-value-bind (y x) (beta-quantile confidence .5d0 (/ freedom 2))
     (declare (type (double-float 0d0) x y))

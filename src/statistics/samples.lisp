@@ -28,7 +28,7 @@ WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15.
   (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
 (defmacro check-share (operator place)
-  "Signal WRONG-ARGUMENT unless PLACE lies between 0 and 1; return it as a double-float."
+  "Return the value of PLACE as a double-float. Signal WRONG-ARGUMENT unless it is between 0 and 1."
   `(progn
      (check-argument ,operator ,place (inner-share-p ,place)
                      "a number between 0 and 1, such as .95, at least 1e-12 from both")
@@ -60,8 +60,8 @@ WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15.
         finally (return sum)))
 
 (defun mean-of (sample)
-  "Return the mean of SAMPLE, which is not empty, corrected by the mean of the residuals. It is
-exact to the last digits; the mean of equal numbers is exactly that number."
+  "Return the mean of SAMPLE, which is not empty, corrected by the mean of the residuals. The mean
+is exact to the last digits; the mean of equal numbers is exactly that number."
   (declare (type doubles sample) #.*hot*)
   (let* ((size (double (length sample))) (rough (/ (sum sample) size)))
     (+ rough (/ (loop with rest of-type double-float = 0d0
@@ -70,8 +70,8 @@ exact to the last digits; the mean of equal numbers is exactly that number."
                 size))))
 
 (defun variance-of (sample)
-  "Return the variance of SAMPLE, of two numbers or more, by the corrected two-pass formula (Chan,
-Golub and LeVeque 1983, formula 1.7)."
+  "Return the variance of SAMPLE, which has at least two numbers, by the corrected two-pass formula
+(Chan, Golub and LeVeque 1983, formula 1.7)."
   (declare (type doubles sample) #.*hot*)
   (let ((mean (mean-of sample)) (squares 0d0) (rest 0d0) (size (length sample)))
     (declare (type double-float mean squares rest))
@@ -86,7 +86,7 @@ Golub and LeVeque 1983, formula 1.7)."
 
 (defun magnification (sample)
   "Return the power of two by which the numbers of SAMPLE are multiplied before they are squared or
-cubed. It is 1 unless all numbers are very small."
+cubed. The power is 1 unless all numbers of SAMPLE are very small."
   (let ((largest (reduce #'max sample :key #'abs :initial-value 0d0)))
     (if (< 0d0 largest 1d-75)
         (scale-float 1d0 (min 1000 (- (nth-value 1 (decode-float largest)))))
@@ -97,8 +97,8 @@ cubed. It is 1 unless all numbers are very small."
   (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
 
 (defun deviation-of (sample &optional (size 1))
-  "Return the standard deviation of the mean of SIZE numbers from the distribution of SAMPLE, which
-has two numbers or more."
+  "Return the estimated standard deviation of the mean of SIZE numbers from the distribution of
+which SAMPLE, at least two numbers, is a sample."
   (let ((factor (magnification sample)))
     (/ (sqrt (/ (variance-of (magnified sample factor)) size)) factor)))
 

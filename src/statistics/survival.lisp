@@ -11,7 +11,7 @@ EVENTS-NAME are their names as arguments of OPERATOR."
     (reject-argument operator times-name times "a list or vector of numbers from 0 to 1e15"))
   (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
     (reject-argument operator events-name events
-                     "a list or vector of T (or 1, done at that time) and NIL (or 0, cut short)"))
+                     "a list or vector of T or 1 (done at that time) and NIL or 0 (censored)"))
   (check-same-length operator events-name events times))
 
 (defun sorted-events (times events &optional mark)
@@ -80,15 +80,15 @@ unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is b
 (addition median-survival)
 (defun median-survival (curve)
   "Return the median survival time of CURVE, a result of SURVIVAL-CURVE, and its bounds, low and
-high. These are the first times at which the survival, its low bound and its high bound are a half
-or less (Brookmeyer and Crowley 1982). A value is NIL if there is no such time. Signals
-WRONG-ARGUMENT."
+high. The median and its bounds are the first times at which the survival, its low bound and its
+high bound are a half or less (Brookmeyer and Crowley 1982). A value is NIL if there is no such
+time. Signals WRONG-ARGUMENT."
   (check-argument median-survival curve
                   (and (proper-list-p curve)
                        (every (lambda (step)
                                 (and (proper-list-p step) (= 6 (length step)) (every #'realp step)))
                               curve))
-                  "a list that SURVIVAL-CURVE returned")
+                  "a survival curve, as SURVIVAL-CURVE returns")
   (flet ((halved (reader)
            (first (find-if (lambda (step) (<= (funcall reader step) (+ .5d0 1d-12))) curve))))
     (values (halved #'fourth) (halved #'fifth) (halved #'sixth))))

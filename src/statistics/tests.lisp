@@ -5,13 +5,13 @@
 (addition mcnemar-test)
 (defun mcnemar-test (first second)
   "Return the p value of McNemar's exact test of the hypothesis that two methods are equally good.
-Both methods have made the same trials: FIRST is the number of trials in which only the first method
-succeeded, SECOND the number in which only the second succeeded. Trials with equal outcomes do not
-count. The test never rejects a true hypothesis more often than its level says (McNemar 1947;
+The two methods have made the same trials. FIRST is the number of trials in which only the first
+method succeeded, SECOND the number in which only the second succeeded. Trials with equal outcomes
+do not count. The test never rejects a true hypothesis more often than its level says (McNemar 1947;
 Fagerland, Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second
-value is the mid-p value of that paper, which is less conservative and usually more exact. Both
-values are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to
-1e9."
+value is the mid-p value of that paper, which is less conservative and usually more exact. The p
+value and the mid-p value are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are
+integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))
@@ -67,7 +67,7 @@ values are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are 
 
 (defun tail-share (sizes sum grain resamples dice)
   "Return the probability that the sum of SIZES, which are at most 1, with random signs is at least
-SUM or at most -SUM. It is estimated by RESAMPLES draws of tilted signs."
+SUM or at most -SUM. The probability is estimated by RESAMPLES draws of tilted signs."
   (let* ((tilt (find-tilt sizes sum))
          (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
@@ -166,11 +166,11 @@ the probability that the mean of DIFFERENCES, a list or vector of numbers, is at
 as observed, if the sign of each difference is random.
 
 The second value is true if p is exact, computed from all combinations of signs (Pagano and
-Tritchler 1983). This is so for up to 19 numbers, and for more numbers if many are equal or whole.
-Otherwise p is estimated from RESAMPLES draws of signs and is never below 1/(RESAMPLES + 1). SEED,
-an integer, seeds the draws, so p is the same each time. If RARE-TOO is true, a p of at most 1/20 is
-estimated again by importance sampling (Harrison 2012), which can return smaller values; use it if
-the test is one of many.
+Tritchler 1983). The value is exact for up to 19 numbers, and for more numbers if many are equal or
+whole. Otherwise p is estimated from RESAMPLES draws of signs and is never below 1/(RESAMPLES + 1).
+SEED, an integer, seeds the draws, so p is the same each time. If RARE-TOO is true, a p of at most
+1/20 is estimated again by importance sampling (Harrison 2012), which can return smaller values; use
+it if the test is one of many.
 
 Sums that differ only by rounding count as equal. Without numbers, or if all numbers are 0, p is 1;
 for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to

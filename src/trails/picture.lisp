@@ -8,8 +8,9 @@
   '(("success" 0 #x0C3C9C 3/2 nil "succeeded") ("limit" 4 #xB07000 2 (6 3) "came to the limit")
     ("failure" 1 #xC22418 5/2 nil "failed")
     ("error" 3 #x000000 5/2 (2 3) "broke off with an error"))
-  "Lists (outcome marker color width dashes words), in the order of the legend. Ways are drawn in
-this order too, so that failures, which matter most, lie above others.")
+  "How to draw ways, by outcome: lists (outcome marker color width dashes words), in the order of
+the legend. Ways are drawn in this order, too, so that failed trials, which matter most, are drawn
+above others.")
 
 (defun outcome-look (way)
   (rest (assoc (way-outcome way) *outcome-looks* :test #'string=)))
@@ -37,7 +38,7 @@ this order too, so that failures, which matter most, lie above others.")
 (defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
 (defun draw-arrows-of (canvas ways)
-  "Draw arrowheads on WAYS, as many as fit without overlaps."
+  "Draw arrowheads on the lines of WAYS, as many as fit without overlaps."
   (draw-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
                                                    :color (second (outcome-look way))))))

@@ -63,7 +63,7 @@ positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
-  "Draw WAYS, lists of a robot's name and of pieces, in the order of robots."
+  "Draw WAYS, lists of a robot's name and the pieces of its way, in the order of the robots."
   (let* ((moved (loop for way in ways for position from 0
                       when (moved-p way)
                         collect (cons position (pieces-in-pixels (rest way))))))

@@ -9,7 +9,8 @@
   (trial 0 integer "the number of the trial of the way" :export)
   (outcome "" string "the outcome of the trial: \"success\", \"failure\", \"limit\" or
 \"error\"" :export)
-  (pieces '() list "the pieces of the way, lists of points (x . y), in order" :export))
+  (pieces '() list "the pieces of the way, in order: lists of points (x . y) without
+jumps" :export))
 
 (define-record (trail (:constructor make-trail (robot)))
   "The positions of ROBOT from the beginning of a run up to now."
@@ -89,7 +90,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
             (append (list (svref points 0)) (nreverse kept) (list (svref points last))))))))
 
 (defun pieces-in-pixels (pieces)
-  "Return PIECES of a way as lists x y ... in pixels, simplified for drawing."
+  "Return the PIECES of a way as lists x y ... in pixels, simplified for drawing."
   (loop for piece in pieces
         collect (loop for (x . y) in (straightened piece (/ 1/2 graphics-scale*))
                       collect (to-pixels x) collect (to-pixels y))))
@@ -156,11 +157,11 @@ and [")
     (file &key journal (every 1) until robots anyway)
   "Replay a run and write the positions of its robots to FILE, a CSV table. Return the truename of
 FILE. JOURNAL is a journal or a file with a journal, by default the journal of the current
-simulation up to now. There is a row every EVERY ticks, up to the tick UNTIL, for each robot, or
-only for the robots that ROBOTS, a name or a list of names, names. A row has the tick; the robot;
-its x and y in metres and its heading in radians; the same three numbers as estimated by the robot's
-main odometer, in coordinates of the map; the things in its hands; and the place type that the robot
-sensed last. If ANYWAY is true, definitions may have changed since the run.
+simulation up to now. The table has a row for each robot every EVERY ticks, up to the tick UNTIL.
+ROBOTS, a name or a list of names, restricts the table to these robots. A row has the tick; the
+robot; its x and y in metres and its heading in radians; the same three numbers as estimated by the
+robot's main odometer, in coordinates of the map; the things in its hands; and the place type that
+the robot sensed last. If ANYWAY is true, definitions may have changed since the run.
 
 FILE may be new, empty, or a table that SAVE-TRAJECTORY has written, which is replaced. Signals
 WRONG-ARGUMENT, UNKNOWN-NAME, the errors of REPLAY, and MISUSE if there is no journal, or if FILE is
