@@ -73,7 +73,7 @@
       (is (= 1 calls))
       (is (= 1 (count-if (lambda (message)
                            (mentions-p (base:message-text message)
-                                       "It calls for the debugger (look)"))
+                                       "Drawing code has called the debugger (look)"))
                          (base:take-messages)))))))
 
 (test awaiting.a-line-that-waits-for-plans-can-answer-what-they-wait-for
@@ -122,7 +122,7 @@
       (window::give-line conversation "rewind 10")
       (window::begin-line-with conversation "turn ")
       (is (has-words-p (said-in window)
-                       "REWIND 10: first answer the break" "TURN: first"))
+                       "REWIND 10: answer the break first" "TURN: answer"))
       (is (equal "" (keys-given window)))
       (window::give-line conversation "(describe 1)")
       (is (mentions-p (keys-given window) "(describe 1)")))))

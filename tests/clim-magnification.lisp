@@ -46,10 +46,10 @@
       (window::com-smaller)
       (is (= 1 (window::window-magnification window)))
       (window::com-smaller)
-      (is (mentions-p (said-in window) "Smaller than that nothing could be read"))
+      (is (mentions-p (said-in window) "The window is at its smallest size"))
       (dotimes (times 10) (window::com-larger))
       (is (<= (window::window-magnification window) window::+most-magnified+))
-      (is (mentions-p (said-in window) "Larger than that")))))
+      (is (mentions-p (said-in window) "The window is at its largest size")))))
 
 (test magnification.points-where-the-mouse-is
   "A click on the screen picks what is drawn there, a drag of a splitter follows."

@@ -39,7 +39,7 @@
     (let ((pane (seen-plans window)))
       (click-on pane (lambda (subject)
                        (and (window::button-p subject)
-                            (string= "Which plans are there?" (window::button-label subject)))))
+                            (string= "List the plans" (window::button-label subject)))))
       (is (equal '("plan") (lines-given window))))))
 
 (test plan-pane.shows-the-tasks

@@ -45,9 +45,9 @@
         (is (not (told-p "BOX#1")))
         (window::zoom pane 2)
         (is (told-p "Cell 1, 2"))
-        (window::hint window "That is now.")
+        (window::hint window "The run is at this tick now.")
         (window::repaint pane)
-        (is (told-p "That is now.") "which stays until the mouse moves")
+        (is (told-p "The run is at this tick now.") "which stays until the mouse moves")
         (window::handle-hover pane 28 36)
         (window::rearrange window)
         (is (equal "" (window::window-hint window)) "panes may have moved")))))
@@ -181,7 +181,7 @@ leads to both."
 (test pointing.the-right-button-offers-lines
   (in-window (window robot)
     (let ((pane (painted-world window)))
-      (is (equal '("Cell 15, 2" "Tell what it is" "Go there   go-to 15.50 2.50"
+      (is (equal '("Cell 15, 2" "Describe it" "Go there   go-to 15.50 2.50"
                    "Put the robot here   pos 15.50 2.50")
                  (offered pane 124 20)))
       (is (window::popup-open-p window))
@@ -319,7 +319,7 @@ leads to both."
       (move-mouse title 5 5)
       (is (mentions-p (window::window-hint window) "BOX#1 to 15.50, 2.50"))
       (window::handle-drag pane 5000 20)
-      (is (mentions-p (window::window-hint window) "BOX#1: that is not on the map"))
+      (is (mentions-p (window::window-hint window) "BOX#1: this place is not on the map"))
       (setf (window::pane-drag pane) nil)
       (move-mouse title 5 5)
       (is (mentions-p (window::window-hint window) "Click to fold")))))
@@ -373,7 +373,7 @@ leads to both."
     (lay-out window 640 480)
     (let ((pane (pane window 'window::bar)))
       (is (= (length window::*buttons*) (length (window::pane-subjects pane))))
-      (is (equal "Let time stand still, or go on (key: space)"
+      (is (equal "Pause the run, or let time pass again (key: space)"
                  (window::hover-text pane 20 12)))
       (loop for (nil left nil right) in (window::pane-subjects pane)
             do (is (<= 0 left right 640))))))

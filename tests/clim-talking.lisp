@@ -163,7 +163,7 @@
       (is (not (mentions-p (window::time-text window) "waits for your answer")))
       (window::give-line conversation "(list (read) 2)")
       (is (equal "(list (read) 2)" (await-in conversation news #'window::line-awaiting-input)))
-      (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- control-C"))
+      (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- Control-C"))
       (is (mentions-p (window::time-text window) "; a program waits for your answer"))
       (is (equal "Answer> " (first (await-in conversation news #'window::line-shown))))
       (window::give-key conversation "half")

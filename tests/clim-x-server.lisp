@@ -276,8 +276,8 @@ server blackens what is resized, and has it painted by what it sends to the wind
                                  (mapcar #'base:message-text
                                          (base:take-messages
                                           (run:simulation-messages simulation))))))
-               (is-true (has-words-p said "the X server has gone" "The line under way"
-                                     "signal-semaphore" "not done: turn 1")
+               (is-true (has-words-p said "the X server has gone" "The running line"
+                                     "signal-semaphore" "not run: turn 1")
                         "~A" said)))
         (run:stop-clock simulation)))))
 

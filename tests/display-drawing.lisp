@@ -123,7 +123,7 @@
         (told "coordinates" (canvas:draw-line window canvas:draw-gcontext* x y 1d30 0))
         (told "tag that does not exist" (throw 'no-such-tag 1))
         (told "aborted" (abort))
-        (told "drawn too many" (loop (canvas:draw-point window canvas:draw-gcontext* x y)))))))
+        (told "too many calls" (loop (canvas:draw-point window canvas:draw-gcontext* x y)))))))
 
 (test draw-functions.what-does-not-end-is-left
   (with-hand-that-holds (thing robot draw-word)

@@ -161,7 +161,7 @@
             (save 5)
             (let ((said (format nil "~{~A~}" (mapcar #'base:message-text (base:take-messages)))))
               (is (mentions-p said "-0003.svg to "))
-              (is (mentions-p said "-0005.svg are of an older series")))
+              (is (mentions-p said "-0005.svg are left from an older and longer series")))
             (is (every #'probe-file older))
             (save 20)
             (is (null (base:take-messages)))

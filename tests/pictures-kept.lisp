@@ -20,7 +20,7 @@
             (let ((words (princ-to-string condition)))
               (is (or (mentions-p words "librsvg2-bin")
                       (and (mentions-p words "larger than 32767 pixels")
-                           (mentions-p words "What was there is as before")
+                           (mentions-p words "An older file of this name is unchanged")
                            (mentions-p words "Choose a smaller scale")))
                   "~A" words))))
         (is (string= "old" (base:file-text file)))

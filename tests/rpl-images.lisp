@@ -70,7 +70,7 @@
       (is-true (has-words-p text "1 seen-boss" "waits for valve arm since tick 0" "1 plan"
                             "Fold the parts of task 1 away")))
     (ars-magna.rpl-pictures:save-plan-tree path :runner (seen-until 3) :most 2)
-    (is (search "folded away or too many to be shown" (uiop:read-file-string path)))
+    (is (search "not shown: folded, or beyond the limit" (uiop:read-file-string path)))
     (signals base:wrong-argument (ars-magna.rpl-pictures:save-plan-tree path :most 0))))
 
 (test task-tree.marks-stand-out-on-white

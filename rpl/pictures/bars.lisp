@@ -5,14 +5,15 @@
 (export '(tick-at))
 
 (defconstant +label-width+ 480
-  "How wide the column with the names of the tasks is at most, in pixels.")
-(defconstant +tick-width+ 8 "How wide a tick is, in pixels, where there are neither few nor many.")
-(defconstant +least-chart+ 280 "How wide all ticks together are at least, in pixels.")
-(defconstant +chart-width+ 900 "How wide all ticks together are at most, in pixels.")
-(defconstant +bar-height+ 14 "How high a bar is, in pixels.")
-(defconstant +lane-height+ 12 "How high commands below a bar are, in pixels.")
-(defconstant +gap+ 5 "How far rows are apart, in pixels.")
-(defconstant +legend-line+ 18 "How far lines of the legend are apart, in pixels.")
+  "The greatest width of the column with the names of the tasks, in pixels.")
+(defconstant +tick-width+ 8
+  "The width of a tick, in pixels, unless the timeline has very few or very many ticks.")
+(defconstant +least-chart+ 280 "The least width of all ticks together, in pixels.")
+(defconstant +chart-width+ 900 "The greatest width of all ticks together, in pixels.")
+(defconstant +bar-height+ 14 "The height of a bar, in pixels.")
+(defconstant +lane-height+ 12 "The height of the commands below a bar, in pixels.")
+(defconstant +gap+ 5 "The gap between rows, in pixels.")
+(defconstant +legend-line+ 18 "The distance between lines of the legend, in pixels.")
 
 (defparameter *looks*
   '((:parts #x5A81C2 :hatching "runs its parts") (:call #xA6BDF7 :dots "commands in a call")
@@ -21,21 +22,22 @@
     (:failure #x15091B :wedge "a failure happened")
     (:command #x19168F :solid "command under way")
     (:trouble #xC41C1A :frame "command that failed"))
-  "Lists (kind color texture text): what the parts of a bar look like, without colours by texture,
-:SOLID, :FRAME or :WEDGE, and what the legend says. The colours are told apart by all eyes and in
-grey: tests/palette.lisp measures it.")
+  "Lists (kind color texture text): the look of each kind of part of a bar, and its text in the
+legend. TEXTURE, a name of a texture or :SOLID, :FRAME or :WEDGE, is used in pictures without
+colours. The colours differ for any colour vision and in grey: tests/palette.lisp measures this.")
 
 (defparameter *end-looks*
   '((:succeeded #x1E9632 "succeeded") (:failed #xE0301E "failed")
     (:evaporated #x606060 "evaporated"))
-  "Lists (outcome color text): what the end of a bar looks like.")
+  "Lists (outcome color text): the colour of the end of a bar, and its text in the legend.")
 
 ;;; Ticks and pixels.
 
 (defstruct (scale (:constructor make-scale (start end &optional (left +label-width+)
                                                           (width +chart-width+)))
                   (:copier nil))
-  "The ticks from START to END, which lie beside each other from LEFT on, WIDTH pixels wide."
+  "A horizontal axis: the ticks from START to END begin LEFT pixels from the left and take WIDTH
+pixels."
   (start 0 :type real :read-only t)
   (end 0 :type real :read-only t)
   (left 0 :type real :read-only t)
@@ -45,20 +47,21 @@ grey: tests/palette.lisp measures it.")
   (max 1 (- (scale-end scale) (scale-start scale))))
 
 (defun x-of-tick (tick scale)
-  "Return where TICK is, in pixels from the left."
+  "Return the x coordinate of TICK on SCALE, in pixels."
   (+ (scale-left scale)
      (* (scale-width scale) (/ (- tick (scale-start scale)) (scale-span scale)))))
 
 (defun tick-at (x scale)
-  "Return the tick that is X pixels from the left in SCALE, a whole number; NIL if none is there."
+  "Return the tick, a whole number, at the x coordinate X on SCALE. Return NIL if SCALE has no tick
+at X."
   (let ((tick (+ (scale-start scale)
                  (round (* (scale-span scale) (- x (scale-left scale))) (scale-width scale)))))
     (and (<= (scale-left scale) x) (<= (scale-start scale) tick (scale-end scale))
          tick)))
 
 (defun nice-step (span &optional (most 12))
-  "Return how many ticks of SPAN there should be from one label to the next, for about MOST of them:
-1, 2 or 5 times a power of ten."
+  "Return the number of ticks between two labels of an axis that shows SPAN ticks with at most about
+MOST labels. The number is 1, 2 or 5 times a power of ten."
   (loop for power = 1 then (* 10 power)
         thereis (loop for factor in '(1 2 5)
                       when (<= (/ span (* factor power)) most) return (* factor power))))
@@ -68,7 +71,7 @@ grey: tests/palette.lisp measures it.")
     (draw-rectangle canvas draw-gcontext* x y (max 1 width) height t)))
 
 (defun draw-frame (canvas x y width height)
-  "Draw an outline in black, a thick one where there is room, around white."
+  "Draw a white box with a black outline, which is thicker if there is room."
   (with-color black* (draw-rectangle canvas draw-gcontext* x y width height t))
   (let ((thick (if (< width 7) 1 2)))
     (with-gcontext (draw-gcontext* :foreground white*)
@@ -93,7 +96,7 @@ grey: tests/palette.lisp measures it.")
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (max 0 (1- height)))))
 
 (defun colourless-box (canvas texture x y width height)
-  "Draw a box that TEXTURE, one of *LOOKS*, tells from others without colours."
+  "Draw a box in black and white in the look TEXTURE, one of those in *LOOKS*."
   (case texture
     (:solid (box canvas black* x y width height))
     (:frame (draw-frame canvas x y width height))
@@ -111,7 +114,7 @@ grey: tests/palette.lisp measures it.")
   (with-color color (draw-glyphs canvas draw-gcontext* x y text)))
 
 (defun fitted (text width)
-  "Return TEXT, or its beginning, if it is to be WIDTH pixels wide; NIL if nothing of use fits."
+  "Return TEXT, cut to fit into WIDTH pixels. Return NIL if only a few characters would fit."
   (let ((count (floor width +character-width+)))
     (cond ((<= (length text) count) text)
           ((>= count 8) (cut text count)))))
@@ -131,7 +134,7 @@ grey: tests/palette.lisp measures it.")
     (box canvas #xA8B4C8 x y 1 +bar-height+)))
 
 (defun write-span (canvas span next y scale)
-  "Write what was waited for in SPAN where there is room before NEXT, a span or NIL, begins."
+  "Write the text of SPAN, a wait, as far as there is room before NEXT, the next span or NIL."
   (let* ((x (x-of-tick (span-start span) scale))
          (end (if next
                   (min (x-of-tick (span-end span) scale) (x-of-tick (span-start next) scale))
@@ -140,17 +143,17 @@ grey: tests/palette.lisp measures it.")
     (when text (write-at canvas (+ x 3) (+ y 11) text #x505868))))
 
 (defun draw-waits (canvas spans y scale)
-  "Draw SPANS of waiting, and above all of them what was waited for."
+  "Draw SPANS, which are waits, and then their texts on top."
   (let ((spans (stable-sort (copy-list spans) #'< :key #'span-start)))
     (dolist (span spans) (draw-span canvas span y scale))
     (loop for (span next) on spans do (write-span canvas span next y scale))))
 
 ;;; Commands stand in a separate lane, so that neither they nor their names lie on others'.
 
-(defconstant +command-size+ 9 "How high the font of commands is, in pixels.")
+(defconstant +command-size+ 9 "The height of the font of commands, in pixels.")
 
 (defun plain-number (token)
-  "Return TOKEN, if it is a number that is no integer, with two decimals; or as it is."
+  "Return the string TOKEN. If it is a number with decimals, keep only two of them."
   (if (and (find #\. token) (every (lambda (char) (find char "+-.0123456789def")) token)
            (find-if #'digit-char-p token))
       (let ((end (position-if (lambda (char) (find char "def")) token))
@@ -159,8 +162,8 @@ grey: tests/palette.lisp measures it.")
       token))
 
 (defun name-of-span (span)
-  "Return the command of SPAN as it is written in a lane: without parentheses and prefix, numbers
-cut to two decimals; of a long one its beginning."
+  "Return the text of the command of SPAN, without parentheses and the prefix rpl-. Numbers are cut
+to two decimals, and a long text to its beginning."
   (let* ((text (string-trim "()" (span-text span)))
          (own (if (eql 0 (search "rpl-" text)) (subseq text 4) text)))
     (cut (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own))) 56)))
@@ -169,20 +172,22 @@ cut to two decimals; of a long one its beginning."
   (if (and (trouble-p (span-error span)) (not in-color*)) black* white*))
 
 (defun place-for-name (length x width from to)
-  "Return where to write the name, LENGTH pixels wide, of a command with a box WIDTH wide from X on:
-on it, after it or before it, between FROM and TO; and whether on it. NIL if there is no room."
+  "Return the x coordinate for the name of a command, LENGTH pixels wide, and whether it is on the
+command's box, which begins at X and is WIDTH pixels wide. The name is on the box, after it or
+before it, between FROM and TO. Return NIL if there is no room."
   (cond ((<= (+ 4 length) width) (values (+ x 2) t))
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))
 
 (defun draw-plate (canvas x y width)
-  "Draw the white ground of a name in a lane at Y, so that no line runs through it."
+  "Draw a white background for a name in a lane at Y, so that no line runs through the name."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* (- x 1) y (+ 2 width) +lane-height+ t)))
 
 (defun write-command (canvas span x y width from to)
-  "Write the command of SPAN, which is WIDTH pixels wide from X on, where there is room between FROM
-and TO; or its beginning on it. Return where that ends."
+  "Write the name of the command of SPAN on its box, which begins at X and is WIDTH pixels wide, or
+beside the box between FROM and TO. Without room, write its beginning on the box. Return the x
+coordinate where box and name end."
   (let* ((name (name-of-span span))
          (per-character (character-width canvas +command-size+))
          (length (* per-character (length name)))
@@ -197,14 +202,14 @@ and TO; or its beginning on it. Return where that ends."
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun command-title (span)
-  "Return the title of SPAN, a command, shown when the pointer is on it."
+  "Return the tooltip of SPAN, a command."
   (let ((code (span-error span)))
     (format nil "~A, ticks ~A to ~A~@[: ~(~A~)~]~@[. ~A~]" (span-text span) (span-start span)
             (span-end span) code (and code (error-code-meaning code)))))
 
 (defun draw-command (canvas span next from y scale)
-  "Draw SPAN, a command, in a lane at Y in which NEXT, a command or NIL, comes after it, and which
-is free from FROM on. Return from where on it is free then."
+  "Draw SPAN, a command, in the lane at Y, which is free from the x coordinate FROM on. NEXT is the
+next command in the lane, or NIL. Return the x coordinate from which the lane is free then."
   (let ((x (x-of-tick (span-start span) scale)) (width (span-width span scale))
         (to (if next
                 (x-of-tick (span-start next) scale)
@@ -227,7 +232,8 @@ is free from FROM on. Return from where on it is free then."
                 (* 2 half) (* 3 half)))))
 
 (defun draw-mark (canvas outcome x y)
-  "Draw how a task ended: a line, crossed if it failed, struck through if ended. NIL: it goes on."
+  "Draw the mark at the end of a task by its OUTCOME: a line, which is crossed out if the task
+failed, and struck through if it was ended. Draw nothing if OUTCOME is NIL."
   (let ((color (second (assoc outcome *end-looks*))))
     (when color
       (box canvas color (- x 1) y 2 +bar-height+)
@@ -247,7 +253,7 @@ is free from FROM on. Return from where on it is free then."
   (remove kind (bar-spans bar) :key #'span-kind :test-not #'eq))
 
 (defun draw-bar (canvas bar y scale)
-  "Draw BAR with its upper edge at Y."
+  "Draw BAR, a task, with its upper edge at Y."
   (let ((x (x-of-tick (bar-start bar) scale)))
     (with-subject (canvas bar)
       (look-box canvas (if (bar-call-p bar) :call :parts)

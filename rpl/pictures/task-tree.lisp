@@ -4,18 +4,19 @@
 
 (export '(draw-task-tree fold-mark))
 
-(defconstant +indent+ 12 "How far the parts of a task are to the right of it, in pixels.")
-(defconstant +deepest+ 14 "From what depth on parts are indented no further.")
-(defconstant +mark+ 9 "How wide the mark is that says how a task is, in pixels.")
+(defconstant +indent+ 12 "The indentation of the parts of a task, in pixels.")
+(defconstant +deepest+ 14 "The greatest depth to which parts of tasks are indented.")
+(defconstant +mark+ 9 "The width of the mark for the state of a task, in pixels.")
 
 (defparameter *task-looks*
   '((:running #x1E8232 "runs") (:waiting #x3C64B4 "waits") (:blocked #x6E6E78 "is blocked")
     (:cleaning #xAF6400 "cleans up") (:ending #xC8281E "ends")
     (:stepped #x8C3CB4 "stops at each expression"))
-  "Lists (look color text): the marks of tasks, and what the legend says.")
+  "Lists (look color text): the colour of the mark for each state of a task, and its text in the
+legend.")
 
 (define-record (fold-mark (:constructor make-fold-mark (serial folded-p)))
-  "What folds the parts of a task away, or shows them again."
+  "The triangle on which a click folds or unfolds the parts of a task."
   (serial 0 fixnum "the number of the task whose parts a mark folds away" :export)
   (folded-p nil boolean "the parts are to be folded away"))
 
@@ -31,7 +32,8 @@
 ;;; Marks.
 
 (defun draw-shape (canvas look x y)
-  "Draw the shape of LOOK, +MARK+ pixels wide and high, at X, Y: no two differ by colour alone."
+  "Draw the mark of a task with LOOK at X, Y, +MARK+ pixels wide and high. Each look has a different
+shape, so that colours are not needed."
   (let* ((size +mark+) (right (+ x size)) (low (+ y size)) (middle (floor size 2)))
     (ecase look
       (:running (draw-lines canvas draw-gcontext* (list x y right (+ y middle) x low) :fill-p t))
@@ -45,7 +47,8 @@
       (:stepped (draw-rectangle canvas draw-gcontext* x y (1- size) (1- size))))))
 
 (defun draw-fold-mark (canvas image x y)
-  "Draw a triangle that points down at the parts of the task of IMAGE, right if they are folded."
+  "Draw the triangle that folds the parts of the task of IMAGE at X, Y. It points down, or to the
+right if the parts are folded."
   (let ((folded-p (task-image-folded-p image)))
     (with-subject (canvas (make-fold-mark (task-image-serial image) folded-p))
       (with-color #x404048
@@ -63,7 +66,8 @@
           (and (task-image-folded-p image) (task-image-parts image))))
 
 (defun task-condition (image)
-  "Return what the task of IMAGE waits for, or how else it is, if that is to be said; or NIL."
+  "Return a text about what the task of IMAGE waits for, or about its state. Return NIL if the mark
+of the task says enough."
   (cond ((task-image-awaits image)
          (format nil "waits for ~A since tick ~D~:[, ~A~;~]" (task-image-awaits image)
                  (task-image-since image)
@@ -72,7 +76,7 @@
         (t (task-image-state image))))
 
 (defun draw-row-text (canvas image x y width)
-  "Write the text of IMAGE from X on, down from Y. Return how many lines that took."
+  "Write the name, expression and state of the task of IMAGE at X, Y. Return the number of lines."
   (let* ((head (task-head image)) (plight (task-condition image))
          (room (max 8 (floor (- width x) +character-width+)))
          (one-p (and plight (<= (+ 2 (length head) (length plight)) room))))
@@ -86,7 +90,7 @@
              2))))
 
 (defun draw-calls (canvas image x y width)
-  "Write the calls that the task of IMAGE is in the middle of from X, Y down. Return how many."
+  "Write the calls of plans in which the task of IMAGE is, from X, Y down. Return their number."
   (loop for call in (task-image-calls image)
         for line from 0
         for left = (+ x (* +character-width+ (1+ (min line 8))))
@@ -96,12 +100,12 @@
   (length (task-image-calls image)))
 
 (defun draw-task-texts (canvas image x y width)
-  "Write all that is to be said of IMAGE, from X on, down from Y. Return how many lines that took."
+  "Write all texts about the task of IMAGE from X, Y down. Return the number of lines."
   (let ((lines (draw-row-text canvas image x y width)))
     (+ lines (draw-calls canvas image x (+ y (* lines +line-height+)) width))))
 
 (defun draw-task (canvas image y width)
-  "Draw IMAGE with its upper edge at Y. Return how high that is."
+  "Draw the task of IMAGE with its upper edge at Y. Return its height in pixels."
   (let ((x (+ 6 (* +indent+ (min +deepest+ (task-image-depth image))))))
     (prog1 (with-subject (canvas image)
              (with-color (second (assoc (task-image-look image) *task-looks*))
@@ -114,14 +118,14 @@
 ;;; The whole.
 
 (defun unseen-text (image)
-  "Return how many tasks of IMAGE are not among its rows, in words; NIL if all are."
+  "Return a text about the number of tasks that IMAGE, a tree, leaves out, or NIL if it shows all."
   (let ((unseen (- (tree-image-tasks image) (length (tree-image-rows image)))))
     (and (plusp unseen)
-         (format nil "~D more task~:P, folded away or too many to be shown." unseen))))
+         (format nil "~D more task~:P not shown: folded, or beyond the limit." unseen))))
 
 (defun draw-task-tree (canvas image &key (width 640) (top 0))
-  "Draw IMAGE, as IMAGE-OF-TASKS returns it, on CANVAS, WIDTH pixels wide, from TOP down. Return
-where it ends, in pixels."
+  "Draw IMAGE, a value of IMAGE-OF-TASKS, on CANVAS, WIDTH pixels wide, from TOP down. Return the y
+coordinate of its end, in pixels."
   (let ((y (+ top 4)))
     (write-at canvas 6 (+ y 11)
               (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
@@ -142,11 +146,11 @@ where it ends, in pixels."
 (addition save-plan-tree)
 (define-with-keywords save-plan-tree
     (file &key runner (most 300))
-  "Save a picture of the running tasks in FILE, replacing it: SVG or, where the program
-rsvg-convert is installed, PNG, by the ending of its name. Each task stands below the task around
-it, with a mark for its state, its expression, and what it waits for. RUNNER is the plan runner, by
-default the one in use. At most MOST tasks are drawn, the others counted. Return the file's
-truename. Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
+  "Save a picture of the running tasks in FILE, replacing an older file. The name ends in .svg or,
+if the program rsvg-convert is installed, in .png. Each task is below its parent task, with a mark
+for its state, its expression, and what it waits for. RUNNER is the plan runner, by default the plan
+runner in use. At most MOST tasks are drawn; the others are counted. Return the truename of FILE.
+Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
   (check-argument save-plan-tree most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-tree file))
         (image (call-with-plans-in-use

@@ -8,23 +8,24 @@
 ;;; the turns of a loop do, share a row, so that a long run needs no more rows than a short one.
 
 (defstruct (row (:constructor make-row (bars)) (:copier nil))
-  "Bars of one expression that do not overlap, oldest first."
+  "A row of a timeline: bars of the same expression that do not overlap, oldest first."
   (bars '() :type list))
 
 (defun row-label (row &optional (indent 2) (most 24))
-  "Return which tasks are in ROW, indented by INDENT for each task around them, by MOST in all."
+  "Return the text for the tasks in ROW, indented by INDENT spaces for each parent task, but by at
+most MOST spaces."
   (let ((more (1- (length (row-bars row)))))
     (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (bar-depth (first (row-bars row)))))
             (bar-label (first (row-bars row)))
             (and (plusp more) more))))
 
 (defun fits-p (bar row)
-  "True if BAR can stand in ROW, after the last one there."
+  "True if BAR has the expression of the bars in ROW and starts when the last of them has ended."
   (let ((last (first (last (row-bars row)))))
     (and (eq (bar-form bar) (bar-form last)) (<= (bar-end last) (bar-start bar)))))
 
 (defun lanes (bars)
-  "Return rows for BARS, parts of one row, in order of start."
+  "Return the rows for BARS, which are sorted by start, without the rows for their parts."
   (let ((rows '()))
     (dolist (bar bars (nreverse rows))
       (let ((row (find-if (lambda (row) (fits-p bar row)) rows)))
@@ -40,7 +41,8 @@
                            #'< :key #'bar-serial))))
 
 (defun draw-axis (canvas scale top bottom)
-  "Draw lines at round ticks from TOP down to BOTTOM, and the numbers of these above and below."
+  "Draw vertical lines from TOP to BOTTOM at round numbers of ticks, with these numbers above and
+below."
   (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (x-of-tick tick scale)
@@ -57,7 +59,7 @@
 (defparameter *legend*
   (append (loop for (kind nil nil text) in *looks* collect (list kind text))
           (loop for (outcome nil text) in *end-looks* collect (list outcome text)))
-  "Lists (what text): what colours and marks mean.")
+  "Lists (look text): the meaning of each colour and mark.")
 
 (defun looks-of (bar)
   (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
@@ -70,8 +72,8 @@
     (remove-if-not (lambda (entry) (member (first entry) drawn)) *legend*)))
 
 (defun legend-places (legend width)
-  "Return lists (what text x y) of where the entries of LEGEND stand, in as many lines as it takes
-for them to be WIDTH pixels wide; and how high these are together."
+  "Return two values: lists (look text x y), the positions of the entries of LEGEND in lines of
+WIDTH pixels, and the height of all lines."
   (let ((x 0) (y 0))
     (values (loop for (what text) in legend
                   for wide = (+ 46 (* +character-width+ (length text)))
@@ -83,7 +85,7 @@ for them to be WIDTH pixels wide; and how high these are together."
             (+ y +legend-line+))))
 
 (defun draw-legend (canvas legend x y width)
-  "Draw LEGEND from X, Y on, WIDTH pixels wide. Return where it ends, how far down."
+  "Draw LEGEND at X, Y, WIDTH pixels wide. Return the y coordinate of its end."
   (multiple-value-bind (places height) (legend-places legend width)
     (loop for (what text right down) in places
           do (if (assoc what *looks*)
@@ -95,14 +97,14 @@ for them to be WIDTH pixels wide; and how high these are together."
 ;;; The rows.
 
 (defun row-height (row)
-  "Return how high ROW is, in pixels: with a lane for commands, if there are any."
+  "Return the height of ROW in pixels, with its lane for commands if it has commands."
   (+ +bar-height+ +gap+ (if (some #'bar-commands (row-bars row)) (+ 1 +lane-height+) 0)))
 
 (defun rows-height (rows)
   (reduce #'+ (mapcar #'row-height rows)))
 
 (defun name-to-fit (row width)
-  "Return the label of ROW; if WIDTH, in pixels, is small, with little indentation."
+  "Return the label of ROW, with less indentation if WIDTH, in pixels, is small."
   (if (< width 250) (row-label row 1 7) (row-label row)))
 
 (defun labels-width (rows least most)
@@ -111,7 +113,7 @@ for them to be WIDTH pixels wide; and how high these are together."
          least most))
 
 (defun row-name (row width)
-  "Return what ROW is called, as far as WIDTH pixels have room for it."
+  "Return the label of ROW, cut to fit into WIDTH pixels."
   (fitted (name-to-fit row width) width))
 
 (defun draw-row (canvas row y scale)
@@ -124,7 +126,7 @@ for them to be WIDTH pixels wide; and how high these are together."
     (draw-mark canvas (bar-outcome bar) (x-of-tick (bar-end bar) scale) y)))
 
 (defun draw-rows (canvas rows scale top &key (from 0) to)
-  "Draw ROWS from TOP down, but for those that end above FROM or begin below TO."
+  "Draw ROWS from TOP down, except rows that end above FROM or begin below TO."
   (loop for row in rows
         for y = (+ top 2) then (+ y height)
         for height = (row-height row)
@@ -134,14 +136,14 @@ for them to be WIDTH pixels wide; and how high these are together."
 ;;; As a page.
 
 (define-record (page (:constructor %make-page (rows unseen start end)))
-  "ROWS to be drawn from tick START to END."
+  "The contents of a timeline: ROWS of bars, from tick START to END."
   (rows '() list)
-  (unseen 0 fixnum "how many more rows there would be")
+  (unseen 0 fixnum "the number of rows that were left out")
   (start 0 real "the tick with which a page begins" :export)
   (end 0 real "the tick with which a page ends" :export))
 
 (defun make-timeline-page (bars most)
-  "Return a page of BARS, of top-level tasks, with at most MOST rows."
+  "Return a page with the rows for BARS, the bars of top-level tasks, but at most MOST rows."
   (let* ((all (rows bars)) (unseen (max 0 (- (length all) most))))
     (%make-page (subseq all 0 (- (length all) unseen)) unseen
                 (reduce #'min bars :key #'bar-start) (reduce #'max bars :key #'last-tick))))
@@ -150,17 +152,18 @@ for them to be WIDTH pixels wide; and how high these are together."
   (when (plusp (page-unseen page))
     (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
-(defconstant +title-size+ 13 "How high the font of the title is, in pixels.")
-(defconstant +title-line+ 17 "How far lines of the title are apart, in pixels.")
+(defconstant +title-size+ 13 "The height of the font of the title, in pixels.")
+(defconstant +title-line+ 17 "The distance between lines of the title, in pixels.")
 
 (defun title-lines (canvas page title width)
-  "Return TITLE, or if it is NIL the range of ticks of PAGE, as lines of WIDTH pixels."
+  "Return TITLE as lines of at most WIDTH pixels. If TITLE is NIL, the title is the range of ticks
+of PAGE."
   (lines-within (or title (format nil "Plans from tick ~D to ~D" (page-start page) (page-end page)))
                 width (character-width canvas +title-size+)))
 
 (defun draw-timeline (canvas bars most &optional title)
-  "Draw BARS, of top-level tasks, on CANVAS, in at most MOST rows, below TITLE or, if it is NIL,
-the range of ticks. Return width and height in pixels."
+  "Draw a timeline of BARS, the bars of top-level tasks, on CANVAS, in at most MOST rows below
+TITLE. The default title is the range of ticks. Return the width and height in pixels."
   (let* ((page (make-timeline-page bars most)) (rows (page-rows page))
          (left (labels-width rows 120 +label-width+))
          (scale (make-scale (page-start page) (page-end page) left
@@ -182,17 +185,17 @@ the range of ticks. Return width and height in pixels."
 ;;; In a place of any width.
 
 (defun scale-for (page width)
-  "Return the scale of PAGE in WIDTH pixels, of which names take what they need, up to half."
+  "Return the scale for PAGE in WIDTH pixels. The names of tasks take up to half of them."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
 (define-constant +axis-height+ 26
-  :documentation "How high the numbers above the rows of a page are, in pixels.")
+  :documentation "The height of the tick numbers above the rows of a page, in pixels.")
 
 (defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)
-  "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down. Of its rows only those between FROM and
-TO, in pixels from the top, need be seen; the numbers of ticks are above them as long as any is.
-Return where it ends, in pixels."
+  "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down. FROM and TO, in pixels from the top, are
+the visible part: other rows are not drawn, and the tick numbers stay above the visible rows. Return
+the y coordinate of the end of PAGE, in pixels."
   (let* ((scale (scale-for page width))
          (first (+ top +axis-height+))
          (bottom (+ first (rows-height (page-rows page))))
@@ -207,7 +210,7 @@ Return where it ends, in pixels."
 ;;; In a file.
 
 (defun trace-bars (runner)
-  "Return the bars of the trace of RUNNER. Signals MISUSE if there is none."
+  "Return the bars of the trace of RUNNER. Signals MISUSE if RUNNER has no trace."
   (let ((trace (plan-trace runner)))
     (cond ((null trace)
            (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
@@ -216,7 +219,7 @@ Return where it ends, in pixels."
           (t (reject-use "No plan has run here.")))))
 
 (defun plan-package (bars)
-  "Return the package in which the first plan of BARS was written, as far as that is known."
+  "Return the package of the name of the first plan in BARS that has a name, or else *PACKAGE*."
   (let ((name (some #'bar-name bars)))
     (or (and (symbolp name) (symbol-package name))
         *package*)))
@@ -231,20 +234,21 @@ Return where it ends, in pixels."
 (addition save-plan-timeline)
 (define-with-keywords save-plan-timeline
     (file &key runner (most 1000) (in-color t) title (scale 1))
-  "Save a timeline of the plans that have run in FILE, replacing it: SVG or, where the program
-rsvg-convert is installed, PNG, by the ending of its name. Each task is a bar over ticks, below the
-task around it, with its waits, its commands while they were in progress, and its end. Turns of a
-loop share a row. Return the file's truename. Signals WRONG-ARGUMENT and MISUSE.
-  RUNNER: the plan runner, by default the one in use. It must have kept a trace: see *TRACE-PLANS*.
-  MOST: how many rows are drawn at most.
+  "Save a timeline of the plans that have run in FILE, replacing an older file. The name ends in
+.svg or, if the program rsvg-convert is installed, in .png. Each task is a bar over ticks, below the
+bar of its parent task, with its waits, its commands while they were in progress, and its end. Turns
+of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.
+  RUNNER: the plan runner, by default the plan runner in use. RUNNER must have a trace: see
+*TRACE-PLANS*.
+  MOST: the largest number of rows to draw.
   IN-COLOR: false for black and white.
   TITLE: a string above the picture, instead of the ticks.
   SCALE: from 1 to 10, the size of everything, text included.
-On a page of a paper, 174 mm wide, a picture of up to 820 pixels is readable. That is some 70
-ticks."
+On a page of a paper, 174 mm wide, a picture of up to 820 pixels is readable. Such a picture has
+room for some 70 ticks."
   (check-argument save-plan-timeline title (typep title '(or null string)) "a string or NIL")
   (check-argument save-plan-timeline scale (and (finite-p scale) (<= 1 scale 10))
-                  "a number from 1 to 10, how many times as large as usual the picture is")
+                  "a number from 1 to 10, the magnification of the picture")
   (check-argument save-plan-timeline most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-timeline file))
         (bars (call-with-plans-in-use

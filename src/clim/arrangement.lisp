@@ -13,19 +13,20 @@
 (defconstant +menus-height+ 20 "Height of the bar of menus, in pixels.")
 (defconstant +bar-height+ 26 "Height of the tool bar, in pixels.")
 (defconstant +strip-height+ 36 "Height of the status strip, in pixels.")
-(defconstant +prompt-rows+ 2 "Least number of rows of the place to type in.")
-(defconstant +prompt-height+ 36 "Height of the place to type in with these rows, in pixels.")
-(defconstant +splitter+ 6 "How thick splitters are, in pixels.")
+(defconstant +prompt-rows+ 2 "The least number of rows of the input line.")
+(defconstant +prompt-height+ 36
+  "Height of the input line when it has +PROMPT-ROWS+ rows, in pixels.")
+(defconstant +splitter+ 6 "Thickness of a splitter, in pixels.")
 (defconstant +wide+ 1500
-  "Least width of a window in which plans have a separate column, in pixels.")
+  "The least width, in pixels, of a window that shows plans in a separate column.")
 
 (defconstant +low+ 700
-  "In windows lower than this, in pixels, sections continue beside the transcript.")
-(defconstant +edge+ 6 "How far below the top of a section its first line begins, in pixels.")
+  "In windows less high than this many pixels, sections continue beside the transcript.")
+(defconstant +edge+ 6 "The distance from the top of a section to its first line, in pixels.")
 
 (define-constant +sections+ '(state designators cameras hands bins plan)
   :test #'equal
-  :documentation "The displays of the column, from top to bottom.")
+  :documentation "The displays in the column beside the world, from top to bottom.")
 
 (define-constant +titled+ '(world state designators cameras hands bins plan transcript)
   :test #'equal
@@ -33,13 +34,14 @@
 
 (define-constant +splitters+ '(side-splitter plan-splitter low-splitter)
   :test #'equal
-  :documentation "The parts of the window that can be dragged to make others larger.")
+  :documentation "The bars that the user can drag to make the parts on either side larger or
+smaller.")
 
 (defstruct preferences
-  "The user's preferences for an arrangement. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in
-pixels, or NIL for what suits the window. FOLDED lists sections that show only their title.
-MAGNIFICATION is how many screen pixels wide one of these pixels is, or NIL for what suits the
-screen."
+  "The user's preferences for the layout of a window. DETAILS-WIDTH, PLAN-WIDTH and
+TRANSCRIPT-HEIGHT are in pixels, or NIL for what suits the window. FOLDED lists sections that show
+only their title. MAGNIFICATION is the number of screen pixels for one pixel of the window, or NIL
+for what suits the screen."
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
@@ -57,20 +59,21 @@ screen."
   (if (plan-column-p preferences width) (remove 'plan +sections+) +sections+))
 
 (defun usual-details-width (preferences width)
-  "Return the width of the column of sections, unless the user has set one, in a window WIDTH pixels
-wide: wider if it shows plans, which have long lines."
+  "Return the default width of the column of sections in a window WIDTH pixels wide. The column is
+wider if it shows plans, because plans have long lines."
   (if (or (member 'plan (preferences-folded preferences)) (plan-column-p preferences width))
       (clamp (floor width 3) 200 360)
       (clamp (floor (* 9 width) 20) 200 400)))
 
 (defun details-width (preferences width)
-  "Return how wide the column of sections is in a window WIDTH pixels wide."
+  "Return the width in pixels of the column of sections in a window WIDTH pixels wide."
   (let ((wanted (or (preferences-details-width preferences)
                     (usual-details-width preferences width))))
     (clamp (round wanted) 120 (max 120 (- width 160)))))
 
 (defun plan-width (preferences width)
-  "Return how wide the column of plans is in a window WIDTH pixels wide; 0 if there is none."
+  "Return the width in pixels of the column of plans in a window WIDTH pixels wide. Return 0 if the
+window has no such column."
   (let ((details (details-width preferences width)))
     (if (plan-column-p preferences width)
         (clamp (round (or (preferences-plan-width preferences) (+ details 60)))
@@ -78,7 +81,7 @@ wide: wider if it shows plans, which have long lines."
         0)))
 
 (defun transcript-height (preferences height)
-  "Return how high the transcript, with its title, is in a window HEIGHT pixels high."
+  "Return the height in pixels of the transcript and its title in a window HEIGHT pixels high."
   (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
         (fixed (+ +menus-height+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
     (clamp (round wanted) 40 (max 40 (- height fixed 120)))))
@@ -86,15 +89,17 @@ wide: wider if it shows plans, which have long lines."
 ;;; Sections.
 
 (defun share-height (needs height)
-  "Return how much of HEIGHT each of NEEDS, (section pixels), gets: what it needs, and the rest goes
-to the designators, or the plan; or, if there is not enough, a fair share."
+  "Return lists (section pixels) that divide HEIGHT among the sections of NEEDS, lists (section
+pixels). If HEIGHT is enough, each section gets what it needs, and the plan or the designators get
+the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS. The plan, if it is among them, gets at
-least half if it needs that, since a tree of few lines is useless; the others get fair shares."
+  "Divide HEIGHT, which is not enough for NEEDS. The plan, if NEEDS has it, gets what it needs, up
+to half of HEIGHT or to what the others leave, because a tree of few lines is useless. The other
+sections get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)
@@ -104,12 +109,12 @@ least half if it needs that, since a tree of few lines is useless; the others ge
         (share-fairly needs height))))
 
 (defun whole-lines (height)
-  "Return the most pixels up to HEIGHT that hold whole lines of text, but one line at least."
+  "Return the largest height, up to HEIGHT pixels, that cuts no line of text; at least one line."
   (+ +edge+ (* +line-height+ (max 1 (floor (- height +edge+) +line-height+)))))
 
 (defun share-fairly (needs height)
-  "Return shares of HEIGHT, which is not enough for NEEDS: sections that need less than the others
-get it, the others equally many whole lines."
+  "Divide HEIGHT, which is not enough for NEEDS. Sections that need less than an equal share get
+what they need. The other sections get equally many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
          (small (remove-if (lambda (need) (> (second need) fair)) needs))
          (large (remove-if (lambda (need) (member need small)) needs)))
@@ -119,8 +124,8 @@ get it, the others equally many whole lines."
                 (share-fairly large (- height (reduce #'+ small :key #'second)))))))
 
 (defun share-lines (needs fair height)
-  "Return shares of HEIGHT: each of NEEDS gets the whole lines that FAIR holds; the first get the
-lines that are left, the last the pixels."
+  "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. The first
+sections get one of the remaining lines each, and the last one gets the remaining pixels."
   (let* ((share (min (whole-lines fair) (max 0 fair)))
          (rest (- height (* share (length needs)))))
     (loop for ((section) . more) on needs
@@ -131,7 +136,7 @@ lines that are left, the last the pixels."
           collect (list section (+ share extra)))))
 
 (defun give-rest (shares height)
-  "Return SHARES with what they leave of HEIGHT added to one of them."
+  "Return SHARES, lists (section pixels), with the unused pixels of HEIGHT added to one section."
   (let ((rest (- height (reduce #'+ shares :key #'second)))
         (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
                       (first (last shares)))))
@@ -139,12 +144,13 @@ lines that are left, the last the pixels."
           collect (if (eq share receiver) (list (first share) (+ (second share) rest)) share))))
 
 (defun place-section (section left top width height)
-  "Return the places of the title of SECTION and, below it, of its display, HEIGHT pixels high."
+  "Return the places of the title of SECTION and of the display below it, HEIGHT pixels high."
   (list (list (title-name section) left top width +title-height+)
         (list section left (+ top +title-height+) width (max 0 height))))
 
 (defun place-sections (sections needs folded left top width height)
-  "Return the places of SECTIONS in a column. NEEDS is a function from one to how high it would be."
+  "Return the places of SECTIONS in a column. NEEDS is a function from a section to the height that
+it needs, in pixels."
   (let* ((open (set-difference sections folded))
          (room (- height (* +title-height+ (length sections))))
          (shares (share-height (loop for section in sections
@@ -159,8 +165,8 @@ lines that are left, the last the pixels."
 ;;; The whole.
 
 (defun place-plan-column (preferences width left top height down)
-  "Return the places of the column of plans, which begins at LEFT, and of the splitter after it,
-which is DOWN pixels high."
+  "Return the places of the column of plans and of the splitter to its right. The column begins at
+LEFT and is HEIGHT pixels high; the splitter is DOWN pixels high."
   (let ((plan (plan-width preferences width)))
     (if (plusp plan)
         (append (place-section 'plan left top plan (- height +title-height+))
@@ -168,8 +174,8 @@ which is DOWN pixels high."
         (list (list 'plan-splitter left top 0 0)))))
 
 (defun place-displays (preferences needs width top height down)
-  "Return the places of the row of displays, which begins at TOP and is HEIGHT pixels high; the
-column of sections, DOWN pixels."
+  "Return the places of the displays. The world and the column of plans begin at TOP and are HEIGHT
+pixels high. The column of sections is DOWN pixels high."
   (let* ((column (details-width preferences width))
          (own-p (plan-column-p preferences width))
          (plan (if own-p (+ (plan-width preferences width) +splitter+) 0))
@@ -183,22 +189,23 @@ column of sections, DOWN pixels."
                             (+ left plan) top column down))))
 
 (defun place-low (width top bottom)
-  "Return the places of the splitter above the transcript, which begins at TOP, and of that."
+  "Return the places of the transcript and of the splitter above it. The splitter begins at TOP, and
+the transcript ends at BOTTOM."
   (let ((low (+ top +splitter+)))
     (cons (list 'low-splitter 0 top width +splitter+)
           (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun prompt-height (rows transcript)
-  "Return the height of the place to type in for ROWS. It takes what it needs beyond the usual from
-the transcript, TRANSCRIPT pixels high, of which a little stays."
+  "Return the height in pixels of an input line of ROWS. Additional rows take their height from the
+transcript, TRANSCRIPT pixels high, but the transcript keeps at least 40 pixels."
   (clamp (+ +prompt-height+ (* +line-height+ (- rows +prompt-rows+)))
          +prompt-height+
          (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
 
 (defun arrange (preferences needs width height &optional (rows +prompt-rows+))
-  "Return the places of all parts of a window of WIDTH times HEIGHT pixels by PREFERENCES. NEEDS is
-a function from a section to its wanted height in pixels. What is typed has ROWS; those beyond the
-usual number take room from the transcript."
+  "Return the places of all parts of a window of WIDTH x HEIGHT pixels with the layout PREFERENCES.
+NEEDS is a function from a section to the height that it needs, in pixels. The input line has ROWS;
+additional rows take room from the transcript."
   (let* ((top (+ +menus-height+ +bar-height+))
          (strip (- height +strip-height+))
          (transcript (transcript-height preferences height))

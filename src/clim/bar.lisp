@@ -7,9 +7,10 @@
 
 (defstruct (button (:constructor make-button (label key command help &optional lit-p))
                    (:copier nil))
-  "A button. A click on LABEL, or the character KEY if not NIL, calls COMMAND, a function of no
-arguments; HELP describes that. LIT-P says whether the button is on. In the tool bar, LABEL may be a
-function of the window, and LIT-P is one or NIL."
+  "A button. A click on LABEL calls COMMAND, a function of no arguments. So does the character KEY,
+unless KEY is NIL. HELP describes what COMMAND does. LIT-P is true while the button is on. In the
+tool bar, LABEL may be a function of the window that returns the label, and LIT-P is NIL or a
+function of the window that returns true while the button is on."
   (label "" :read-only t)
   (key nil :type (or null character) :read-only t)
   (command nil :type (or symbol function) :read-only t)
@@ -30,16 +31,16 @@ function of the window, and LIT-P is one or NIL."
 
 (defparameter *buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
-                     "Let time stand still, or go on"
+                     "Pause the run, or let time pass again"
                      (lambda (window) (paused-here-p (window-simulation window))))
-        (make-button "Step" #\. 'com-step "Let one tick pass, and pause")
+        (make-button "Step" #\. 'com-step "Let one tick pass, then pause")
         (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
         (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
         (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
         (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'following-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")
-        (make-button "Help" #\? 'com-help "Tell what keys and mouse do"))
+        (make-button "Help" #\? 'com-help "Show what the keys and the mouse do"))
   "The buttons of the tool bar, from left to right.")
 
 ;;; The pane.
@@ -81,7 +82,7 @@ function of the window, and LIT-P is one or NIL."
   (:documentation "The status strip."))
 
 (defun tick-text (window)
-  "Return in words at which tick WINDOW shows its run; of one that is over, when that ended."
+  "Return a text with the tick that WINDOW shows, or with the last tick if its run is over."
   (let ((snapshot (window-snapshot window)) (simulation (window-simulation window)))
     (format nil "tick ~:[?~;~:*~D~]"
             (if (and simulation (simulation-over simulation))
@@ -89,7 +90,8 @@ function of the window, and LIT-P is one or NIL."
                 (and snapshot (snapshot-tick snapshot))))))
 
 (defun answers-text (window)
-  "Return in words how many programs wait for an answer at the prompt of WINDOW, or NIL."
+  "Return a text that says how many programs wait for an answer at the prompt of WINDOW. Return NIL
+if no program waits."
   (let ((count (length (ars-magna.cli:awaited-answers (window-session window)))))
     (when (plusp count)
       (format nil "the prompt asks how to continue ~:[~R programs~;a program~]"
@@ -116,7 +118,7 @@ function of the window, and LIT-P is one or NIL."
 
 (defmethod hover-text ((pane strip-pane) x y)
   (declare (ignore x y))
-  "Click to have all of the line above among the commands")
+  "Click to print the whole line above among the commands")
 
 (defmethod handle-click ((pane strip-pane) button x y)
   (declare (ignore button x y))

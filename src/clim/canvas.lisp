@@ -20,9 +20,9 @@
    (seen :initform nil :accessor canvas-seen)
    (dx :initform 0 :accessor canvas-dx)
    (dy :initform 0 :accessor canvas-dy))
-  (:documentation "A canvas that paints on a medium of CLIM."))
+  (:documentation "A canvas that paints on a CLIM medium."))
 
-(defvar *inks* (make-hash-table :synchronized t) "Table from colours to CLIM's, filled when used.")
+(defvar *inks* (make-hash-table :synchronized t) "A cache of CLIM's colour objects by colour.")
 
 (defun ink (color)
   (or (gethash color *inks*)
@@ -33,11 +33,12 @@
 ;;; CLIM magnifies the positions of lines and letters, but not their thickness and size.
 
 (defun thickness (canvas gcontext)
-  "Return how thick lines of GCONTEXT are on CANVAS, in screen pixels."
+  "Return the thickness of lines that GCONTEXT draws on CANVAS, in screen pixels."
   (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
 
 (defun dashes (canvas gcontext)
-  "Return a list of the lengths of GCONTEXT's dashes and gaps in screen pixels; NIL if solid."
+  "Return the lengths of dashes and gaps of GCONTEXT in screen pixels, as a list. Return NIL if its
+lines are solid."
   (let ((dashes (gcontext-dashes gcontext)))
     (unless (eq :solid (gcontext-line-style gcontext))
       (loop for length in (if (listp dashes) dashes (list dashes dashes))
@@ -58,7 +59,7 @@
 ;;; Painting.
 
 (defun corners (rectangles)
-  "Return x y width height ... as left top right bottom ...."
+  "Return RECTANGLES, a sequence x y width height ..., as a list left top right bottom ...."
   (loop for (x y width height) on (coerce rectangles 'list) by #'cddddr
         append (list x y (+ x width) (+ y height))))
 
@@ -72,7 +73,7 @@
                            :line-dashes (dashes canvas gcontext))))
 
 (defun arc-points (x y width height start extent)
-  "Return points along the arc, close enough for it to look round."
+  "Return points along an arc, x y ..., close enough together for the arc to look round."
   (let* ((across (/ width 2)) (down (/ height 2))
          (count (max 4 (ceiling (* (abs extent) (sqrt (max 1 across down)))))))
     (loop for index from 0 to count
@@ -87,8 +88,8 @@
                       :line-thickness (thickness canvas gcontext)))
 
 (defun outline-box (x y width height thickness)
-  "Return the box for the middle of a line of THICKNESS, so that the line lies inside the box X, Y,
-WIDTH, HEIGHT of pixels."
+  "Return a box, as values x, y, width and height, for an outline inside the box X, Y, WIDTH,
+HEIGHT. A line of THICKNESS with its middle along the returned box stays inside that box."
   (let ((inset (/ (1- thickness) 2)))
     (values (+ x inset) (+ y inset)
             (max 1 (- width thickness)) (max 1 (- height thickness)))))
@@ -130,11 +131,11 @@ WIDTH, HEIGHT of pixels."
   (coerce (loop for magnification from 1 to +most-magnified+
                 collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
           'vector)
-  "Text styles on CLIM's canvases, by magnification: letters are that many times +CHARACTER-WIDTH+
-wide.")
+  "CLIM text styles by magnification. In the style for magnification N, letters are N times
++CHARACTER-WIDTH+ wide.")
 
 (defun uncut-p (canvas y)
-  "True if text whose base line is at Y is not cut at the upper or lower edge of CANVAS."
+  "True if text with its base line at Y is not cut off at the upper or lower edge of CANVAS."
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
     (or (null bottom) (<= 10 y (- bottom 3)))))
 
@@ -148,12 +149,12 @@ wide.")
 ;;; Where.
 
 (defun shifted (canvas left top right bottom)
-  "Return the box LEFT, TOP, RIGHT, BOTTOM as it is on what CANVAS paints on."
+  "Return the box LEFT, TOP, RIGHT, BOTTOM of CANVAS in the coordinates of its medium."
   (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
     (list (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))))
 
 (defun seen-part (canvas box)
-  "Return the part of BOX, on what CANVAS paints on, that is not clipped away, or NIL."
+  "Return the part of BOX, in coordinates of the medium, that CANVAS does not clip away, or NIL."
   (if (canvas-seen canvas)
       (destructuring-bind ((left top right bottom) (from-x from-y to-x to-y))
           (list box (canvas-seen canvas))
@@ -195,10 +196,11 @@ wide.")
         (let ((box (seen-part canvas (shifted canvas left top right bottom))))
           (when box (push (cons subject box) (canvas-subjects canvas))))))))
 
-(defconstant +subject-slack+ 3 "By how many pixels a click may miss a subject.")
+(defconstant +subject-slack+ 3 "The number of pixels by which a click may miss what it selects.")
 
 (defun subjects-at (subjects x y)
-  "Return what was drawn at X, Y, or near it, the smallest first. SUBJECTS are those of a canvas."
+  "Return the objects drawn at X, Y or close to that point, the smallest first. SUBJECTS are lists
+(object left top right bottom) of what was drawn on a canvas."
   (let ((found (loop for (subject left top right bottom) in subjects
                      when (and (<= (- left +subject-slack+) x (+ right +subject-slack+))
                                (<= (- top +subject-slack+) y (+ bottom +subject-slack+)))
@@ -206,5 +208,6 @@ wide.")
     (cl:map 'list #'cdr (stable-sort found #'< :key #'car))))
 
 (defun subject-at (subjects x y)
-  "Return the smallest of SUBJECTS that was drawn at X, Y, or near it, or NIL."
+  "Return the smallest object that was drawn at X, Y or close to that point, or NIL. SUBJECTS are
+lists (object left top right bottom) of what was drawn on a canvas."
   (first (subjects-at subjects x y)))

@@ -7,10 +7,10 @@
 ;;; thread, for each text that is offered until another program copies something. Long texts go in
 ;;; pieces (X calls this INCR): the receiver deletes each piece to acknowledge it.
 
-(defconstant +piece+ 60000 "Octets in one piece.")
-(defconstant +longest-paste+ 1000000 "Most octets of a text that is pasted.")
+(defconstant +piece+ 60000 "The number of octets in one piece of a long text.")
+(defconstant +longest-paste+ 1000000 "The largest number of octets of a pasted text.")
 (defconstant +patience-with-others+ 2
-  "How long to wait for the next piece from another program, in seconds.")
+  "The seconds to wait for the next piece of a text from another program.")
 
 (defun connect (port)
   (destructuring-bind (&key host display-id protocol &allow-other-keys)
@@ -18,7 +18,7 @@
     (xlib:open-display host :display display-id :protocol protocol)))
 
 (defun make-mailbox (display)
-  "Return an invisible X window, for transfers on DISPLAY."
+  "Return an invisible X window through which DISPLAY transfers texts."
   (xlib:create-window :parent (xlib:screen-root (xlib:display-default-screen display))
                       :x 0 :y 0 :width 1 :height 1 :event-mask '(:property-change)))
 
@@ -28,7 +28,7 @@
   (reject-use "~A. Save it in a file, and type (load \"FILE\")." reason))
 
 (defun octets-in (mailbox)
-  "Return, as a string of octets, the contents of MAILBOX."
+  "Return the contents of the X window MAILBOX, as a string of octets."
   (with-output-to-string (out)
     ;; The X server hands it over in parts; it counts in fours.
     (loop for start from 0 by (floor +piece+ 4)
@@ -40,8 +40,8 @@
                (when (zerop left) (return))))))
 
 (defun take-piece (mailbox)
-  "Return, as a string of octets, the contents of MAILBOX, and empty it; and their type, or NIL if
-there is nothing, and :INCR if pieces will come."
+  "Return the contents of the X window MAILBOX, as a string of octets, and their X type; then delete
+them. The type is NIL if MAILBOX is empty, and :INCR if a text will come in pieces."
   (let ((type (nth-value 1 (xlib:get-property mailbox :mcclim :end 0))))
     (multiple-value-prog1
         (values (if (member type '(nil :incr)) "" (octets-in mailbox))
@@ -49,43 +49,43 @@ there is nothing, and :INCR if pieces will come."
       (when type (xlib:delete-property mailbox :mcclim)))))
 
 (defun await-answer (display)
-  "Wait until the program that was asked on DISPLAY says whether it has handed something over. True
-if it has; :NONE if it cannot; NIL if it says nothing."
+  "Wait for the answer of the program that was asked on DISPLAY for its selection. Return T if the
+program has sent it, :NONE if the program cannot, and NIL if the program does not answer in time."
   (xlib:event-case (display :timeout +patience-with-others+ :discard-p t :force-output-p t)
     (:selection-notify (property) (if property t :none))))
 
 (defun await-piece (display)
-  "Wait until the next piece has come on DISPLAY; true if it has."
+  "Wait for the next piece of a text on DISPLAY. Return true if a piece has come in time."
   (xlib:event-case (display :timeout +patience-with-others+ :discard-p t :force-output-p t)
     (:property-notify (state) (eq state :new-value))))
 
 (defun fetch-pieces (display mailbox)
-  "Return the whole text that comes in pieces on DISPLAY, up to an empty one."
+  "Return the text that arrives in pieces on DISPLAY; an empty piece ends the text. Signals MISUSE
+if a piece does not come or the text is too long."
   (with-output-to-string (out)
     (loop with count = 0
           do (unless (await-piece display)
-               (reject-paste "What was to be pasted has come in part only"))
+               (reject-paste "Only a part of the text to be pasted has arrived"))
              (multiple-value-bind (piece type) (take-piece mailbox)
                (when (and type (string= piece "")) (return))
                (when (< +longest-paste+ (incf count (length piece)))
-                 (reject-paste "That is too long to be pasted"))
-               (write-string piece out)))))
+                 (reject-paste "The text is too long to be pasted")) (write-string piece out)))))
 
 (defun fetch-as (type selection display mailbox)
-  "Return what SELECTION holds as text of TYPE, a string of octets, or NIL if there is none."
+  "Return the text of SELECTION in the X type TYPE, as a string of octets. Return NIL if SELECTION
+has no such text."
   (xlib:convert-selection selection type mailbox :mcclim nil)
   (ecase (await-answer display)
-    ((nil) (reject-paste "The program that holds what is to be pasted does not answer"))
+    ((nil) (reject-paste "The program with the text to be pasted does not answer"))
     (:none nil)
     ((t) (multiple-value-bind (octets type) (take-piece mailbox)
            (cond ((eq type :incr) (fetch-pieces display mailbox))
                  ((< +longest-paste+ (length octets))
-                  (reject-paste "That is too long to be pasted"))
-                 (t octets))))))
+                  (reject-paste "The text is too long to be pasted")) (t octets))))))
 
 (defgeneric fetch-text (port selection)
-  (:documentation "Return the text that SELECTION, :PRIMARY or :CLIPBOARD, holds on the X server of
-PORT, or NIL if there is none. Signals MISUSE if it does not come.")
+  (:documentation "Return the text of SELECTION, :PRIMARY or :CLIPBOARD, on the X server of PORT, or
+NIL if there is none. Signals MISUSE if the text does not arrive or is too long.")
   (:method (port selection) (declare (ignore port selection)) nil)
   (:method ((port clim-clx:clx-port) selection)
     (let ((display (connect port)))
@@ -100,7 +100,8 @@ PORT, or NIL if there is none. Signals MISUSE if it does not come.")
 
 (defstruct (shared (:constructor make-shared (octets)) (:copier nil))
   "A text that is offered to other programs, as a string of OCTETS. TRANSFERS are lists (window
-property start) of texts that go in pieces: START is where the next piece begins."
+property start), one for each program that receives the text in pieces. START is where the next
+piece begins in OCTETS."
   (octets "" :type string :read-only t)
   (selections '() :type list)
   (transfers '() :type list))
@@ -114,7 +115,8 @@ property start) of texts that go in pieces: START is where the next piece begins
   (xlib:change-property window property (list (length (shared-octets shared))) :incr 32))
 
 (defun hand-next-piece (shared window property)
-  "Put the next piece into PROPERTY of WINDOW if one is awaited there; an empty one at the end."
+  "Put the next piece of SHARED into PROPERTY of WINDOW if a program waits for a piece there. An
+empty piece ends the text."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))
@@ -128,7 +130,8 @@ property start) of texts that go in pieces: START is where the next piece begins
         (when (= start end) (removef (shared-transfers shared) transfer))))))
 
 (defun hand-over (shared window target property)
-  "Put the text of SHARED into PROPERTY of WINDOW as TARGET. True if it can be had as that."
+  "Put the text of SHARED into PROPERTY of WINDOW as the X type TARGET. Return true if the text is
+available as TARGET."
   (case target
     (:targets (xlib:change-property window property '(:targets :utf8_string :string) :atom 32
                                     :transform (lambda (name)
@@ -149,8 +152,8 @@ property start) of texts that go in pieces: START is where the next piece begins
                      :time time)))
 
 (defun serve (shared display)
-  "Answer programs that ask on DISPLAY for SHARED, until another program offers its selections, and
-all transfers are complete or given up."
+  "Answer programs that ask on DISPLAY for the text SHARED. Return when another program has copied
+something and all transfers are complete or given up."
   (loop while (or (shared-selections shared) (shared-transfers shared))
         always
            (xlib:event-case (display :timeout (if (shared-selections shared)
@@ -181,8 +184,8 @@ all transfers are complete or given up."
         (push selection (shared-selections shared))))))
 
 (defgeneric share-text (port text selections)
-  (:documentation "Offer TEXT to other programs on the X server of PORT, by each of SELECTIONS,
-:PRIMARY or :CLIPBOARD, until one of them copies something.")
+  (:documentation "Offer TEXT to other programs on the X server of PORT as each of SELECTIONS, a
+list of :PRIMARY or :CLIPBOARD or both. The offer ends when another program copies something.")
   (:method (port text selections) (declare (ignore port text selections)))
   (:method ((port clim-clx:clx-port) text selections)
     (let ((display (connect port)) (shared (make-shared (encoded text))))

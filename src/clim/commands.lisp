@@ -11,7 +11,7 @@
 ;;; Running. A fork or trial is not live: there the prompt lets ticks pass.
 
 (defun steer (window function line)
-  "Call FUNCTION with the simulation of WINDOW if that is live; else give LINE to the prompt."
+  "Call FUNCTION with the simulation of WINDOW if it is live. Otherwise send LINE to the prompt."
   (let ((simulation (window-simulation window)))
     (if (live-p simulation)
         (funcall function simulation)
@@ -26,7 +26,7 @@
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
   (if (paused-here-p (window-simulation window)) (com-resume) (com-pause)))
 
-(defconstant +back+ 10 "How many ticks a step back is.")
+(defconstant +back+ 10 "The number of ticks that the button Back goes back.")
 
 ;; This goes back some ticks, as REWIND does, or to the first tick there is. It pauses the run, as
 ;; STEP does, since ticks that pass would undo it at once.
@@ -42,22 +42,24 @@
       (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
 (defun change-rate-to (window rate)
-  "Set the rate of the run of WINDOW to RATE, if its ticks pass by themselves."
+  "Set the tick rate of the run of WINDOW to RATE, if its ticks pass by themselves."
   (let ((simulation (window-simulation window)))
     (cond ((live-p simulation)
            (set-rate rate simulation)
-           (say-in-window window "~:[Ticks pass as fast as they can~;~:*~A ticks a second~].~%"
+           (say-in-window window "~:[Ticks pass as fast as possible~;~:*The rate is ~A ticks per ~
+                                  second~].~%"
                           (and (realp rate) (number-text (simulation-rate simulation)))))
           ((rate-set simulation)
            (give-line (window-conversation window)
                       (format nil "rate ~:[free~;~:*~A~]" (and (realp rate) (number-text rate)))))
-          (t (say-in-window window "Here time passes only as commands need it: there is no ~
-                                    rate.~%")))))
+          (t (say-in-window window "Time passes in this run only while commands need it, so there ~
+                                    is no tick rate.~%")))))
 
 (defun change-rate (window factor)
   (let ((rate (rate-set (window-simulation window))))
     (if (eq rate :free)
-        (say-in-window window "Ticks pass as fast as they can; RATE sets how many a second.~%")
+        (say-in-window window "Ticks pass as fast as possible. The line RATE sets a number of ~
+                               ticks per second.~%")
         (change-rate-to window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
@@ -120,7 +122,8 @@
   (switch-color window))
 
 (defun button-left (window command)
-  "Return where the button that does COMMAND begins in the bar of WINDOW, or 8 pixels if none does."
+  "Return the distance in pixels from the left edge of the tool bar of WINDOW to the button that
+calls COMMAND. Return 8 if no button calls COMMAND."
   (loop for (subject left) in (pane-subjects (pane-named window 'bar))
         when (and (button-p subject) (eq command (button-command subject))) return (floor left)
         finally (return 8)))
@@ -140,7 +143,7 @@
 ;;; Pictures.
 
 (defun save-window (window type)
-  "Save a picture of the displays as they are in WINDOW in a file of TYPE in the current directory."
+  "Save a picture of the displays of WINDOW in the current directory, in a file of TYPE."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
                              (format nil "~(~A~)-~6,'0D.~A" (shown-robot window)
                                      (snapshot-tick (window-snapshot window)) type)

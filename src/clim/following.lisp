@@ -9,15 +9,17 @@
 ;;; the window looks at the effects of each line before the next is read.
 
 (defun follows-prompt-p (window old)
-  "True if WINDOW follows the prompt of this thread, which was in OLD."
+  "True if WINDOW follows the prompt of this thread to another run. OLD is the run that the prompt
+has left."
   (let ((thread (conversation-thread (window-conversation window))))
     (if thread
         (eq thread (current-thread))
         (eq old (watcher-simulation (window-watcher window))))))
 
 (defun robot-after-switch (window new)
-  "Return the name of the robot of NEW that WINDOW will show: the one that its prompt commands, or
-that it shows, or else another. NIL if other windows show all of them."
+  "Return the name of the robot of the run NEW that WINDOW will show: the robot that its prompt
+commands, a robot with the name of the robot shown before, or else another robot. Return NIL if
+other windows show all robots of NEW."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
         (own-p (eq window (own-window))))
     (find-if (lambda (name)
@@ -27,7 +29,7 @@ that it shows, or else another. NIL if other windows show all of them."
                      names))))
 
 (defun switch-window (window new)
-  "Make WINDOW show NEW from now on, if it has a robot to show."
+  "Make WINDOW show the run NEW from now on, if NEW has a robot that no other window shows."
   (let ((name (robot-after-switch window new)))
     (when name
       (note-shown window name)
@@ -36,7 +38,7 @@ that it shows, or else another. NIL if other windows show all of them."
       (request-refresh window))))
 
 (defun follow-prompt (session old new)
-  "Make the windows that follow SESSION, which was in the run OLD, show its present run NEW."
+  "Make the windows that follow the prompt show the run NEW, which the prompt has entered from OLD."
   (declare (ignore session))
   (when new
     (dolist (window (open-windows))
@@ -53,7 +55,7 @@ that it shows, or else another. NIL if other windows show all of them."
 ;;; A plan of a live run breaks in a separate thread, while ticks pass.
 
 (defun show-as-it-stands ()
-  "Make the windows on the run whose plans or ticks this thread runs show the present state."
+  "Update the windows that show the run whose plans or ticks this thread executes."
   (dolist (window (open-windows))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
       (when simulation

@@ -6,7 +6,7 @@
 ;;; says so; what is typed meanwhile is read after it.
 
 (defclass interactor-pane (display-pane) ()
-  (:documentation "A pane that shows the line that is being typed, and takes keys."))
+  (:documentation "A pane that shows the input line and receives keys."))
 
 (defun focused-p (pane)
   (eq pane (clim:port-keyboard-input-focus (clim:port pane))))
@@ -14,41 +14,43 @@
 ;;; What is to be seen.
 
 (defun line-text (control line)
-  "Return in words, by CONTROL, what the running LINE does, and how to end it."
-  (format nil "~@? -- control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
+  "Return a text about the running LINE and how to end it. CONTROL is a format string for LINE."
+  (format nil "~@? -- Control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
 (defun waiting-label (count)
-  "Return the text before the line being typed while COUNT lines wait."
-  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; backspace takes the last one ~
-               back. ~]Next> "
+  "Return the label of the input line while COUNT entered lines wait to be run."
+  (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; Backspace removes the last line. ~]Next> "
           count))
 
 (defun line-shown (conversation)
-  "Return label, text and point of the line that is being typed in CONVERSATION, or NIL."
+  "Return a list of label, text and cursor position of the input line of CONVERSATION, or NIL."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line (ars-magna.cli:drawn-line-shown line))))
 
 (defun asked-text (answers)
-  "Return the text above the line being typed while ANSWERS, texts, are awaited; or NIL."
+  "Return the text above the input line while programs wait for answers. ANSWERS is a list of texts
+about the waiting breaks. Return NIL if ANSWERS is empty."
   (when answers
     (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How to continue? ~A"
             (and (rest answers) (length (rest answers))) (first answers))))
 
 (defun row-above (conversation text)
-  "Return the text above TEXT, which is being typed, and its ink."
+  "Return a list of the text to show above the input line, or NIL, and its ink. TEXT is the text of
+the input line."
   (let ((reading (line-awaiting-input conversation))
         (asked (asked-text (ars-magna.cli:awaited-answers (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
     (cond (reading (list (line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))
           ((= lines 1) (list nil :grey))
-          (t (list (format nil "~D lines: return enters all, one after the other; control-C ~
-                                drops them."
+          (t (list (format nil "~D lines: Return enters them one after the other; Control-C ~
+                                discards them."
                            lines)
                    :grey)))))
 
 (defun what-is-shown (pane)
-  "Return what PANE shows: label, text and point, and the row above and its ink, or NIL."
+  "Return what PANE shows, as a list of label, text and cursor position of the input line, the text
+above it and its ink. Return NIL if PANE is empty."
   (let* ((conversation (window-conversation (window-of pane)))
          (shown (line-shown conversation))
          (busy (busy-with conversation)))
@@ -57,10 +59,10 @@
                     (ars-magna.cli:typed-ahead
                      (ars-magna.cli:session-input (conversation-session conversation)))
                   (list (waiting-label count) text point
-                        (line-text "At work on ~A" busy) :red))))))
+                        (line-text "Running ~A" busy) :red))))))
 
 (defun rows-wanted (pane)
-  "Return how many rows PANE needs for the line being typed, and the text above it."
+  "Return the number of rows that PANE needs for the input line and the text above it."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink) (what-is-shown pane)
     (declare (ignore ink))
     (+ (if note 1 0)
@@ -73,12 +75,12 @@
 ;;; Painting.
 
 (defun paint-cursor (canvas row column focused-p)
-  "Paint the cursor at ROW and COLUMN: hollow where keys go elsewhere."
+  "Paint the cursor at ROW and COLUMN. The cursor is hollow unless FOCUSED-P."
   (draw-rectangle canvas draw-gcontext* (column-x column) (+ 2 (* row +line-height+))
                   (if focused-p 2 (1- +character-width+)) (- +line-height+ 2) focused-p))
 
 (defun paint-line (canvas pane label text point top)
-  "Paint what is being typed, TEXT, with LABEL before it and the cursor at POINT, from row TOP on."
+  "Paint the input line from row TOP on: LABEL, then TEXT, with the cursor at POINT of TEXT."
   (multiple-value-bind (columns height) (columns-and-rows pane)
     (multiple-value-bind (rows row column)
         (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text label) text point
@@ -100,7 +102,7 @@
   '((:return :return) (:kp-enter :return) (:tab :tab) (:backspace :rubout) (:delete :delete)
     (:rubout :delete) (:up :up) (:down :down) (:left :left) (:right :right)
     (:home :home) (:end :end))
-  "Lists (name key): what CLIM calls a key, and what the prompt's editor does.")
+  "Lists (name key): the name of a key in CLIM, and its name in the prompt's line editor.")
 
 (defun pressed-with-p (event modifier)
   (logtest modifier (clim:event-modifier-state event)))
@@ -129,14 +131,15 @@
 ;;; The window handles copy, paste and scrolling back itself.
 
 (defun copy-text (window)
-  "Offer the selection in the transcript of WINDOW, or else all of it, to other programs."
+  "Copy the text selected in the transcript of WINDOW. If nothing is selected, copy the whole
+transcript."
   (let ((pane (pane-named window 'transcript)))
     (share-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
     (unless (selection pane)
-      (hint window "Nothing is selected: everything in the commands was copied."))))
+      (hint window "Nothing was selected, so all text of the commands has been copied."))))
 
 (defun paste-text (window selection)
-  "Type the contents of SELECTION, :PRIMARY or :CLIPBOARD, in WINDOW."
+  "Paste the text of SELECTION, :PRIMARY or :CLIPBOARD, into the input line of WINDOW."
   (let ((text (fetch-text (clim:port (pane-named window 'interactor)) selection)))
     (unless (member text '(nil "") :test #'equal)
       (give-key (window-conversation window) (list :paste text)))))
@@ -157,13 +160,13 @@
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
 (defun take-key (window key)
-  "Pass KEY to the prompt of WINDOW. Control-C ends the running line, too."
+  "Pass KEY to the prompt of WINDOW. The key Control-C also ends the running line."
   (if (eq key :control-c)
       (ars-magna.cli:interrupt-session (window-session window))
       (give-key (window-conversation window) key)))
 
 (defun do-key-in-window (window event)
-  "Handle the key of EVENT in the line being typed. True if it does anything."
+  "Handle the key of EVENT for the input line of WINDOW. Return true if the key has an effect."
   (let ((action (own-action event)) (key (key-of event)))
     (cond ((do-key-in-popup window (clim:keyboard-event-key-name event)) t)
           (action (funcall action window) t)
@@ -184,7 +187,7 @@
     (and sheet (robot-window-of sheet))))
 
 (defun give-keys-by (port event)
-  "Make the window of EVENT, if it is one of ours, get the keys of PORT."
+  "Direct the keys of PORT to the window of EVENT, if that window shows a robot."
   (let ((window (robot-window-of (clim:event-sheet event))) (before (window-with-keys port)))
     (unless (member window (list before nil))
       (setf (clim:port-keyboard-input-focus port)

@@ -10,7 +10,8 @@
   (type-into (pane-named window 'interactor)))
 
 (defun take-keys (pane)
-  "Make the keyboard type at the prompt or in PANE from now on, as PANE was clicked."
+  "Direct keys to PANE, which was clicked, from now on; or to the prompt, if PANE is the
+transcript."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -18,16 +19,17 @@
     (transcript-pane (give-keys-to-prompt (window-of pane)))))
 
 (defun type-at-prompt (window character)
-  "Send CHARACTER, and what is typed after it, to the line being typed in WINDOW."
+  "Send CHARACTER, and the keys typed after it, to the input line of WINDOW."
   ;; What is typed fast may still come to a display.
   (setf (window-typing-p window) t)
   (take-key window (string character))
   (give-keys-to-prompt window))
 
-(defconstant +arrow-step+ 60 "How far an arrow moves the view, in pixels.")
+(defconstant +arrow-step+ 60 "The number of pixels that an arrow key moves the view.")
 
 (defun arrow (key-name)
-  "Return how far the key called KEY-NAME moves the view, in pixels, or NIL if it does not."
+  "Return the pixels to the right and down that the key KEY-NAME moves the view, as two values.
+Return NIL for other keys than arrows."
   (case key-name
     (:left (values (- +arrow-step+) 0))
     (:right (values +arrow-step+ 0))
@@ -35,7 +37,8 @@
     (:down (values 0 +arrow-step+))))
 
 (defun do-key (window key-name character)
-  "Handle the key KEY-NAME, which types CHARACTER or NIL, in WINDOW. True if it does anything."
+  "Handle the key KEY-NAME in WINDOW. CHARACTER is its character, or NIL. Return true if the key has
+an effect."
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (line-shown (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow key-name)
@@ -76,11 +79,12 @@
 ;;; |. It also does not combine a dead key with the character after it. The names that McCLIM uses
 ;;; are key symbols of X, which are numbers.
 
-(defconstant +altgr+ #x80 "The bit in the state of X's keyboard for AltGr.")
+(defconstant +altgr+ #x80 "The bit for AltGr in the keyboard state of an X event.")
 
 (defun altgr-symbol (symbol-at state)
-  "Return the symbol of a key that is pressed with AltGr, by STATE, or NIL if it has none of its
-own. SYMBOL-AT is a function from the place of a symbol in X's list for the key."
+  "Return the X key symbol for a key that is pressed with AltGr. Return NIL if STATE has no AltGr or
+the key has no separate symbol for it. SYMBOL-AT is a function from an index in X's list of symbols
+of the key to the symbol."
   (flet ((own (index)
            (let ((symbol (funcall symbol-at index)))
              (and (plusp symbol) (/= symbol (funcall symbol-at 0)) symbol))))
@@ -89,29 +93,31 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
          (eql (funcall symbol-at 0) (funcall symbol-at 2))
          (or (and (logtest 1 state) (own 5)) (own 4)))))
 
-(defconstant +euro-symbol+ #x20AC "X's symbol for the sign of the Euro.")
+(defconstant +euro-symbol+ #x20AC "The X key symbol of the Euro sign.")
 
 (defun symbol-character (display symbol)
-  "Return the character of a SYMBOL of X, or NIL."
+  "Return the character of the X key symbol SYMBOL, or NIL if it has none."
   (cond ((xlib:keysym->character display symbol))
         ((= symbol +euro-symbol+) (code-char symbol))
         ;; The symbols of all other characters are made of their codes.
         ((< #x1000000 symbol #x1110000) (code-char (- symbol #x1000000)))))
 
 (defun key-function (name)
-  "Return the symbol of McCLIM's function NAME about X's keys, or NIL: versions differ."
+  "Return the symbol of McCLIM's internal function NAME for X keys. Return NIL if this version of
+McCLIM has no such function."
   (let* ((package (find-package "CLIM-XCOMMON"))
          (symbol (and package (find-symbol name package))))
     (and symbol (fboundp symbol) symbol)))
 
 (defvar *key-reader* (key-function "X-EVENT-TO-KEY-NAME-AND-MODIFIERS")
-  "McCLIM's name for its function for the character, modifiers and name of a key, or NIL.")
+  "The name of McCLIM's function that returns the character, modifiers and name of a key, or NIL.")
 
 (defvar *mcclim-reads-key* (and *key-reader* (fdefinition *key-reader*))
-  "That function itself, as it was.")
+  "McCLIM's original function that READ-KEY replaces, or NIL.")
 
 (defun read-key (port kind code state)
-  "Return character, modifiers and name of the key CODE, pressed or released (KIND) in STATE."
+  "Return the character, modifiers and name of the key with the X key code CODE. KIND is the kind of
+the event, a press or a release, and STATE the X keyboard state."
   (let* ((display (clim-clx:clx-port-display port))
          (symbol (altgr-symbol (lambda (index)
                                  ;; The list may be shorter.
@@ -135,11 +141,13 @@ own. SYMBOL-AT is a function from the place of a symbol in X's list for the key.
     (:dead-cedilla #\, "cçsşCÇSŞ")
     (:dead-caron #\^ "cčeěnňrřsšzžCČEĚNŇRŘSŠZŽ")
     (:dead-abovering #\* "aåuůAÅUŮ"))
-  "Lists (name character pairs): McCLIM's name of a dead key, its character before a space, and
-pairs of a letter and what the key makes of it.")
+  "Lists (name character pairs). NAME is McCLIM's name of a dead key. CHARACTER is the result of the
+dead key and a space. PAIRS is a string of pairs: a letter and the result of the dead key and that
+letter.")
 
 (defun composed (dead character)
-  "Return, as a string, what CHARACTER gives after the dead key of the list DEAD."
+  "Return, as a string, the result of typing CHARACTER after a dead key. DEAD is the element of
+*DEAD-KEYS* for that key."
   (destructuring-bind (own pairs) (rest dead)
     (let ((letter (loop for index from 0 below (length pairs) by 2
                         when (char= character (char pairs index))
@@ -149,19 +157,20 @@ pairs of a letter and what the key makes of it.")
             (t (format nil "~C~C" own character))))))
 
 (defvar *dead-key* nil
-  "The element of *DEAD-KEYS* of the dead key that waits for a character, or NIL. There is only one
-keyboard.")
+  "The element of *DEAD-KEYS* for the dead key that waits for a character, or NIL. All windows share
+one keyboard.")
 
 (defun key-press (character event)
-  "Return the event that CHARACTER was typed where EVENT was."
+  "Return an event like EVENT, a key press, that types CHARACTER."
   (make-instance 'clim:key-press-event
                  :sheet (clim:event-sheet event) :key-name (make-keyword (string character))
                  :key-character character :modifier-state 0
                  :x 0 :y 0 :timestamp (clim:event-timestamp event)))
 
 (defun wait-after (name character)
-  "Note whether a dead key waits now that the key NAME, of CHARACTER or NIL, was pressed. Return the
-one that has waited before, and the one that NAME is; of either NIL, if there is none."
+  "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
+Return two elements of *DEAD-KEYS*, each of which may be NIL: that of the dead key that was waiting,
+and that of the key NAME."
   (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)
@@ -169,7 +178,8 @@ one that has waited before, and the one that NAME is; of either NIL, if there is
     (values before now)))
 
 (defun after-dead-key (event)
-  "Return the events that EVENT, a key press, counts as, since a dead key may wait."
+  "Return a list of the events to handle in place of EVENT, a key press, when dead keys are combined
+with the characters after them."
   (let ((character (clim:keyboard-event-character event)))
     (multiple-value-bind (before now)
         (wait-after (clim:keyboard-event-key-name event) character)

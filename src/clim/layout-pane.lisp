@@ -21,10 +21,11 @@
 
 (define-constant +first-size+ '(1180 820)
   :test #'equal
-  :documentation "How wide and high a window is at first, in pixels, where the screen has room.")
+  :documentation "The initial width and height of a window, in pixels, if the screen has room for
+them.")
 
 (defun screen-size (pane)
-  "Return the width and height of the screen that PANE is to be shown on, or NIL and NIL."
+  "Return the width and height of the screen of PANE, or NIL and NIL if they are unknown."
   (graft-size (clim:graft pane)))
 
 (defmethod clim:compose-space ((pane layout-pane) &key width height)
@@ -38,7 +39,8 @@
        :min-height 240 :max-height clim:+fill+))))
 
 (defun place-pane (pane left top width height)
-  "Put PANE where the other arguments say; without room it is hidden."
+  "Move PANE to LEFT, TOP, make it WIDTH x HEIGHT pixels large, and show it. Hide PANE if WIDTH or
+HEIGHT is 0."
   (let ((there-p (and (plusp width) (plusp height))))
     ;; Move it before it is shown, so that it never appears at the old place.
     (when there-p (put-pane pane left top width height))
@@ -49,7 +51,7 @@
 ;;; arrangement or what is shown, or when another display needs the room.
 
 (defun needs-now (layout)
-  "Return lists (section pixels): the wanted height of each open section in LAYOUT's column."
+  "Return lists (section pixels): the height that each open section in the column of LAYOUT needs."
   (let* ((window (clim:pane-frame layout)) (preferences (pane-preferences layout))
          (width (pane-size layout)) (column (details-width preferences width)))
     (loop for section in (column-sections preferences width)
@@ -58,30 +60,33 @@
                           (section-need (pane-named window section) section column)))))
 
 (defun need-in (needs)
-  "Return a function from a section to the pixels that it needs by NEEDS."
+  "Return a function from a section to its height in NEEDS, lists (section pixels), or to 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
 (defun arranged (layout needs)
-  "Return where all parts of LAYOUT belong if its sections need NEEDS."
+  "Return the places of all parts of LAYOUT. NEEDS are lists (section pixels): the height that each
+section needs."
   (multiple-value-call #'arrange (pane-preferences layout) (need-in needs) (pane-size layout)
     (rows-typed layout)))
 
 (defun rows-typed (layout)
-  "Return how many rows the window of LAYOUT needs for the line being typed."
+  "Return the number of rows that the window of LAYOUT needs for the input line."
   (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
     (if (and interactor (window-conversation (clim:pane-frame layout)))
         (rows-wanted interactor)
         +prompt-rows+)))
 
 (defun enough-p (places needs)
-  "True if each section has the height in PLACES that it has in NEEDS. Plans never have enough."
+  "True if PLACES give each section of NEEDS, lists (section pixels), at least that height. The
+section of plans is ignored, because it takes any height."
   (loop for (section pixels) in needs
         always (or (eq section 'plan)
                    (<= pixels (fifth (assoc section places))))))
 
 (defun settled-needs (layout)
-  "Return the heights for which the sections of LAYOUT get room: the most that they have needed, or,
-if only that leaves enough for all, what they need now."
+  "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
+section has needed so far. If these heights do not fit but the present needs do, it is what each
+section needs now."
   (let* ((now (needs-now layout))
          (before (need-in (pane-needed layout)))
          (most (loop for (section pixels) in now
@@ -92,7 +97,8 @@ if only that leaves enough for all, what they need now."
           most))))
 
 (defun places (layout)
-  "Return the places of all parts of the window, by the preferences of LAYOUT, their pane."
+  "Return the places of all parts of LAYOUT by the user's preferences and the needs of the
+sections."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -108,12 +114,13 @@ if only that leaves enough for all, what they need now."
           when pane do (apply #'place-pane pane place))))
 
 (defun arrange-panes (layout)
-  "Put all parts of the window in place, whatever they have needed before."
+  "Arrange all parts of LAYOUT by what they need now, without regard to what they needed before."
   (setf (pane-needed layout) '())
   (put-parts layout (places layout)))
 
 (defun child-with (layout pane)
-  "Return the child of LAYOUT that is or holds PANE; CLIM may put borders around panes."
+  "Return the child of LAYOUT that is PANE or contains PANE, since CLIM may put borders around
+panes."
   (loop for sheet = pane then (clim:sheet-parent sheet)
         while sheet
         when (eq layout (clim:sheet-parent sheet)) return sheet))
@@ -124,13 +131,13 @@ if only that leaves enough for all, what they need now."
 
 (defparameter *first-needs*
   '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
-  "Wanted heights of sections, in pixels, before their contents are known; never less for
-designators and plans.")
+  "Lists (section pixels): the height of each section before its contents are known. It is also the
+least height of the designators.")
 
 (defun first-need (section) (second (assoc section *first-needs*)))
 
 (defgeneric section-need (pane section width)
-  (:documentation "Return the wanted height in pixels of PANE, which shows SECTION, if it is WIDTH
+  (:documentation "Return the height in pixels that PANE, which shows SECTION, needs if it is WIDTH
 pixels wide.")
   (:method (pane section width)
     (declare (ignore width))
@@ -150,12 +157,12 @@ pixels wide.")
   (pane-named window 'layout))
 
 (defun rearrange (window)
-  "Put all parts of WINDOW in place by its preferences."
+  "Arrange all parts of WINDOW anew by the user's preferences, and paint them."
   (arrange-panes (window-layout window))
   (repaint-all window))
 
 (defun settle (window)
-  "Give each display of WINDOW the room that its contents need."
+  "Arrange and paint the parts of WINDOW again if the contents of its displays need other heights."
   (let* ((layout (window-layout window)) (places (places layout)))
     (unless (equal places (pane-places layout))
       (put-parts layout places)
@@ -167,7 +174,7 @@ pixels wide.")
   (and (member section (preferences-folded (window-preferences window))) t))
 
 (defun fold (window section &optional (folded-p t))
-  "Show only the title of SECTION in WINDOW; or, if FOLDED-P is false, all of it."
+  "Fold SECTION of WINDOW, so that only its title is shown. If FOLDED-P is false, unfold SECTION."
   (unless (eq folded-p (folded-p window section))
     (let ((preferences (window-preferences window)))
       (setf (preferences-folded preferences)
@@ -183,7 +190,8 @@ pixels wide.")
   (:documentation "A bar between two parts of the window that can be dragged."))
 
 (defgeneric drag-splitter (name preferences layout x y)
-  (:documentation "Change PREFERENCES so that the splitter NAME is at X, Y of the pane LAYOUT.")
+  (:documentation "Change PREFERENCES so that the splitter called NAME moves to X, Y of the pane
+LAYOUT.")
   (:method ((name (eql 'side-splitter)) preferences layout x y)
     (declare (ignore y))
     (let* ((width (pane-size layout)) (right (max 120 (- width x +splitter+))))
@@ -232,7 +240,8 @@ pixels wide.")
 (defun foldable-p (section) (and (member section +sections+) t))
 
 (defun world-title (window)
-  "Return the map that WINDOW shows, the robot if there are several, and if it is a fork or trial."
+  "Return the title of the world in WINDOW: the map, the fork or trial if the run is one, and the
+robot if there are several."
   (let ((map (and (window-snapshot window) (window-map window)))
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))

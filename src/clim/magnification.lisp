@@ -8,29 +8,29 @@
 
 (define-constant +smallest-size+ '(640 480)
   :test #'equal
-  :documentation "Width and height of the smallest window in which everything is visible, in its
-pixels.")
+  :documentation "The width and height, in window pixels, of the smallest window in which everything
+is visible.")
 
-(defconstant +most-magnified+ 6 "The largest magnification: screen pixels per window pixel.")
+(defconstant +most-magnified+ 6 "The largest magnification, in screen pixels per window pixel.")
 
 (defun magnification (pane)
-  "Return how many screen pixels wide a pixel of PANE is."
+  "Return the magnification of the window of PANE, in screen pixels per window pixel."
   (window-magnification (clim:pane-frame pane)))
 
 (defun pane-size (pane)
-  "Return width and height of PANE, in pixels."
+  "Return the width and height of PANE, in window pixels."
   (let ((region (clim:sheet-region pane)) (magnification (magnification pane)))
     (values (floor (clim:bounding-rectangle-width region) magnification)
             (floor (clim:bounding-rectangle-height region) magnification))))
 
 (defun size-on-screen (pane)
-  "Return width and height of PANE in screen pixels."
+  "Return the width and height of PANE, in screen pixels."
   (let ((region (clim:sheet-region pane)))
     (values (floor (clim:bounding-rectangle-width region))
             (floor (clim:bounding-rectangle-height region)))))
 
 (defun put-pane (pane left top width height)
-  "Put PANE there in the pane that holds it, WIDTH times HEIGHT pixels large."
+  "Move PANE to LEFT, TOP of its parent and make it WIDTH x HEIGHT large, all in window pixels."
   (let ((magnification (magnification pane)))
     (flet ((on-screen (pixels) (* magnification pixels)))
       (clim:move-and-resize-sheet pane (on-screen left) (on-screen top)
@@ -38,7 +38,7 @@ pixels.")
       (clim:allocate-space pane (on-screen width) (on-screen height)))))
 
 (defun place-outside (pane x y)
-  "Return where X, Y of PANE is in the pane that holds it."
+  "Return X, Y of PANE in the coordinates of its parent."
   (let ((magnification (magnification pane)))
     (multiple-value-bind (left top) (clim:transform-position (clim:sheet-transformation pane) 0 0)
       (values (+ x (floor left magnification)) (+ y (floor top magnification))))))
@@ -56,29 +56,32 @@ pixels.")
       (values nil nil)))
 
 (defun window-magnification (window)
-  "Return how many screen pixels wide a pixel of WINDOW is: by its user's choice, or else by the
-screen's resolution."
+  "Return the magnification of WINDOW, in screen pixels per window pixel. The user chooses it; the
+default depends on the screen's resolution."
   (or (preferences-magnification (window-preferences window)) (window-usual-magnification window)))
 
 (defun most-magnified (width height)
-  "Return the largest magnification for a screen of WIDTH times HEIGHT pixels, or NIL for what is
-not known: the smallest window in which everything is visible must fit."
+  "Return the largest magnification with which a window of +SMALLEST-SIZE+ fits on a screen of WIDTH
+x HEIGHT pixels. An unknown WIDTH or HEIGHT is NIL."
   (destructuring-bind (least-width least-height) +smallest-size+
     (clamp (min (if width (floor width least-width) +most-magnified+)
                 (if height (floor height least-height) +most-magnified+))
            1 +most-magnified+)))
 
 (defun usual-magnification (resolution &optional width height)
-  "Return the magnification that suits a screen of WIDTH times HEIGHT pixels with RESOLUTION in dots
-per inch; NIL stands for what is not known."
+  "Return the default magnification for a screen of WIDTH x HEIGHT pixels with RESOLUTION in dots
+per inch. An unknown argument is NIL."
   (clamp (round (or resolution 96) 96) 1 (most-magnified width height)))
 
 (defun magnify (window magnification)
-  "Make a pixel of WINDOW MAGNIFICATION screen pixels wide, or say that there is no room."
-  (cond ((< magnification 1) (say-in-window window "Smaller than that nothing could be read.~%"))
+  "Set the magnification of WINDOW to MAGNIFICATION screen pixels per window pixel. If it is too
+small or too large, say so in WINDOW."
+  (cond ((< magnification 1) (say-in-window window "The window is at its smallest size: smaller ~
+                                                    letters could not be read.~%"))
         ((< (multiple-value-call #'most-magnified (screen-size (window-layout window)))
             magnification)
-         (say-in-window window "Larger than that not all would fit on this screen.~%"))
+         (say-in-window window "The window is at its largest size: a larger one would not fit on ~
+                                this screen.~%"))
         ((/= magnification (window-magnification window))
          (setf (preferences-magnification (window-preferences window)) magnification)
          (rearrange window))))

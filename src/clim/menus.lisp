@@ -13,10 +13,12 @@
   '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
     (:manipulating "Manipulating") (:seeing "Seeing") (:planning "Plans") (:running "Running")
     (:general "Prompt"))
-  "Lists (family menu), in the order in which the menus are shown.")
+  "Lists (family title): the title of the menu for each family of prompt lines, in the order of the
+menus.")
 
 (defun line-group (line)
-  "Return the menu that holds LINE; that of the prompt for a family that has none."
+  "Return the title of the menu for the prompt line LINE. It is the menu Prompt if the family of
+LINE has no menu."
   (second (or (assoc (ars-magna.cli:line-family line) *line-groups*)
               (assoc :general *line-groups*))))
 
@@ -28,7 +30,8 @@
                     (list name (lambda () (choose-line clim:*application-frame* name))))))
 
 (defun choose-line (window name)
-  "Run the line command called NAME, or let the user add its arguments."
+  "Run the prompt line NAME if it has no parameters. Otherwise start it in the input line, for the
+user to add arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
     (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
            (begin-line-with conversation (format nil "~A " text))
@@ -38,7 +41,7 @@
 ;;; Menus.
 
 (defstruct (menu (:constructor make-menu (title items)) (:copier nil))
-  "A menu called TITLE. ITEMS, a list or a function that returns one, are (title command), menus,
+  "A menu with TITLE. ITEMS is a list, or a function that returns a list, of (title command), menus,
 and NIL for a gap."
   (title "" :type string :read-only t)
   (items '() :type (or list function) :read-only t))
@@ -70,7 +73,7 @@ and NIL for a gap."
         (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
                               nil
                               ("Keys and mouse" com-help) ("Close window" com-close))))
-  "The menus of the bar, from left to right.")
+  "The menus of the menu bar, from left to right.")
 
 (defun menu-items-now (menu)
   (let ((items (menu-items menu)))
@@ -87,7 +90,7 @@ and NIL for a gap."
              (make-row title :action (lambda () (funcall command)))))))
 
 (defun open-menu (window menu x y &optional outer)
-  "Show MENU at X, Y of WINDOW; OUTER is the menu that it is part of."
+  "Show MENU at X, Y of WINDOW. OUTER is the menu that contains MENU, or NIL."
   (let ((rows (loop for item in (menu-items-now menu)
                     collect (item-row window item menu x y))))
     (when outer
@@ -100,13 +103,14 @@ and NIL for a gap."
 
 (defclass menu-pane (display-pane) ()
   (:default-initargs :background clim:+gray75+)
-  (:documentation "The bar of menus."))
+  (:documentation "The menu bar."))
 
 (defmethod pane-content ((pane menu-pane))
   (list (multiple-value-list (pane-size pane)) (open-opener (window-of pane))))
 
 (defun draw-menu-title (canvas menu x open-p)
-  "Draw the title of MENU from X on, lit if OPEN-P; return where it ends."
+  "Draw the title of MENU in the menu bar from X on, highlighted if OPEN-P. Return the x coordinate
+of its end."
   (let ((width (+ 14 (* +character-width+ (length (menu-title menu))))))
     (with-subject (canvas menu)
       (with-gcontext (draw-gcontext* :foreground (if open-p
@@ -151,7 +155,9 @@ and NIL for a gap."
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
 (defun point-further (popup step)
-  "Point at the row of POPUP STEP further, or at the first or last. True if there is one."
+  "Highlight the row of POPUP that is STEP rows after the highlighted one. Without a highlighted
+row, highlight the first row, or the last if STEP is negative. Return true if POPUP has rows to
+choose."
   (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))
@@ -164,7 +170,8 @@ and NIL for a gap."
       t)))
 
 (defun turn-menu (window step)
-  "If a menu of the bar is open in WINDOW, open the one STEP further there. True if so."
+  "If a menu of the menu bar is open in WINDOW, open the menu STEP places to its right, and return
+true."
   (let ((place (position (open-opener window) *menus*)))
     (when place
       (open-menu-of-bar (pane-named window 'menus)
@@ -178,7 +185,7 @@ and NIL for a gap."
       t)))
 
 (defun do-key-in-popup (window name)
-  "Handle the key called NAME in the menu or list on top of WINDOW. True if it does anything."
+  "Handle the key called NAME in the popup of WINDOW. Return true if the key has an effect."
   (let ((popup (window-popup window)))
     (when (popup-open-p window)
       (case name
@@ -189,7 +196,7 @@ and NIL for a gap."
         ((:return :kp-enter) (choose-pointed popup))))))
 
 (defun open-first-menu (window)
-  "Open the first menu of the bar of WINDOW, or close the one that is open."
+  "Open the first menu of the menu bar of WINDOW. If a menu is open, close it instead."
   (unless (menu-p (close-popup window))
     (open-menu-of-bar (pane-named window 'menus) (first *menus*))
     (point-further (window-popup window) 1)))

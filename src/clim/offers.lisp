@@ -6,21 +6,22 @@
 ;;; when it is chosen, as if typed; so the transcript shows it.
 
 (defgeneric offers (subject window)
-  (:documentation "Return the offers for SUBJECT, which WINDOW shows.")
+  (:documentation "Return the context menu for SUBJECT, an object that WINDOW shows: a list of
+(title line), where LINE is the prompt line to run.")
   (:method (subject window)
     (declare (ignore subject window))
     '()))
 
 (defun coordinate-text (number)
-  "Return NUMBER as the prompt reads it, to a hundredth."
+  "Return NUMBER, rounded to hundredths, as a text that the prompt can read."
   (format nil "~,2F" number))
 
 (defun go-there (x y)
   (list "Go there" (format nil "go-to ~A ~A" (coordinate-text x) (coordinate-text y))))
 
 (defun camera-offers (window title line &rest arguments)
-  "Return an offer for each camera of the robot of WINDOW; TITLE is a format string for its number,
-LINE for that and ARGUMENTS."
+  "Return a list with a menu entry (title line) for each camera of the robot of WINDOW. TITLE is a
+format string for the camera's number, and LINE is one for the number and ARGUMENTS."
   (loop for camera in (robot-image-cameras (window-robot window))
         for index = (camera-image-index camera)
         collect (list (format nil title index)
@@ -29,8 +30,9 @@ LINE for that and ARGUMENTS."
 ;;; Looking into.
 
 (defun looking-into (form)
-  "Return the offers to inspect the value of FORM, a string, also in a connected editor."
-  (cons (list "All that Lisp has of it" (format nil "(describe ~A)" form))
+  "Return the menu entries to describe the value of FORM, a string, and to inspect it in an editor
+if one is connected."
+  (cons (list "Describe its Lisp object" (format nil "(describe ~A)" form))
         (and (editor-server)
              (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form))))))
 
@@ -45,12 +47,12 @@ LINE for that and ARGUMENTS."
           collect (designator-image-number designator)))
 
 (defun appearance-text (image)
-  "Return a specification, as text, of what the thing of IMAGE looks like."
+  "Return a specification of the looks of the thing of IMAGE, as a text for the prompt."
   (let ((color (assoc :color (thing-image-attributes image))))
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 
 (defun next-to-robot-p (image window)
-  "True if the thing of IMAGE is local to the robot of WINDOW, so that a hand can grasp it."
+  "True if the thing of IMAGE is on the floor and within reach of the robot of WINDOW."
   (let ((robot (find (shown-robot window) (simulation-robots (window-simulation window))
                      :key #'robot-name)))
     (and robot
@@ -58,23 +60,24 @@ LINE for that and ARGUMENTS."
          (within-reach-p robot (thing-image-x image) (thing-image-y image)))))
 
 (defun search-offers (image window)
-  "Return the offers to look for things that look like that of IMAGE, far away or next to the
-robot."
+  "Return the menu entries to search for things that look like the thing of IMAGE. They search next
+to the robot if that thing is there, and farther away otherwise."
   (if (next-to-robot-p image window)
-      (camera-offers window "Look next to the robot for such a thing with camera ~D"
+      (camera-offers window "Look for things like it next to the robot, with camera ~D"
                      "obj-desig ~D local ~A" (appearance-text image))
-      (camera-offers window "Look for such a thing with camera ~D"
+      (camera-offers window "Look for things like it with camera ~D"
                      "obj-desig ~D non-local ~A" (appearance-text image))))
 
 (defun cameras-tracking (numbers window)
-  "Return the indices of the cameras that track one of the designators with NUMBERS."
+  "Return the indices of the cameras that track a designator whose number is in the list NUMBERS."
   (loop for camera in (robot-image-cameras (window-robot window))
         for track = (camera-image-track camera)
         when (and track (member (designator-image-number track) numbers))
           collect (camera-image-index camera)))
 
 (defun denoted-offers (numbers window)
-  "Return the offers to track, with each camera that does not yet, the designators with NUMBERS."
+  "Return the menu entries to start tracking each designator whose number is in the list NUMBERS,
+one for each camera that does not track it."
   (loop for number in numbers
         append (loop for camera in (robot-image-cameras (window-robot window))
                      for index = (camera-image-index camera)
@@ -83,7 +86,8 @@ robot."
                                      (format nil "cam-track ~D ~D" index number)))))
 
 (defun reaching-offers (camera window)
-  (cons (list (format nil "Approach it by camera ~D" camera) (format nil "goto-desig ~D" camera))
+  (cons (list (format nil "Approach it, guided by camera ~
+                           ~D" camera) (format nil "goto-desig ~D" camera))
         (loop for hand in (robot-image-hands (window-robot window))
               for index = (hand-image-index hand)
               unless (hand-image-contents hand)
@@ -91,24 +95,25 @@ robot."
                               (format nil "hand-grasp ~D ~D" index camera)))))
 
 (defun tracked-offers (numbers window &key held-p)
-  "Return the offers for what a camera tracks by a designator with one of NUMBERS. There are fewer
-if the robot itself holds it (HELD-P)."
+  "Return the menu entries for a thing that cameras track by a designator whose number is in the
+list NUMBERS. If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
   (loop for camera in (cameras-tracking numbers window)
         unless held-p append (reaching-offers camera window)
-        collect (list (format nil "Let camera ~D no longer track it" camera)
+        collect (list (format nil "Stop tracking it with camera ~D" camera)
                       (format nil "cam-untrack ~D" camera))))
 
 ;;; What is held.
 
 (defun hand-with (image window)
-  "Return the image of the hand of the robot of WINDOW that holds the thing of IMAGE, or NIL."
+  "Return the image of the hand with which the robot of WINDOW holds the thing of IMAGE, or NIL."
   (find-if (lambda (hand)
              (and (hand-image-contents hand)
                   (same-subject-p image (hand-image-contents hand))))
            (robot-image-hands (window-robot window))))
 
 (defun insert-offers (hands bins title)
-  "Return an offer, which TITLE describes, to put each of HANDS into each of BINS that is open."
+  "Return the menu entries to put each of HANDS into each open bin of BINS. TITLE is a format string
+for the numbers of hand and bin."
   (loop for hand in hands
         append (loop for bin in bins
                      unless (or (bin-image-closed-p bin) (hand-image-location hand))
@@ -122,13 +127,14 @@ if the robot itself holds it (HELD-P)."
     (append (list (list (format nil "Let go of it with hand ~D" index)
                         (format nil "hand-ungrasp ~D" index)))
             (when (hand-image-location hand)
-              (list (list (format nil "Take hand ~D out with it" index)
+              (list (list (format nil "Take hand ~D, which holds it, out of its container" index)
                           (format nil "hand-remove ~D" index))))
             (insert-offers (list hand) (robot-image-bins (window-robot window))
-                           "Put hand ~D with it into storage bin ~D"))))
+                           "Put hand ~D, which holds it, into storage bin ~D"))))
 
 (defun held-offers (image window)
-  "Return the offers for the thing of IMAGE if the robot of WINDOW holds it or has it in a bin."
+  "Return the menu entries for the thing of IMAGE if the robot of WINDOW holds it or has it in a
+bin."
   (let* ((robot (window-robot window))
          (hand (hand-with image window))
          (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
@@ -139,7 +145,7 @@ if the robot itself holds it (HELD-P)."
                                       (list bin) "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
-  "True if the thing of IMAGE is on the floor, and not in a hand, bin or other thing."
+  "True if the thing of IMAGE is on the floor, not in a hand, a bin or another thing."
   (find (thing-image-thing image) (snapshot-things (window-snapshot window))
         :key #'thing-image-thing))
 
@@ -168,14 +174,14 @@ if the robot itself holds it (HELD-P)."
   (let ((index (camera-image-index image)))
     (append (list (list "Take a view" (format nil "cam-view ~D" index))
                   (list "Look ahead" (format nil "cam-align-robot ~D" index))
-                  (list "List what is in view" (format nil "all-obj-desig ~D non-local ()" index)))
+                  (list "List things in view" (format nil "all-obj-desig ~D non-local ()" index)))
             (when (camera-image-track image)
               (list (list "Stop tracking" (format nil "cam-untrack ~D" index)))))))
 
 (defmethod offers ((image hand-image) window)
   (declare (ignore window))
   (let ((index (hand-image-index image)))
-    (append (list (list "Does it hold anything?" (format nil "hand-grasp-check ~D" index)))
+    (append (list (list "Check whether it holds anything" (format nil "hand-grasp-check ~D" index)))
             (when (hand-image-contents image)
               (list (list "Let go" (format nil "hand-ungrasp ~D" index)))))))
 
@@ -191,9 +197,9 @@ if the robot itself holds it (HELD-P)."
 (defmethod offers ((image robot-image) window)
   (let ((form (format nil "(find-robot '~A)" (text-as-typed (robot-image-name image)))))
     (append (if (shown-robot-p window image)
-                '(("How is it?" "status") ("Stop" "stop") ("Turn about" "about-face")
-                  ("What place is this?" "place"))
-                (list (list "Command it"
+                '(("Show its status" "status") ("Stop" "stop") ("Turn about" "about-face")
+                  ("Show at what place it is" "place"))
+                (list (list "Command this robot"
                                 (format nil "robot ~A" (text-as-typed (robot-image-name image))))))
             (looking-into form))))
 
@@ -221,13 +227,14 @@ if the robot itself holds it (HELD-P)."
 
 (defun offer-rows (window subject)
   (append (list (make-row (subject-heading subject))
-                (make-row "Tell what it is"
+                (make-row "Describe it"
                           :action (lambda () (describe-to window subject))))
           (loop for offer in (offers subject window)
                 collect (apply #'offer-row window offer))))
 
 (defun also-rows (window subjects x y)
-  "Return rows that open the menus, at X, Y of WINDOW, of SUBJECTS except the first."
+  "Return menu rows for all SUBJECTS except the first. Each row opens the menu of its subject at X,
+Y of WINDOW."
   (loop for rest on (rest subjects)
         collect (let ((turned (append rest (ldiff subjects rest))))
                   (make-row (format nil "Also here: ~A" (subject-heading (first turned)))
@@ -236,7 +243,8 @@ if the robot itself holds it (HELD-P)."
                                       (offer-at window turned x y))))))
 
 (defun offer-at (window subjects x y)
-  "Show at X, Y of WINDOW what can be done with the first of SUBJECTS, and ways to the others."
+  "Open the context menu of the first of SUBJECTS at X, Y of WINDOW. Further rows open the menus of
+the other SUBJECTS."
   (open-popup window
               (append (offer-rows window (first subjects)) (also-rows window subjects x y))
               x y))

@@ -7,19 +7,20 @@
 
 (defvar *last-settings-lock* (make-lock "settings"))
 (defvar *last-settings* '()
-  "A list of layers, colour or not, and preferences of the window that was closed last; or NIL.")
+  "The settings of the window that was closed last: a list of its layers, whether it had colours,
+and its preferences; or NIL.")
 
 (defstruct (legacy (:copier nil))
-  "What a window leaves to the next window of its robot: its LINES, newest first; what had been
-TYPED, or NIL; LEFT-RUN-P if it was in a trial or fork, which it has left; QUIET-P if its prompt hid
-messages from commands of plans."
+  "The state of a closed window for the next window of its robot. LINES are the lines of the
+transcript, newest first. TYPED is the text of the input line, or NIL. LEFT-RUN-P is true if the
+window has left a trial or fork. QUIET-P is true if its prompt hid messages from commands of plans."
   (lines '() :type list :read-only t)
   (typed nil :type (or null string) :read-only t)
   (left-run-p nil :read-only t)
   (quiet-p nil :read-only t))
 
 (defvar *legacies* '()
-  "An alist from robots' names to what their last windows have left.")
+  "An alist from names of robots to the states of their last windows.")
 
 (defun take-legacy (window legacy)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
@@ -44,7 +45,8 @@ messages from commands of plans."
         (setf *legacies* (acons name legacy (remove name *legacies* :key #'first)))))))
 
 (defun take-settings (window)
-  "Apply the settings of earlier windows to WINDOW, which is new, and continue their transcript."
+  "Give WINDOW, which is new, the settings of the window closed last, and the state of the last
+window of its robot."
   (destructuring-bind (settings legacy)
       (with-lock (*last-settings-lock*)
         (list *last-settings* (rest (assoc (shown-robot window) *legacies*))))
@@ -70,11 +72,11 @@ messages from commands of plans."
   (with-lock (*windows-lock*) (copy-list *windows*)))
 
 (defun close-window (window)
-  "Close WINDOW, from any thread. The simulator continues. Return nothing."
+  "Close WINDOW. The simulator continues. Any thread may call this. Return no values."
   (call-in-window #'clim:frame-exit window))
 
 (defun show-in-front (window)
-  "Show WINDOW in front of others, and not as an icon."
+  "Raise WINDOW above other windows, and show it if it is an icon."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (climb:port-enable-sheet (clim:port sheet) sheet)
     (clim:raise-sheet sheet)))
@@ -82,7 +84,7 @@ messages from commands of plans."
 ;;; A window's life.
 
 (defun forget-window (window)
-  "Count WINDOW as closed; true if it was open."
+  "Remove WINDOW from the list of open windows. Return true if WINDOW was open."
   (with-lock (*windows-lock*)
     (when (member window *windows*)
       (setf *windows* (remove window *windows*))
@@ -92,26 +94,26 @@ messages from commands of plans."
   (conversation-session (window-conversation window)))
 
 (defun clear-lost-prompt (window)
-  "Clear the prompt of WINDOW, which is lost: the running line, waiting lines, a break. Return in
-words what was cleared, to follow a sentence."
+  "End the running line, the waiting lines and a break at the prompt of WINDOW, which has been lost.
+Return a text about what was ended, to append to a sentence."
   (let* ((session (window-session window))
          (line (busy-with (window-conversation window)))
          (place (and (ars-magna.cli:in-trial-or-fork-p session)
                      (ars-magna.cli:words-for-run (window-simulation window))))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
     (ars-magna.cli:abandon-session session)
-    (format nil "~@[. Its prompt was in ~A, which has been left~]~
-                 ~@[. The line under way there was ended: ~A~]~
-                 ~@[. These waited there and were not done: ~{~A~^; ~}~]~
-                 ~:[~;. The break there waits for an answer at another prompt~]"
+    (format nil "~@[. Its prompt was in ~A and has left this run~]~
+                 ~@[. The running line was ended: ~A~]~
+                 ~@[. Waiting lines were not run: ~{~A~^; ~}~]~
+                 ~:[~;. Its break waits for an answer at another prompt~]"
             place
             (and line (cut (one-line line) 200))
             (loop for line in lines repeat 10 collect (cut (one-line line) 200))
             (ars-magna.cli:asked-of-others-p session))))
 
 (defun run-to-tell (window)
-  "Return the run whose messages report that WINDOW has closed: the run that it shows, or, for a
-trial or fork, which is no longer shown, the run outside."
+  "Return the run whose message queue reports that WINDOW has closed. It is the run that WINDOW
+shows, or, if that is a trial or fork, the run outside."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
         (or (ars-magna.cli:run-of-robot (shown-robot window))
@@ -120,8 +122,8 @@ trial or fork, which is no longer shown, the run outside."
         simulation)))
 
 (defun words-for-closing (window condition)
-  "Return the message that CONDITION, or a reason in words, has closed WINDOW: whether the run
-continues, and how to see it again."
+  "Return the message that WINDOW has closed because of CONDITION, a condition or a text. The
+message says whether the run continues, and how to open another window."
   (format nil "The window of ~A has closed: ~A~:[~;. The run continues; the ~
                line WINDOW opens another~]"
           (shown-robot window)
@@ -129,7 +131,7 @@ continues, and how to see it again."
           (and (window-simulation window) (not (over-p window)))))
 
 (defun warn-of-closing (window condition)
-  "Report, once, that CONDITION has closed WINDOW, and what was lost with it."
+  "Report once that WINDOW has closed because of CONDITION, and what was lost."
   (when (forget-window window)
     (let* ((simulation (run-to-tell window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
@@ -154,13 +156,14 @@ continues, and how to see it again."
        (eq simulation (window-simulation window))))
 
 (defun shown-beside-p (window name simulation)
-  "True if another window than WINDOW shows the robot called NAME of SIMULATION."
+  "True if a window other than WINDOW shows the robot called NAME of SIMULATION."
   (some (lambda (other) (shows-p other name simulation))
         (remove window (open-windows))))
 
 (defun robot-to-show (window)
-  "Return the name of a robot to show in WINDOW, whose run is over, and its run: the robot of a
-prompt in that case, or another of the same run if another window shows that one; or NIL."
+  "Return the name of the robot that WINDOW, whose run is over, shall show, and the run of that
+robot. It is the robot that a prompt would command, or another robot of the same run if another
+window shows that robot. Return NIL if there is none."
   (multiple-value-bind (simulation name)
       (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
     (when simulation
@@ -170,15 +173,16 @@ prompt in that case, or another of the same run if another window shows that one
                 simulation)))))
 
 (defun stay-when-over (window reason)
-  "Report in WINDOW, once, that the run that it still shows is over for REASON."
+  "Report once in WINDOW that the run it shows is over because of REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
-      (say-in-window window "The run of ~A is over: ~A. This window shows how it ended, until ~
-                             WORLD, or SIMULATOR in Lisp, starts another.~%"
+      (say-in-window window "The run of ~A is over: ~A. This window shows its end until another ~
+                             run starts, by the line WORLD, or by SIMULATOR in Lisp.~%"
                      (shown-robot window) reason))))
 
 (defun leave-run (window reason)
-  "Make WINDOW, whose run is over for REASON, show another; close it if other windows show all."
+  "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows
+show all robots of that run."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
@@ -190,8 +194,9 @@ prompt in that case, or another of the same run if another window shows that one
           (t (stay-when-over window reason)))))
 
 (defun match-robot (window)
-  "Make the prompt of WINDOW, whose thread this is, command the robot shown there; or, if its user
-has chosen another one of the same run, show that one."
+  "Make WINDOW and its prompt agree on the robot. The prompt enters the run that WINDOW shows. If
+its user has chosen another robot of the same run, WINDOW shows that robot. Only the thread of the
+prompt calls this."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
       (when reason (leave-run window reason)))
@@ -212,7 +217,7 @@ has chosen another one of the same run, show that one."
     (remove port *windows* :key #'clim:port :test-not #'eq)))
 
 (defun lose-windows (port)
-  "Close all windows on PORT, whose X server has gone, and report that."
+  "Close all windows on PORT, whose X server has gone, and report their closing."
   ;; None of them can answer for another.
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on port))
@@ -220,7 +225,7 @@ has chosen another one of the same run, show that one."
     (close-window window)))
 
 (defun run-window (window)
-  "Show WINDOW until it is closed, or an error ends it."
+  "Run the event loop of WINDOW until the window is closed or an error ends it."
   (let* ((simulation (window-simulation window))
          (*message-queue* (simulation-messages simulation)))
     (start-conversation (window-conversation window) simulation
@@ -274,8 +279,8 @@ has chosen another one of the same run, show that one."
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
 (defun switchable-windows ()
-  "Return the open windows that this thread may switch to another run, its own first; no other
-windows whose prompts are in a trial or fork."
+  "Return the open windows that this thread may switch to another run. The window of this thread
+comes first. Other windows are left out while their prompts are in a trial or fork."
   (let ((own (own-window)))
     (append (and own (list own))
             (remove-if (lambda (window)
@@ -288,7 +293,7 @@ windows whose prompts are in a trial or fork."
     (and simulation (simulation-over simulation) t)))
 
 (defun window-for (robot)
-  "Return the open window that is to show ROBOT, as OPEN-WINDOW says, or NIL."
+  "Return the open window in which OPEN-WINDOW shows ROBOT, or NIL if it must open a new one."
   (let ((windows (switchable-windows)) (simulation (robot-simulation robot)))
     (or (find (robot-name robot) windows :key #'shown-robot)
         (and (not (live-p simulation))
@@ -296,15 +301,16 @@ windows whose prompts are in a trial or fork."
         (find-if #'over-p windows))))
 
 (defun switch-to-robot (window robot)
-  "Show ROBOT in WINDOW; its prompt says so unless it was the one that asked."
+  "Show ROBOT in WINDOW. The prompt of WINDOW reports the change, unless this thread is its own."
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
     (unless (eq window (own-window))
       (ars-magna.cli:tell-of-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window: its own, one that shows its trial or fork, one whose run is over, or
-else a new one. It comes to the front. Return the window. Signals MISUSE if there is no X server."
+  "Show ROBOT in a window and raise the window. It is the window of ROBOT, a window that shows its
+trial or fork, a window whose run is over, or else a new one. Return the window. Signals MISUSE if
+there is no X server."
   (let ((window (window-for robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (shows-p window (robot-name robot) (robot-simulation robot))

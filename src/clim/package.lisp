@@ -1,8 +1,8 @@
 ;;;; package.lisp -- the CLIM layer: the displays in a window. The one door to McCLIM.
 
 (ars-magna.host:define-package :ars-magna.clim
-  (:documentation "A window that shows a robot in its world and takes commands. McCLIM's symbols are
-written with their packages. Manual B.")
+  (:documentation "A window that shows a robot in its world and takes commands. Symbols of McCLIM
+are written with package prefixes. Manual B.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.run :ars-magna.canvas
         :ars-magna.display)

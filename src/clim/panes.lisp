@@ -11,14 +11,14 @@
   ((buffer :initform nil :accessor pane-buffer)
    ;; Its width and height, in screen pixels.
    (buffer-size :initform nil :accessor pane-buffer-size))
-  (:documentation "What a pane needs in order to be painted off-screen."))
+  (:documentation "A mixin for panes that are painted off-screen."))
 
 (defun forget-buffer (pane)
   (let ((old (shiftf (pane-buffer pane) nil)))
     (when old (clim:deallocate-pixmap old))))
 
 (defun buffer-of (pane width height)
-  "Return a pixmap of WIDTH times HEIGHT screen pixels for PANE."
+  "Return the pixmap of PANE, WIDTH x HEIGHT screen pixels large. Make it if necessary."
   (let ((size (list width height)))
     (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
       (forget-buffer pane)
@@ -27,7 +27,8 @@
     (pane-buffer pane)))
 
 (defun call-in-buffer (function pane width height)
-  "Call FUNCTION, which paints PANE, WIDTH x HEIGHT screen pixels large; then show that at once."
+  "Call FUNCTION, which paints PANE, with the output sent to its pixmap. Then copy the pixmap to the
+screen. WIDTH and HEIGHT are in screen pixels."
   (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
     (setf (clim:medium-drawable medium) buffer)
     (unwind-protect (funcall function)
@@ -36,7 +37,7 @@
     (clim:medium-force-output medium)))
 
 (defun call-buffered (function pane)
-  "Call FUNCTION, which paints PANE; nothing of that is visible before it returns."
+  "Call FUNCTION, which paints PANE. The painting becomes visible when FUNCTION has returned."
   (multiple-value-bind (width height) (size-on-screen pane)
     (flet ((paint () (clim:with-scaling (pane (magnification pane)) (funcall function))))
       (cond ((not (and (plusp width) (plusp height))))
@@ -64,10 +65,11 @@
   (:documentation "A pane that shows one of the displays."))
 
 (defgeneric paint (pane)
-  (:documentation "Paint all of PANE."))
+  (:documentation "Paint the whole PANE."))
 
 (defgeneric pane-content (pane)
-  (:documentation "Return an object that is EQUAL to the one before if PANE would look the same."))
+  (:documentation "Return an object that represents the looks of PANE. It is EQUAL to the object
+returned before if PANE would look the same."))
 
 (defun window-of (pane) (clim:pane-frame pane))
 
@@ -76,8 +78,8 @@
     (clim:draw-rectangle* pane 0 0 width height :ink (clim:pane-background pane))))
 
 (defun call-painting (function pane)
-  "Clear PANE, and call FUNCTION with a canvas that paints PANE, except lines of text that would be
-cut; record what was painted where."
+  "Clear PANE and call FUNCTION with a canvas for PANE. The canvas leaves out lines of text that
+would be cut off. Record in PANE what was painted where."
   (clear pane)
   (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
                                             :magnification (magnification pane)
@@ -87,11 +89,11 @@ cut; record what was painted where."
     (setf (pane-subjects pane) (canvas-subjects canvas))))
 
 (defmacro painting ((canvas pane) &body body)
-  "Run BODY, which paints PANE on CANVAS, within its bounds."
+  "Run BODY, which paints PANE on CANVAS, clipped to the bounds of PANE."
   `(call-painting (lambda (,canvas) ,@body) ,pane))
 
 (defun draw-button (canvas subject text lit-p x y width height)
-  "Draw a button for SUBJECT with TEXT in its middle. Return where it ends."
+  "Draw a button for SUBJECT with TEXT in its middle. Return the x coordinate of its right edge."
   (with-subject (canvas subject)
     (with-gcontext (draw-gcontext* :foreground (if lit-p (svref lightblue* 9) (svref grey* 60)))
       (draw-rectangle canvas draw-gcontext* x y width height t))
@@ -131,36 +133,37 @@ cut; record what was painted where."
 
 ;;; The mouse: see pointing.lisp.
 
-(defconstant +scroll-step+ (* 3 +line-height+) "How far a turn of the wheel scrolls, in pixels.")
+(defconstant +scroll-step+ (* 3 +line-height+)
+  "The distance that one step of the mouse wheel scrolls, in pixels.")
 
 (defgeneric handle-press (pane button x y)
-  (:documentation "Handle that the mouse's BUTTON, :LEFT, :MIDDLE or :RIGHT, was pressed at X, Y of
-PANE.")
+  (:documentation "Handle a press of the mouse BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE.")
   (:method (pane button x y) (handle-click pane button x y)))
 
 (defgeneric handle-click (pane button x y)
-  (:documentation "Handle a click with BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of PANE."))
+  (:documentation "Handle a click with the mouse BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of
+PANE."))
 
 (defgeneric handle-drag (pane x y)
-  (:documentation "Handle that the mouse moved to X, Y of PANE while (PANE-DRAG PANE) is dragged.")
+  (:documentation "Handle a movement of the mouse to X, Y of PANE while it drags (PANE-DRAG PANE).")
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric handle-drop (pane x y)
-  (:documentation "Handle that the mouse's button, which dragged something, was released at X, Y of
-PANE.")
+  (:documentation "Handle the end of a drag: the mouse button was released at X, Y of PANE.")
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric handle-hover (pane x y)
-  (:documentation "Handle that the mouse moved to X, Y of PANE with no button pressed."))
+  (:documentation "Handle a movement of the mouse to X, Y of PANE without a button pressed."))
 
 (defgeneric handle-wheel (pane steps x y)
-  (:documentation "Handle a turn of the mouse's wheel by STEPS, down if positive, at X, Y of PANE.")
+  (:documentation "Handle a turn of the mouse wheel by STEPS at X, Y of PANE. Positive STEPS scroll
+down.")
   (:method (pane steps x y)
     (declare (ignore x y))
     (scroll pane (* steps +scroll-step+))))
 
 (defgeneric hover-text (pane x y)
-  (:documentation "Describe in one line what is at X, Y of PANE.")
+  (:documentation "Return a description of what PANE shows at X, Y, on one line.")
   (:method (pane x y) (subject-text (subject-at (pane-subjects pane) x y))))
 
 ;;; Details of the robot.
@@ -170,7 +173,7 @@ PANE.")
    (measured :initform '(nil 0) :accessor pane-measured)))
 
 (defun measure-detail (pane width)
-  "Return the height in pixels of a drawing of PANE's whole contents, WIDTH pixels wide."
+  "Return the height in pixels of the complete contents of PANE, drawn WIDTH pixels wide."
   (let ((canvas (make-instance 'svg-canvas :stream (make-broadcast-stream)))
         (window (window-of pane)))
     (with-canvas (canvas)
@@ -178,7 +181,7 @@ PANE.")
                                  (window-robot window) :width width)))))
 
 (defun detail-height (pane width)
-  "Return what MEASURE-DETAIL does, without drawing again if nothing has changed."
+  "Return the value of MEASURE-DETAIL for PANE and WIDTH, cached while the contents do not change."
   (let ((key (list width (display-content (pane-display pane)
                                           (window-robot (window-of pane))))))
     (unless (equal key (first (pane-measured pane)))
@@ -203,16 +206,17 @@ PANE.")
 
 ;;;; Scrolling
 
-(defconstant +scroll-bar+ 10 "How wide scroll bars are, in pixels.")
+(defconstant +scroll-bar+ 10 "The width of scroll bars, in pixels.")
 
 (defgeneric scroll-state (pane)
-  (:documentation "Return how far down PANE begins in its picture, how much is in view, and how much
-there is, all in the same unit.")
+  (:documentation "Return three values in one unit: the position in its contents where PANE begins,
+the length of the visible part, and the length of the contents.")
   (:method (pane)
     (values (pane-offset pane) (nth-value 1 (pane-size pane)) (pane-extent pane))))
 
 (defgeneric scroll-to (pane position)
-  (:documentation "Scroll PANE to begin at POSITION, in the unit of SCROLL-STATE.")
+  (:documentation "Scroll PANE so that its visible part begins at POSITION, in the unit of
+SCROLL-STATE.")
   (:method (pane position)
     (setf (pane-offset pane) (max 0 (round position)))
     (limit-offset pane)
@@ -224,12 +228,13 @@ there is, all in the same unit.")
     (> total page)))
 
 (defun content-width (pane)
-  "Return the width of PANE in pixels, without the scroll bar."
+  "Return the width of PANE without its scroll bar, in pixels."
   (max 1 (- (pane-size pane) +scroll-bar+)))
 
 (defgeneric limit-offset (pane)
   (:documentation
-   "Scroll PANE back if it begins below the end of its picture. True if it did.")
+   "Scroll PANE back if it is scrolled beyond the end of its contents. Return true if PANE has been
+scrolled.")
   (:method (pane)
     (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
       (when (> (pane-offset pane) room)
@@ -237,13 +242,14 @@ there is, all in the same unit.")
         t))))
 
 (defun scroll (pane pixels)
-  "Scroll PANE down by PIXELS, but not beyond its picture."
+  "Scroll PANE down by PIXELS, but not beyond its contents."
   (scroll-to pane (+ (scroll-state pane) pixels)))
 
 ;;; The bar.
 
 (defun thumb (pane)
-  "Return where the movable part of the scroll bar of PANE begins and ends, from the top."
+  "Return the top and the bottom of the thumb, the movable part of the scroll bar of PANE, in
+pixels."
   (multiple-value-bind (position page total) (scroll-state pane)
     (let* ((height (nth-value 1 (pane-size pane)))
            (length (clamp (round (* height page) (max 1 total)) (min 12 height) height))
@@ -262,7 +268,7 @@ there is, all in the same unit.")
   (and (scrollable-p pane) (>= x (content-width pane))))
 
 (defun drag-scroll-bar (pane y)
-  "Scroll PANE so that the middle of the bar's movable part is at Y, as far as possible."
+  "Scroll PANE so that the middle of its scroll bar's thumb moves to Y, as far as possible."
   (multiple-value-bind (position page total) (scroll-state pane)
     (declare (ignore position))
     (multiple-value-bind (top bottom) (thumb pane)
@@ -274,8 +280,8 @@ there is, all in the same unit.")
 ;;;; What is picked
 
 (defgeneric subject-key (subject)
-  (:documentation "Return what stays the same, for EQUAL, of SUBJECT from snapshot to snapshot; NIL
-of what cannot be picked.")
+  (:documentation "Return a key that identifies SUBJECT in all snapshots and is compared by EQUAL.
+Return NIL if SUBJECT cannot be selected.")
   (:method (subject) (declare (ignore subject)) nil)
   (:method ((image thing-image)) (list :thing (thing-image-thing image)))
   (:method ((image robot-image)) (list :robot (robot-image-name image)))
@@ -287,19 +293,19 @@ of what cannot be picked.")
       (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
 
 (defgeneric subjects-under (pane x y)
-  (:documentation "Return the subjects at X, Y of PANE, the most likely first.")
+  (:documentation "Return the subjects that PANE shows at X, Y, the most likely one first.")
   (:method (pane x y)
     (remove-duplicates (subjects-at (pane-subjects pane) x y)
                        :test #'same-subject-p :from-end t)))
 
 (defun picked-first (window subjects)
-  "Return SUBJECTS, rotated so that the one picked in WINDOW, if any, is first."
+  "Return SUBJECTS, rotated so that the selected subject of WINDOW comes first, if SUBJECTS has it."
   (let* ((key (window-selection window))
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))
     (append picked (ldiff subjects picked))))
 
 (defun selected-boxes (pane)
-  "Return the boxes, (left top right bottom), in which the selection was painted in PANE."
+  "Return a list of the boxes (left top right bottom) where PANE shows the selected subject."
   (let ((key (window-selection (window-of pane))))
     (and key
          (loop for (subject . box) in (pane-subjects pane)
@@ -310,7 +316,7 @@ of what cannot be picked.")
                         :filled nil :ink clim:+dark-orange+ :line-thickness 2))
 
 (defgeneric paint-selection (pane)
-  (:documentation "Mark in PANE what is picked.")
+  (:documentation "Mark the selected subject in PANE.")
   (:method (pane)
     (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
 

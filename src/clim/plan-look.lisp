@@ -7,18 +7,18 @@
 ;;; reactions; if they are busy, it tries again later. Plans stand still during a look, so looks
 ;;; take a tenth of the time at most.
 
-(defconstant +most-rows+ 300 "Most tasks, or rows of a timeline, that are shown.")
+(defconstant +most-rows+ 300 "The largest number of tasks, or of rows of a timeline, to show.")
 (defconstant +longest-trace+ 200000
-  "A trace with more entries than this gets no timeline automatically.")
+  "The largest number of entries of a trace for which the window draws a timeline.")
 (defconstant +rest-factor+ 9
-  "After a look, plans are left alone for this many times as long as the look took.")
+  "The pause after a look at the plans, as a multiple of the time that the look took.")
 
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
-  "The state of looking at the plans of SIMULATION. VIEW is the display, :TREE or :TIMELINE;
-SHOWN-P, a function, says whether it is visible. FOLDED are the numbers of the tasks whose parts are
-folded. MARK is a value that changes when the plans do, as of the last look; the next look is DUE,
-in seconds. TREE is an image, PAGE a timeline, :UNTRACED or :TOO-LONG; both may be NIL. ENDED says
-in words how the last plan ended."
+  "What a window shows of the plans of SIMULATION, and when to look again. VIEW is the display,
+:TREE or :TIMELINE. SHOWN-P is a function that returns true while the display is visible. FOLDED
+lists the numbers of the tasks whose parts are folded. MARK is the value of PLANS-MARK at the last
+look. DUE is the time of the next look, in seconds. TREE is an image of the tasks, or NIL. PAGE is a
+timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text that says how the last plan ended, or NIL."
   (simulation nil)
   (view :tree :type (member :tree :timeline))
   (shown-p (constantly nil) :type function)
@@ -36,14 +36,16 @@ in words how the last plan ended."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
 (defun traced-p (interface)
-  "True if the plans of INTERFACE are traced, or, if none is running, will be."
+  "True if the running plans of INTERFACE are traced. If no plan is running, true if the next plans
+will be traced."
   (let ((runner (and interface (interface-runner interface))))
     (and (or (and runner (runner-trace runner))
              (and *trace-plans* (not (and runner (plan-runner-tasks runner)))))
          t)))
 
 (defun plans-mark (look interface)
-  "Return a value that is EQUAL to the last if LOOK would show the same of the plans of INTERFACE."
+  "Return a value that represents what LOOK shows of the plans of INTERFACE. Two such values are
+EQUAL if LOOK would show the same."
   (let ((runner (and interface (interface-runner interface)))
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
@@ -57,11 +59,11 @@ in words how the last plan ended."
 ;; A plan that has broken, or is stepped, is busy and stands still: only its own thread can read it.
 (defun call-at-rest (interface function)
   "Call FUNCTION while the plans of INTERFACE are at rest, or at once if this thread runs their
-reactions. Return its value, or :BUSY."
+reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to rest."
   (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
 
 (defun update-timeline (look interface)
-  "Give LOOK the timeline of the plans of INTERFACE. Return NIL if they are busy."
+  "Store the timeline of the plans of INTERFACE in LOOK. Return NIL if the plans are busy."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
         (setf (plan-look-page look) :untraced)
@@ -78,7 +80,7 @@ reactions. Return its value, or :BUSY."
             t)))))
 
 (defun see-tree (look interface)
-  "Give LOOK the tree of the tasks of INTERFACE. Return NIL if they are busy."
+  "Store the tree of the tasks of INTERFACE in LOOK. Return NIL if the plans are busy."
   (let ((seen (call-at-rest interface
                             (lambda ()
                               (image-of-tasks (interface-runner interface)
@@ -89,7 +91,8 @@ reactions. Return its value, or :BUSY."
       t)))
 
 (defun see-plans (look interface)
-  "Give LOOK what it displays of the plans of INTERFACE, if any. Return NIL if they are busy."
+  "Store in LOOK the tree or timeline of the plans of INTERFACE, or NIL if INTERFACE is NIL. Return
+NIL if the plans are busy."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
         (plan-look-traced-p look) (traced-p interface))
@@ -100,7 +103,8 @@ reactions. Return its value, or :BUSY."
         (t (see-tree look interface))))
 
 (defun look-now (look interface mark)
-  "Look at the plans of INTERFACE, whose mark of change is MARK. True if this succeeded."
+  "Store in LOOK what it shows of the plans of INTERFACE, and MARK, their value of PLANS-MARK.
+Return NIL if the plans are busy, else true."
   (let ((began (seconds-now)))
     (when (see-plans look interface)
       (setf (plan-look-mark look) mark
@@ -108,7 +112,8 @@ reactions. Return its value, or :BUSY."
       t)))
 
 (defun look-at-plans (look)
-  "Look at the plans again if they are displayed and have progressed. True if something changed."
+  "Update LOOK if its display is visible and its plans have changed. Return true if LOOK was
+updated."
   (when (and (funcall (plan-look-shown-p look))
              (plan-look-simulation look)
              (>= (seconds-now) (plan-look-due look)))
@@ -120,7 +125,8 @@ reactions. Return its value, or :BUSY."
           (misuse () nil))))))
 
 (defun look-as-it-stands (look)
-  "Look at the plans as they are, if this thread runs their reactions. True if this succeeded."
+  "Update LOOK at once if this thread runs the reactions of its plans. Return true if LOOK was
+updated."
   (let* ((simulation (plan-look-simulation look)) (interface (interface-of simulation)))
     (and interface
          (holding-p interface)
@@ -129,11 +135,11 @@ reactions. Return its value, or :BUSY."
 
 ;;; Which looks there are, and how plans end.
 
-(defvar *plan-looks* '() "The looks of the windows that are open.")
+(defvar *plan-looks* '() "The PLAN-LOOK objects of the open windows.")
 (defvar *plan-looks-lock* (make-lock "looks at plans"))
 
 (defun direct-look (look simulation)
-  "Make LOOK look at the plans of SIMULATION from now on; NIL: at none."
+  "Make LOOK show the plans of SIMULATION from now on, or no plans if SIMULATION is NIL."
   (with-lock (*plan-looks-lock*)
     (setf (plan-look-simulation look) simulation
           (plan-look-ended look) nil
@@ -150,7 +156,8 @@ reactions. Return its value, or :BUSY."
                (cut (one-line (failure-text (task-result task))) 300))))
 
 (defun note-ending (task)
-  "Show in the windows with TASK how it ended. Return NIL: its failure is reported elsewhere."
+  "Record the end of TASK, a plan, for the windows that show its run. Return NIL, because the
+failure of TASK is reported elsewhere."
   (let ((interface (runner-client (task-runner task))))
     (when (and *plan-looks* (interface-p interface))
       (dolist (look (with-lock (*plan-looks-lock*) (copy-list *plan-looks*)))

@@ -5,7 +5,7 @@
 ;;; It paints what the watcher's look at the plans has (plan-look.lisp). A row of buttons stays on
 ;;; top; below it the picture scrolls.
 
-(defconstant +plan-head+ 23 "How high the row of buttons is, in pixels.")
+(defconstant +plan-head+ 23 "The height of the row of buttons, in pixels.")
 
 (defclass plan-pane (display-pane) ()
   (:documentation "The pane that shows the plans of the run."))
@@ -15,7 +15,7 @@
 ;;; Its buttons have no keys.
 
 (defun look-again (pane)
-  "Request a look at the plans soon, as PANE is to show something else of them."
+  "Request new images of the plans, because the user has changed what PANE shows of them."
   (painted (window-watcher (window-of pane)))
   (repaint-if-changed pane))
 
@@ -33,7 +33,7 @@
     (look-again pane)))
 
 (defun line-button (pane label line help &optional lit-p)
-  "Return a button called LABEL that gives LINE to the prompt of the window of PANE."
+  "Return a button with LABEL that makes the prompt of the window of PANE run LINE."
   (make-button label nil (lambda () (give-line (window-conversation (window-of pane)) line)) help
                lit-p))
 
@@ -44,7 +44,7 @@
     (list (make-button "Tree" nil (lambda () (show-plans-as pane :tree))
                        "Show what the tasks of the plans do and wait for" (eq view :tree))
           (make-button "Timeline" nil (lambda () (show-plans-as pane :timeline))
-                       "Show what the tasks have done, over ticks" (eq view :timeline))
+                       "Show what the tasks have done, as bars over ticks" (eq view :timeline))
           (line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
                        (format nil "~:[Keep a trace of what plans do, for the timeline and for ~
                                     WHY~;A trace of plans is kept; click to forget it~]"
@@ -65,19 +65,21 @@
 ;;; If there is nothing to show, it says how to change that.
 
 (defun say-lines (canvas y &rest lines)
-  "Write LINES from Y down: strings, and buttons. Return where they end."
+  "Draw LINES, strings and buttons, below each other from Y down. Return the y coordinate of their
+end."
   (dolist (line lines y)
     (cond ((null line))
           ((button-p line) (draw-plan-button canvas line 8 (+ y 2)) (incf y 24))
           (t (draw-glyphs canvas draw-gcontext* 8 (+ y 13) line) (incf y +line-height+)))))
 
 (defun say-text (canvas pane y text)
-  "Write TEXT from Y down in as many lines as it takes in PANE. Return where it ends."
+  "Draw TEXT from Y down, wrapped to the width of PANE. Return the y coordinate of its end."
   (apply #'say-lines canvas y
          (wrapped-text text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
 
 (defun say-ending (canvas pane y)
-  "Write, from Y down, how the last plan ended, if one has. Return where that ends."
+  "Draw a text that says how the last plan ended, if one has ended, from Y down. Return the y
+coordinate of its end."
   (let ((ended (plan-look-ended (plan-look-of pane))))
     (if ended
         (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
@@ -89,9 +91,9 @@
     (if (and interface (plan-runner-tasks (interface-runner interface)))
         (say-text canvas pane +plan-head+ "Looking at the plans ...")
         (let ((y (say-text canvas pane +plan-head+
-                           "No plan is under way. PLAN name ... starts one.")))
+                           "No plan is running. The line PLAN name ... starts a plan.")))
           (say-ending canvas pane
-                      (say-lines canvas y (line-button pane "Which plans are there?" "plan"
+                      (say-lines canvas y (line-button pane "List the plans" "plan"
                                                        "List the plans that can be started")))))))
 
 ;;; Painting.
@@ -105,7 +107,7 @@
           (plan-look-page look) (plan-look-traced-p look) (plan-look-ended look))))
 
 (defun draw-plan-tree (canvas pane)
-  "Draw the tree of tasks that PANE shows. Return where it ends."
+  "Draw the tree of tasks for PANE. Return the y coordinate of its end."
   (let ((tree (plan-look-tree (plan-look-of pane))))
     (if (and tree (plusp (tree-image-plans tree)))
         (say-ending canvas pane
@@ -113,7 +115,7 @@
         (say-no-plan canvas pane))))
 
 (defun draw-plan-timeline (canvas pane)
-  "Draw the timeline that PANE shows. Return where it ends."
+  "Draw the timeline for PANE. Return the y coordinate of its end."
   (let ((page (plan-look-page (plan-look-of pane))))
     (case page
       ((nil) (say-no-plan canvas pane))
@@ -123,8 +125,8 @@
                             (line-button pane "Keep a trace from now on" "trace-plans on"
                                          "Keep a trace of what plans do")))
       (:too-long (say-text canvas pane +plan-head+
-                           (format nil "The trace is too long to be drawn again and again. ~
-                                        PLAN-TIMELINE plans.svg saves a picture.")))
+                           (format nil "The trace is too long to be drawn in the window. ~
+                                        The line PLAN-TIMELINE plans.svg saves a picture.")))
       (t (draw-page canvas page :width (content-width pane) :top +plan-head+
                                 :from (pane-offset pane)
                                 :to (+ (pane-offset pane) (nth-value 1 (pane-size pane))))))))
@@ -146,7 +148,7 @@
 ;;; timeline itself rewinds the run to that tick. The right button offers lines of the prompt.
 
 (defstruct (plan-moment (:constructor make-plan-moment (tick bar)) (:copier nil))
-  "The TICK of a timeline, and the BAR or text that is drawn there, or NIL."
+  "A point of a timeline: its TICK, and BAR, the bar or text that is drawn at the point, or NIL."
   (tick 0 :type integer :read-only t)
   (bar nil :read-only t))
 
@@ -168,22 +170,22 @@
 (defmethod describe-subject ((bar bar) stream) (format stream "Task ~A~%" (subject-title bar)))
 
 (defmethod describe-subject ((moment plan-moment) stream)
-  (format stream "Tick ~D: click to go back to it~@[; drawn here: ~A~]~%" (plan-moment-tick moment)
+  (format stream "Tick ~D: click to rewind to it~@[; drawn here: ~A~]~%" (plan-moment-tick moment)
           (and (plan-moment-bar moment) (subject-title (plan-moment-bar moment)))))
 
 ;;; What can be done.
 
 (defun task-offers (serial)
   (list (list "Its stack and variables" (format nil "plan-tree ~D" serial))
-        (list "Why is it where it is?" (format nil "why ~D" serial))))
+        (list "Explain how it got into this state" (format nil "why ~D" serial))))
 
 (defmethod offers ((image task-image) window)
   (declare (ignore window))
   (let ((serial (task-image-serial image)))
     (append (task-offers serial)
             (list (if (eq :stepped (task-image-look image))
-                      (list "Let it go without stopping" (format nil "step-task ~D off" serial))
-                      (list "Stop when it goes on, and step" (format nil "step-task ~D" serial)))
+                      (list "Let it run without stopping" (format nil "step-task ~D off" serial))
+                      (list "Step it from its next expression" (format nil "step-task ~D" serial)))
                   (list "End it" (format nil "end-task ~D" serial))))))
 
 (defmethod offers ((bar bar) window)
@@ -193,7 +195,7 @@
 (defun rewind-line (tick) (format nil "rewind-to ~D" tick))
 
 (defmethod offers ((moment plan-moment) window)
-  (cons (list "Go back to it" (rewind-line (plan-moment-tick moment)))
+  (cons (list "Rewind to this tick" (rewind-line (plan-moment-tick moment)))
         (and (typep (plan-moment-bar moment) 'bar)
              (offers (plan-moment-bar moment) window))))
 
@@ -208,7 +210,8 @@
          (tick-at x (scale-for page (content-width pane))))))
 
 (defun plan-subject-at (pane x y)
-  "Return the subject at X, Y of PANE: a button, the mark or image of a task, a moment; or NIL."
+  "Return the subject that PANE shows at X, Y: a button, the fold mark or image of a task, or a
+point of the timeline. Return NIL if there is none."
   (let* ((subjects (pane-subjects pane))
          (subject (subject-at (if (< y +plan-head+)
                                   (remove-if-not #'button-p subjects :key #'first)
@@ -220,10 +223,10 @@
 (defmethod hover-text ((pane plan-pane) x y) (subject-text (plan-subject-at pane x y)))
 
 (defun go-back-to (pane tick)
-  "Make the prompt rewind the run that PANE shows to TICK."
+  "Make the prompt rewind the run of PANE to TICK."
   (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
       (give-line (window-conversation (window-of pane)) (rewind-line tick))
-      (hint (window-of pane) "That is now.")))
+      (hint (window-of pane) "The run is at this tick now.")))
 
 (defmethod handle-click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))

@@ -6,14 +6,15 @@
 ;;; the world continues behind it. It is painted again whenever a pane below it is.
 
 (defstruct (row (:constructor make-row (text &key action tick stays-p)) (:copier nil))
-  "A click on the row TEXT calls ACTION, a function of no arguments or NIL, and closes the popup
-unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cannot be."
+  "A row of the popup, with TEXT. A click on the row calls ACTION, a function of no arguments or
+NIL, and closes the popup unless STAYS-P. TICK is a function that returns true if the row is ticked,
+or NIL if the row has no box to tick."
   (text "" :type string :read-only t)
   (action nil :type (or null function) :read-only t)
   (tick nil :type (or null function) :read-only t)
   (stays-p nil :read-only t))
 
-(defconstant +row-height+ 18 "How high a row is, in pixels.")
+(defconstant +row-height+ 18 "The height of a row, in pixels.")
 
 (defclass popup-pane (display-pane)
   ((rows :initform '() :accessor pane-rows)
@@ -24,7 +25,7 @@ unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cann
    ;; The time of the click that has replaced the rows, in milliseconds, or NIL.
    (turned :initform nil :accessor pane-turned))
   (:default-initargs :background clim:+gray97+)
-  (:documentation "A list of rows on top of the window."))
+  (:documentation "The popup of a window: a list of rows above its other panes."))
 
 (defun window-popup (window) (pane-named window 'popup))
 
@@ -63,7 +64,7 @@ unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cann
     (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
 
 (defun paint-popup-over (pane)
-  "Paint the popup over PANE, if there is one and the X server does not keep it there."
+  "Paint the popup again if it is open and the painting of PANE may have covered it."
   (unless (or (typep pane 'popup-pane)
               (clim:sheet-direct-mirror pane)
               (not (popup-open-p (window-of pane))))
@@ -76,7 +77,8 @@ unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cann
 ;;; Opening and closing.
 
 (defun place-popup (popup x y)
-  "Put POPUP, as large as its rows need, at X, Y of the window, but inside of it."
+  "Move POPUP to X, Y of the window and make it as large as its rows need, but keep it inside the
+window."
   (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
     (let* ((rows (pane-rows popup))
            (columns (loop for row in rows maximize (length (row-text row))))
@@ -89,8 +91,8 @@ unless STAYS-P. TICK, a function, says whether the row is ticked; NIL if it cann
                   width height))))
 
 (defun open-popup (window rows x y &optional (opener t))
-  "Show ROWS on top of WINDOW, the upper left corner at X, Y of it. OPENER is the command that does
-so, a symbol, or the menu, or T."
+  "Open the popup of WINDOW with ROWS and its upper left corner at X, Y. OPENER is the command that
+opens the popup, a symbol, or the menu that is shown, or T."
   (let ((popup (window-popup window)))
     (setf (pane-rows popup) rows
           (pane-opener popup) opener
@@ -103,7 +105,8 @@ so, a symbol, or the menu, or T."
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
-  "Close the popup of WINDOW. Return what had opened it, or NIL if there was none."
+  "Close the popup of WINDOW. Return the command or menu that had opened the popup, or NIL if no
+popup was open."
   (let ((opener (open-opener window)))
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
@@ -135,7 +138,8 @@ so, a symbol, or the menu, or T."
 ;;; A click on a row may replace the rows. The second click of a double click is not meant for
 ;;; these.
 
-(defconstant +double-click+ 500 "Two clicks within so many milliseconds are a double click.")
+(defconstant +double-click+ 500
+  "The longest time between the two clicks of a double click, in milliseconds.")
 
 (defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
   (let ((rows (pane-rows pane)) (turned (pane-turned pane)) (time (clim:event-timestamp event)))
@@ -147,13 +151,13 @@ so, a symbol, or the menu, or T."
 ;;;; Help, layers and robots
 
 (defparameter *mouse-help*
-  '("" "Mouse" "  hover               the strip below tells what is there"
-    "  click               pick it; it is described below"
-    "  right button        what can be done with it"
-    "  drag the map        move the view; the wheel zooms"
-    "  drag a thing        while time stands still: put it elsewhere"
-    "  titles, splitters   fold displays, make them larger"
-    "  designators         where they do not fit: left scrolls down, right up, middle offers")
+  '("" "Mouse" "  hover               the strip at the bottom describes what is there"
+    "  click               select a thing; the commands describe it"
+    "  right button        open a menu of actions"
+    "  drag the map        move the view; the mouse wheel zooms"
+    "  drag a thing        move the thing, while time stands still"
+    "  titles, splitters   click to fold a display, drag to resize it"
+    "  designators         if too long: left button scrolls down, right up, middle opens menu")
   "The lines of the help panel on the mouse.")
 
 (defun help-rows ()
@@ -162,9 +166,9 @@ so, a symbol, or the menu, or T."
                   (loop for button in *buttons*
                         collect (format nil "  ~7A ~A" (key-text (button-key button))
                                         (button-help button)))
-                  (list "  arrows  move the view" "  return  back to the line that is typed"
-                        "  escape  close such a panel, or as return"
-                        "  F10     the menus: arrows and return choose")
+                  (list "  arrows  move the view" "  return  go back to the input line"
+                        "  escape  close this panel, or go back to the input line"
+                        "  F10     open the menus: arrows move, return chooses")
                   *mouse-help*)))
 
 ;;; Layers.
@@ -176,13 +180,14 @@ so, a symbol, or the menu, or T."
     (repaint-if-changed (pane-named window 'world))))
 
 (defun layer-text (layer)
-  "Return the name of LAYER in the panel, with the words for it in lines of the prompt."
+  "Return the text for LAYER in the panel of layers: its title, and its names at the prompt if they
+differ."
   (let ((title (layer-title layer)) (words (layer-words layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 
 (defun layer-rows (window)
-  "Return the rows of the panel of layers. A window has a title, and the mouse shows what things
-are, so there are none for these."
+  "Return the rows of the panel of layers. The layers for title and legend have no rows, because the
+window has a title and the mouse shows what things are."
   (flet ((layer-row (layer)
            (make-row (layer-text layer)
                      :tick (lambda () (member layer (window-layers window)))
@@ -206,7 +211,8 @@ are, so there are none for these."
     (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
 
 (defun robot-rows (window)
-  "Return the rows of the menu of robots. The window shows the one that its prompt commands."
+  "Return the rows of the menu of robots. A click on a row makes the prompt command that robot, and
+the window shows the same robot."
   (flet ((robot-row (name)
            (make-row (format nil "~A" name)
                      :tick (lambda () (same-name-p name (shown-robot window)))

@@ -11,8 +11,8 @@
   ((transcript :initarg :transcript :reader console-transcript)
    ;; The last line that was entered.
    (entered :initform "" :accessor console-entered))
-  (:documentation "A console that writes to a transcript; something else shows the line that is
-being typed."))
+  (:documentation "A console that writes its output to a transcript. Another pane shows the input
+line."))
 
 (defun tell-news (console)
   (funcall (transcript-news (console-transcript console))))
@@ -59,7 +59,8 @@ being typed."))
 ;;; A prompt at work.
 
 (defstruct (conversation (:constructor make-conversation (session console over)) (:copier nil))
-  "The prompt of a window. OVER is called, with no arguments, when its user has left it."
+  "The prompt of a window. OVER is a function that is called, with no arguments, when the user has
+left the prompt."
   (session nil :read-only t)
   (console nil :type window-console :read-only t)
   (over nil :type function :read-only t)
@@ -68,9 +69,9 @@ being typed."))
   (lost-p nil :type boolean))
 
 (defun begin-conversation (transcript size place over)
-  "Return a prompt that writes to TRANSCRIPT, which has room for as many columns and rows as SIZE
-returns. PLACE is called before each line; OVER when its user leaves it. It begins in the package of
-this thread."
+  "Return a prompt that writes to TRANSCRIPT and starts in the package of this thread. SIZE is a
+function that returns the columns and rows of TRANSCRIPT. The function PLACE is called before each
+line, and OVER when the user leaves the prompt."
   (let ((console (make-instance 'window-console
                                 :transcript transcript :window size
                                 :stream (make-instance 'transcript-stream
@@ -82,7 +83,8 @@ this thread."
                        console over)))
 
 (defun converse (conversation simulation robot-name)
-  "Read and run lines until the prompt's user leaves it. Note if something else ends its thread."
+  "Read and run lines until the user leaves the prompt. Record in CONVERSATION if its thread ends
+for another reason."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
@@ -100,14 +102,15 @@ this thread."
 
 ;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
 (defun restart-if-lost (conversation simulation robot-name)
-  "Start the thread of the prompt again if a line or program has ended it."
+  "Start a new thread for the prompt if a line or a program has ended the old one."
   (when (conversation-lost-p conversation)
-    (say-in conversation "The thread of this prompt was ended, and with it the running line. ~
-                          A new thread starts.~%")
+    (say-in conversation "The thread of this prompt was ended, and its running line with it. A new ~
+                          thread starts.~%")
     (start-conversation conversation simulation robot-name)))
 
 (defun being-typed (conversation)
-  "Return what has been typed at the prompt of CONVERSATION, and not entered; NIL if nothing."
+  "Return the text in the input line of CONVERSATION that has not been entered yet, or NIL if the
+line is empty."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line
          (not (busy-with conversation))
@@ -118,19 +121,21 @@ this thread."
   (say (console-transcript (conversation-console conversation)) (apply #'format nil arguments)))
 
 (defun tell-to-answer (conversation what)
-  (say-in conversation "~A: first answer the break, with one of ~A.~%"
+  (say-in conversation "~A: answer the break first, with one of ~A.~%"
           what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
 ;; While a break waits for an answer, other lines would be taken for a wrong answer.
 (defun answered-first-p (conversation line)
-  "True if the prompt waits for an answer, and LINE is none; then say so."
+  "Return true if LINE cannot run because a break waits for an answer at the prompt and LINE is no
+answer. Print a message in this case."
   (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))
              (not (ars-magna.cli:answers-break-p line)))
     (tell-to-answer conversation (string-upcase (string-right-trim " " line)))
     t))
 
 (defun give-line (conversation line)
-  "Make the prompt run LINE, a string, as if it had been typed; the line being typed stays."
+  "Make the prompt run LINE, a string, as if the user had entered it. The input line does not
+change."
   (unless (answered-first-p conversation line)
     (ars-magna.cli:enter-line (conversation-session conversation) line)
     (tell-news (conversation-console conversation))))
@@ -141,19 +146,19 @@ this thread."
   (tell-news (conversation-console conversation)))
 
 (defun begin-line-with (conversation text)
-  "Put TEXT into the line being typed, for the user to complete."
+  "Replace the input line by TEXT, for the user to complete."
   (unless (answered-first-p conversation text)
     (mapc (lambda (key) (give-key conversation key))
           (list :control-e :control-u text))))
 
 (defun busy-with (conversation)
-  "Return the running line, or NIL if the prompt waits for one."
+  "Return the text of the running line, or NIL if no line is running."
   (and (conversation-thread conversation)
        (ars-magna.cli:at-work-on (conversation-session conversation))
        (console-entered (conversation-console conversation))))
 
 (defun line-awaiting-input (conversation)
-  "Return the running line, if a program in it waits for typed input; or NIL."
+  "Return the text of the running line if a program in it waits for typed input, else NIL."
   (let ((console (conversation-console conversation)))
     (and (ars-magna.cli:console-asked-p console) (console-entered console))))
 

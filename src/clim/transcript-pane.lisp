@@ -26,14 +26,16 @@
 ;;; Rows.
 
 (defstruct (text-row (:constructor make-text-row (number start stop spans)) (:copier nil))
-  "One row of the line NUMBER in view: from the column START to STOP. SPANS are those of the line."
+  "A row on the screen: the part of line NUMBER of the transcript from column START to STOP. SPANS
+are the coloured parts of the whole line."
   (number 0 :type fixnum :read-only t)
   (start 0 :type fixnum :read-only t)
   (stop 0 :type fixnum :read-only t)
   (spans '() :type list :read-only t))
 
 (defun row-end (text start columns)
-  "Return where a row of COLUMNS that begins in TEXT at START ends: after a blank, if possible."
+  "Return the index in TEXT where a row that begins at START ends. The row has at most COLUMNS
+characters and ends after a blank, if possible."
   (let ((end (+ start columns)))
     (if (<= (length text) end)
         (length text)
@@ -54,7 +56,8 @@
             (max 1 (floor (- height 4) +line-height+)))))
 
 (defun last-of-first-page (pane)
-  "Return the number of the line that ends the first page of what PANE can show."
+  "Return the number of the last line on the first page of the transcript of PANE, or NIL if the
+transcript is shorter than a page."
   (let ((transcript (pane-transcript pane)))
     (multiple-value-bind (columns rows) (columns-and-rows pane)
       (loop for (number line) in (reverse (numbered-lines transcript
@@ -63,22 +66,22 @@
             when (<= rows above) return number))))
 
 (defun kept-in-view (pane last)
-  "Return the last line that PANE shows, by number, if LAST is wanted there; NIL for the newest.
-The page must be whole, and its lines still kept."
+  "Return the number of the line to show last in PANE, close to LAST, so that the page is full and
+its lines are still kept. Return NIL for the newest line."
   (let ((oldest (last-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))
          (max last oldest))))
 
 (defun pane-last (pane)
-  "Return the number of the last line in view in PANE, or NIL if that is the newest."
+  "Return the number of the last line that PANE shows, or NIL if it is the newest line."
   (let ((scrolled (pane-scrolled pane)))
     (and scrolled
          (= (pane-entered pane) (transcript-entered (pane-transcript pane)))
          (kept-in-view pane scrolled))))
 
 (defun rows-in-view (pane count columns)
-  "Return the last COUNT rows of COLUMNS that PANE is to show."
+  "Return the rows that PANE shows, at most COUNT, each of at most COLUMNS characters."
   (let ((rows '()))
     (loop for (number line) in (numbered-lines (pane-transcript pane) count (pane-last pane))
           while (< (length rows) count)
@@ -94,9 +97,10 @@ The page must be whole, and its lines still kept."
     (:yellow #x7A4F00) (:lightyellow #x7A4F00) (:blue #x0000C0) (:lightblue #x0000C0)
     (:violet #x7A00A0) (:lightviolet #x7A00A0) (:cyan #x005A70) (:lightcyan #x005A70)
     (:grey #x606060))
-  "In which colours the transcript shows the inks of a terminal: dark ones, as it is white.")
+  "Lists (ink color): the colour that the transcript uses for each ink of a terminal. The colours
+are dark, because the transcript is white.")
 
-(defconstant +selection-color+ #xB4D5FE "The background of selected text.")
+(defconstant +selection-color+ #xB4D5FE "The background colour of selected text.")
 
 (defun column-x (column) (+ 4 (* column +character-width+)))
 
@@ -119,15 +123,16 @@ The page must be whole, and its lines still kept."
       (and (= (first place) (first other)) (< (second place) (second other)))))
 
 (defun selection (pane)
-  "Return where the selection of PANE begins and where it ends, or NIL if there is none."
+  "Return the start and the end of the selection in PANE, each a list (number column), or NIL if
+nothing is selected."
   (let ((mark (pane-mark pane)) (point (pane-point pane)))
     (cond ((or (null mark) (null point) (equal mark point)) nil)
           ((before-p mark point) (values mark point))
           (t (values point mark)))))
 
 (defun selected-columns (row from to)
-  "Return where the selection in ROW begins and ends, for a selection between the places FROM and
-TO."
+  "Return the columns where the selected part of ROW starts and ends. The selection is between FROM
+and TO, lists (number column)."
   (let ((number (text-row-number row)) (start (text-row-start row)) (stop (text-row-stop row)))
     (values (cond ((< number (first from)) stop)
                   ((= number (first from)) (max start (second from)))
@@ -137,7 +142,8 @@ TO."
                   (t stop)))))
 
 (defun paint-selected (canvas row y from to)
-  "Paint the background of the selection in ROW, for a selection between the places FROM and TO."
+  "Paint the background of the selected part of ROW. The selection is between FROM and TO, lists
+(number column)."
   (multiple-value-bind (start stop) (selected-columns row from to)
     (when (< start stop)
       (with-gcontext (draw-gcontext* :foreground +selection-color+)
@@ -158,7 +164,7 @@ TO."
 ;;; Scrolling.
 
 (defun scroll-lines (pane count)
-  "Scroll PANE down by COUNT lines, but not beyond its end."
+  "Scroll PANE down by COUNT lines, but not beyond the end of the transcript."
   (let ((transcript (pane-transcript pane)))
     (setf (pane-scrolled pane)
           (kept-in-view pane (+ (or (pane-last pane) (transcript-newest transcript)) count))
@@ -183,13 +189,14 @@ TO."
   (scroll-lines pane (* 3 steps)))
 
 (defun scroll-page (pane direction)
-  "Show the page of PANE after the one in view, or before it if DIRECTION is -1."
+  "Scroll PANE by a page: down if DIRECTION is 1, up if it is -1."
   (scroll-lines pane (* direction (max 1 (1- (nth-value 1 (columns-and-rows pane)))))))
 
 ;;; Selecting.
 
 (defun place-at (pane x y)
-  "Return the place in the transcript that is shown at X, Y of PANE, or NIL."
+  "Return the line and column of the transcript at X, Y of PANE, as a list (number column). Return
+NIL if PANE shows no text."
   (let* ((rows (pane-rows pane))
          (row (and rows (nth (clamp (floor (- y 2) +line-height+) 0 (1- (length rows))) rows))))
     (and row
@@ -198,7 +205,7 @@ TO."
                       (text-row-start row) (text-row-stop row))))))
 
 (defun selected-text (pane)
-  "Return the selection in PANE, or all of its transcript."
+  "Return the selected text of PANE, or its whole transcript if nothing is selected."
   (let ((transcript (pane-transcript pane)))
     (multiple-value-bind (from to) (selection pane)
       (if from

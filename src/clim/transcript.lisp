@@ -6,14 +6,14 @@
 ;;; answer there.
 
 (defun refuse-debugger (condition hook)
-  "Signal MISUSE, as CONDITION calls for a debugger in the thread of a window."
+  "Signal MISUSE instead of entering the debugger for CONDITION in the thread of a window."
   (declare (ignore hook))
-  (reject-use "It calls for the debugger (~A), and a window does not wait for that. SAVE-PICTURE ~
-               at the prompt draws it where the debugger answers."
+  (reject-use "Drawing code has called the debugger (~A), which a window does not allow. Call ~
+               SAVE-PICTURE at the prompt: it draws the same, and the debugger works."
               (one-line-text condition)))
 
 (defmacro without-debugger (&body body)
-  "Run BODY; anything in it that would call a debugger is an error."
+  "Run BODY. An attempt in BODY to enter the debugger signals an error instead."
   `(let ((*break-on-user-error* nil) (*debugger-refused-p* t))
      (with-debugger-hook (#'refuse-debugger) ,@body)))
 
@@ -23,7 +23,7 @@
       (say-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
 
 (defmacro with-guarded-command ((window title) &body body)
-  "Run BODY, the work of the command TITLE; write its error, if any, into WINDOW."
+  "Run BODY, which executes the command TITLE. If BODY signals an error, print it in WINDOW."
   `(call-guarded-command ,window ,title (lambda () ,@body)))
 
 ;;;; The transcript
@@ -31,11 +31,13 @@
 ;;; Any thread may add lines; they are kept newest first, the last few thousand of them. Each has a
 ;;; number, counted from the first there was. Lines have colours in them as at a terminal.
 
-(defconstant +transcript-length+ 2000 "How many lines of a transcript are kept.")
-(defconstant +longest-line+ 4000 "Most characters in a line; a longer one continues as another.")
+(defconstant +transcript-length+ 2000 "The number of lines of a transcript that are kept.")
+(defconstant +longest-line+ 4000
+  "The largest number of characters of a line. A longer line is continued as another line.")
 
 (defstruct (transcript (:constructor make-transcript (news)) (:copier nil))
-  "Lines of text, newest first. NEWS is called, with no arguments, when there is more."
+  "The text of a window, as lines, newest first. NEWS is a function that is called, with no
+arguments, after each change."
   (news nil :type function :read-only t)
   (lock (make-lock "transcript") :read-only t)
   (lines (list "") :type list)
@@ -53,7 +55,7 @@
   (incf (transcript-newest transcript)))
 
 (defun add-part (transcript part)
-  "Add PART to the last line of TRANSCRIPT; a return character goes back to the line's beginning."
+  "Add PART to the last line of TRANSCRIPT. A return character in PART erases the line before it."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))
@@ -68,8 +70,8 @@
            (when more (begin-line-of transcript))))
 
 (defun forget-lines (transcript)
-  "Keep only the newest lines of TRANSCRIPT, if there are many; the first says that others are
-gone."
+  "Drop the oldest lines of TRANSCRIPT if there are too many. The first line then says that earlier
+lines are gone."
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
     (setf (transcript-lines transcript)
           (append (subseq (transcript-lines transcript) 0 (1- +transcript-length+))
@@ -77,7 +79,7 @@ gone."
           (transcript-count transcript) +transcript-length+)))
 
 (defun call-changing-transcript (transcript function)
-  "Call FUNCTION, which changes TRANSCRIPT, and report that change."
+  "Call FUNCTION, which changes TRANSCRIPT, and report the change to the window."
   (with-lock ((transcript-lock transcript))
     (funcall function)
     (incf (transcript-total transcript))
@@ -88,7 +90,7 @@ gone."
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
 (defun say-in-window (window &rest arguments)
-  "Add the text that FORMAT makes of ARGUMENTS to the transcript of WINDOW."
+  "Format ARGUMENTS, as FORMAT does, and add the text to the transcript of WINDOW."
   (say (window-transcript window) (apply #'format nil arguments)))
 
 (defun say-entered (transcript text)
@@ -97,7 +99,7 @@ gone."
                                          (add-text transcript text))))
 
 (defun unsay (transcript text)
-  "Remove TEXT if it is the whole last line of TRANSCRIPT."
+  "Erase the last line of TRANSCRIPT if it is TEXT."
   (call-changing-transcript
    transcript
    (lambda ()
@@ -105,7 +107,7 @@ gone."
        (setf (first (transcript-lines transcript)) "")))))
 
 (defun go-on-from (transcript lines)
-  "Make TRANSCRIPT, which has not been shown yet, begin with LINES, newest first."
+  "Make LINES, newest first, the lines of TRANSCRIPT, which has not been shown yet."
   (call-changing-transcript
    transcript
    (lambda ()
@@ -122,8 +124,8 @@ gone."
            (transcript-count transcript) 1))))
 
 (defun numbered-lines (transcript count &optional last)
-  "Return at most COUNT lines of TRANSCRIPT up to the one numbered LAST, by default the newest,
-which comes first; each as a list of its number and its text."
+  "Return the last COUNT lines of TRANSCRIPT up to line number LAST, by default the newest. Each
+line is a list (number text); the newest comes first."
   (with-lock ((transcript-lock transcript))
     (let* ((newest (transcript-newest transcript))
            (skip (if last (max 0 (- newest last)) 0)))
@@ -133,12 +135,12 @@ which comes first; each as a list of its number and its text."
             collect (list number line)))))
 
 (defun latest-lines (transcript count)
-  "Return a list of the last COUNT lines of TRANSCRIPT, oldest first."
+  "Return the texts of the last COUNT lines of TRANSCRIPT, oldest first."
   (reverse (mapcar #'second (numbered-lines transcript count))))
 
 (defun text-between (transcript from to)
-  "Return the text of TRANSCRIPT between the places FROM and TO, each a list of the number of a line
-and a column, without colours."
+  "Return the text of TRANSCRIPT from FROM to TO, without colours. FROM and TO are lists (number
+column) of a line and a column."
   (with-output-to-string (out)
     (loop for ((number text) . more) on (reverse (numbered-lines transcript (transcript-count
                                                                              transcript)

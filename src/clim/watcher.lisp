@@ -3,16 +3,18 @@
 (in-package :ars-magna.clim)
 
 (defstruct (progress (:copier nil))
-  "The state of time in a run. STATE is a word, MORE a text that continues it or NIL; RATE as set, a
-number or :FREE, or NIL; REACHED in ticks a second, or NIL if that is not known."
+  "How time passes in a run. STATE is a keyword, see STATE-WORDS. MORE is a text that continues the
+words for STATE, or NIL. RATE is the rate that was set: ticks per second, :FREE or NIL. REACHED is
+the measured rate in ticks per second, or NIL if it is unknown."
   (state :still :type symbol :read-only t)
   (more nil :type (or null string) :read-only t)
   (rate nil :read-only t)
   (reached nil :type (or null real) :read-only t))
 
 (defstruct (sample (:copier nil))
-  "The last look at a run: its tick and the number of calls of user code then; the tick and second
-at which measuring the rate began, and that rate."
+  "What was observed at the last look at a run. LAST-TICK is its tick and CALLS its number of calls
+of user code. Measuring the rate began at TICK and SECONDS. REACHED is the measured rate in ticks
+per second, or NIL."
   (last-tick 0 :type fixnum)
   (calls nil :type (or null fixnum))
   (tick 0 :type fixnum)
@@ -23,9 +25,9 @@ at which measuring the rate began, and that rate."
   (ecase state
     (:running "running")
     (:paused "paused")
-    (:still "not live: ticks pass when a program asks for them")
-    (:forked "in a fork: ticks pass when lines ask for them")
-    (:ended "the trial is over: TRIAL OFF leaves it")
+    (:still "not live: ticks pass only when a program requests them")
+    (:forked "in a fork: ticks pass only while lines run")
+    (:ended "the trial is over: TRIAL OFF leaves the trial")
     (:stopped "stopped: the line RESUME continues")
     (:over "over")
     (:idle "idle: time stands still until there is something to do")
@@ -47,26 +49,29 @@ at which measuring the rate began, and that rate."
 ;;; Looking.
 
 (defun busy-p (simulation sample)
-  "Return in words which users' code has blocked SIMULATION since the last look, or NIL."
+  "Return a text about the user code that has blocked SIMULATION since the last look, or NIL if no
+code has."
   (multiple-value-bind (text calls) (users-code-under-way simulation)
     (and (eql calls (shiftf (sample-calls sample) calls))
          (= (simulation-tick simulation) (sample-last-tick sample))
          text)))
 
 (defun rate-set (simulation)
-  "Return at what rate ticks pass in SIMULATION, as set; NIL if there is none."
+  "Return the tick rate that was set for SIMULATION: ticks per second or :FREE. Return NIL if
+SIMULATION has no rate."
   (if (live-p simulation)
       (simulation-rate simulation)
       (nth-value 1 (ars-magna.cli:pace-of simulation))))
 
 (defun paused-here-p (simulation)
-  "True if time stands still in SIMULATION until RESUME: it is paused, or a paused trial."
+  "True if SIMULATION is paused, as a live run or as a trial, so that RESUME continues it."
   (if (live-p simulation)
       (paused-p simulation)
       (eq :paused (ars-magna.cli:pace-of simulation))))
 
 (defun state-of (simulation sample)
-  "Return the state of SIMULATION, and NIL or a text that continues its name."
+  "Return two values: the keyword of STATE-WORDS that says how time passes in SIMULATION, and a text
+that continues the words, or NIL."
   (let ((busy (busy-p simulation sample)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:pace-of simulation))))
@@ -82,14 +87,15 @@ at which measuring the rate began, and that rate."
           ((let ((*simulation* simulation)) (plans)) :waiting)
           (t :idle))))
 
-(defconstant +measure+ 10 "From how many ticks on the rate is measured.")
+(defconstant +measure+ 10 "The least number of ticks for a measurement of the rate.")
 
 (defun begin-measuring (sample tick seconds)
   (setf (sample-tick sample) tick
         (sample-seconds sample) seconds))
 
 (defun measure (sample tick seconds)
-  "Return how many ticks a second have passed recently; it is TICK at SECONDS."
+  "Return the measured rate in ticks per second, or NIL if it is unknown. TICK and SECONDS are the
+present tick and time."
   (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
     (when (or (minusp ticks) (and (> elapsed 0.9) (or (>= ticks +measure+) (> elapsed 5))))
       ;; Rounded to useful digits.
@@ -101,7 +107,8 @@ at which measuring the rate began, and that rate."
     (sample-reached sample)))
 
 (defun progress-of (simulation sample)
-  "Return the state of time in SIMULATION; SAMPLE has the last look."
+  "Return a PROGRESS object for SIMULATION. SAMPLE has the results of the last look, and is
+updated."
   (multiple-value-bind (state more) (state-of simulation sample)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
       (setf (sample-last-tick sample) tick)
@@ -123,14 +130,14 @@ at which measuring the rate began, and that rate."
 ;;; looks for such changes twice a second.
 
 (defconstant +pause+ 0.028
-  "How long to wait after painting before wanting the next picture, in seconds.")
-(defconstant +patience+ 0.5 "How often to look for changes between ticks, in seconds.")
+  "The seconds from painting a picture to requesting the next snapshot.")
+(defconstant +patience+ 0.5 "The seconds between two checks for changes between ticks.")
 
 (defstruct (watcher (:constructor make-watcher (robot news &optional (gone #'values)))
                     (:copier nil))
-  "ROBOT is the name of the robot that is watched. NEWS is called, with no arguments and in some
-thread, for each new snapshot; it must be quick. GONE is called, with the reason, when the run that
-is watched has been over for a while."
+  "Makes snapshots of a run for a window. ROBOT is the name of the robot that is watched. The
+function NEWS is called, with no arguments and in any thread, after each new snapshot; NEWS must be
+quick. The function GONE is called with the reason when the watched run has been over for a while."
   (robot nil :type symbol)
   (news nil :type function :read-only t)
   (gone nil :type function :read-only t)
@@ -163,7 +170,7 @@ is watched has been over for a while."
     (if journal (journal-length journal) 0)))
 
 (defun publish (watcher simulation)
-  "Make a snapshot of SIMULATION, which stands still, and report it."
+  "Make a snapshot of SIMULATION, whose ticks must not pass meanwhile, and report it to the window."
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
         (watcher-traces watcher) (traces-of-change simulation)
@@ -176,12 +183,12 @@ is watched has been over for a while."
   (funcall (watcher-news watcher)))
 
 (defun painted (watcher)
-  "Note that the last snapshot of WATCHER was painted; the next may come."
+  "Record that the last snapshot of WATCHER was painted, so that the next may be made."
   (signal-semaphore (watcher-painted watcher)))
 
 (defun fetch (watcher)
-  "Make a snapshot between ticks if one is still wanted then; not if a program passes the ticks
-itself: it will come with the next tick."
+  "Make a snapshot between two ticks if WATCHER still wants one. If a program passes the ticks
+itself, do nothing, because the next tick makes the snapshot."
   (let ((simulation (watcher-simulation watcher)))
     (when (and simulation (live-p simulation))
       (asking (simulation)
@@ -197,7 +204,7 @@ itself: it will come with the next tick."
 
 ;; A run that is being started again is over for a moment.
 (defun check-run-over (watcher)
-  "Report, at the second look, that the run that WATCHER watches is over."
+  "Report that the run of WATCHER is over, when two checks in a row have found it over."
   (let* ((simulation (watcher-simulation watcher))
          (reason (and simulation (simulation-over simulation))))
     (when (and reason (watcher-over-before-p watcher))
@@ -205,7 +212,7 @@ itself: it will come with the next tick."
     (setf (watcher-over-before-p watcher) (and reason t))))
 
 (defun look-at-progress (watcher)
-  "Find out the state of time in the run of WATCHER; report it if it has changed."
+  "Determine how time passes in the run of WATCHER, and report a change to the window."
   (let ((simulation (watcher-simulation watcher)))
     (when simulation
       ;; The run continues meanwhile, and a look may come when something is half done.
@@ -224,7 +231,7 @@ itself: it will come with the next tick."
     (funcall (watcher-news watcher))))
 
 (defun look-for-changes (watcher)
-  "Look for changes that no observer reports."
+  "Check the run of WATCHER for changes that no observer reports."
   (look-for-plans watcher)
   (look-at-progress watcher)
   (look-at-scale watcher)
@@ -247,13 +254,13 @@ itself: it will come with the next tick."
 ;;; Beginning and ending.
 
 (defun leave-simulation (simulation observer)
-  "Remove OBSERVER from SIMULATION, if there is one."
+  "Remove OBSERVER from SIMULATION, unless SIMULATION is NIL."
   (when simulation
     (asking (simulation) (remove-observer observer simulation))))
 
 ;; Other threads read the watched run of WATCHER: between two runs there must always be one.
 (defun watch-simulation (watcher simulation)
-  "Make WATCHER watch SIMULATION from now on, instead of its present run. Return WATCHER."
+  "Make WATCHER watch SIMULATION from now on instead of its present run. Return WATCHER."
   (let ((old (watcher-simulation watcher)) (observer (watcher-observer watcher))
         (tick (simulation-tick simulation)))
     (unless (eq simulation old)
@@ -273,7 +280,8 @@ itself: it will come with the next tick."
   watcher)
 
 (defun pace-pictures (watcher)
-  "Run the pacer of WATCHER until its work is over; report if something else ends this thread."
+  "Run the pacer of WATCHER until the window closes. Report to the window if this thread is ended
+for another reason."
   (unwind-protect (run-pacer watcher)
     (unless (watcher-over-p watcher)
       (setf (watcher-unpaced-p watcher) t)
@@ -286,7 +294,7 @@ itself: it will come with the next tick."
 
 ;; As for the thread of a prompt, it is not the one that ends which starts another.
 (defun restart-pacer-if-lost (watcher)
-  "Start another pacer for WATCHER if its own was ended, as the user may do to any thread."
+  "Start a new pacer thread for WATCHER if the user has ended the old one."
   (when (shiftf (watcher-unpaced-p watcher) nil) (start-pacer watcher)))
 
 (defun start-watching (watcher simulation)

@@ -15,7 +15,7 @@
     ,@(loop for section in +titled+
             collect (list (title-name section) 'title-pane :section section))
     ,@(loop for name in +splitters+ collect (list name 'splitter-pane)))
-  "Lists (name class option...): the parts of a window but its popup, in the order of painting.")
+  "Lists (name class option...): the parts of a window except its popup, in the order of painting.")
 
 (defun make-parts ()
   (loop for (name class . options) in *parts*
@@ -63,7 +63,7 @@
    (popup (clim:make-pane 'popup-pane :name 'popup :enabled-p nil)))
   (:layouts
    (default (clim:make-pane 'layout-pane :name 'layout :contents (cons popup (make-parts)))))
-  (:documentation "The displays of a robot in a window."))
+  (:documentation "A window that shows the displays of a robot and has a prompt."))
 
 (defun window-title (robot-name &optional place)
   (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
@@ -79,8 +79,8 @@
                               (ars-magna.cli:words-for-run simulation)))))))
 
 (defun make-robot-window (watcher &rest options)
-  "Return a window, not shown yet, for the robot of WATCHER. OPTIONS are CLIM's for frames, and
-:layers, :color-p and :usual-magnification."
+  "Return a new window for the robot of WATCHER, without showing it. OPTIONS are CLIM's options for
+frames, and :layers, :color-p and :usual-magnification."
   (let ((window (apply #'clim:make-application-frame 'robot-window
                        :pretty-name (window-title (watcher-robot watcher))
                        :watcher watcher options)))
@@ -91,8 +91,8 @@
                               (lambda () (match-robot window))
                               (lambda () (close-window window))))
     (push (watcher-robot watcher) (window-robots-shown window))
-    (say-in-window window "Type a command below and press return, or choose one from a menu. HELP ~
-                           lists all commands.~%")
+    (say-in-window window "Type a command below and press Return, or choose a command from a menu. ~
+                           HELP lists all commands.~%")
     window))
 
 (defun window-snapshot (window)
@@ -103,7 +103,7 @@
     (and snapshot (snapshot-robot snapshot (shown-robot window)))))
 
 (defun shown-robot-p (window image)
-  "True if IMAGE, of any snapshot, is of the robot whose details WINDOW shows."
+  "True if IMAGE, from any snapshot, is an image of the robot whose details WINDOW shows."
   (let ((shown (window-robot window)))
     (and shown (eq (robot-image-name image) (robot-image-name shown)))))
 
@@ -122,20 +122,21 @@
 
 (defclass call-event (clim:window-manager-event)
   ((function :initarg :function :reader function-to-call))
-  (:documentation "A function that the window's thread is to call with the window."))
+  (:documentation "An event with a FUNCTION that the thread of the window calls with the window."))
 
 (defmethod clim:handle-event ((sheet clime:top-level-sheet-mixin) (event call-event))
   (funcall (function-to-call event) (clim:pane-frame sheet)))
 
 (defun call-in-window (function window)
-  "Make WINDOW's thread call FUNCTION with it if it is on the screen. Any thread may ask."
+  "Make the thread of WINDOW call FUNCTION with WINDOW, if WINDOW is open. Any thread may call
+this."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (when sheet
       (clim:queue-event sheet (make-instance 'call-event :sheet sheet :function function)))
     (values)))
 
 (defun request-refresh (window)
-  "Request a refresh of WINDOW soon. Any thread may ask."
+  "Request that WINDOW be refreshed soon. Any thread may call this."
   (when (and (clim:frame-top-level-sheet window)
              (swap-if (car (window-queued window)) nil t))
     (call-in-window #'refresh-as-requested window)))
@@ -146,7 +147,7 @@
   (refresh window))
 
 (defun refresh (window)
-  "Paint those panes of WINDOW that would look different now, all at once."
+  "Paint all panes of WINDOW whose contents have changed, as one picture."
   (let ((snapshot (window-snapshot window)))
     (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
     (restart-pacer-if-lost (window-watcher window))
@@ -162,7 +163,7 @@
       (painted (window-watcher window)))))
 
 (defun request-repaint (window)
-  "Request painting all of WINDOW soon. Any thread may ask."
+  "Request that the whole WINDOW be painted soon. Any thread may call this."
   (setf (window-erased-p window) t)
   (request-refresh window))
 

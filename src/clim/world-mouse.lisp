@@ -10,7 +10,7 @@
   (zoom pane (expt 2 (- (signum steps))) x y))
 
 (defun point-at (pane x y)
-  "Return the point of the map that is painted at X, Y of PANE, in metres."
+  "Return the map coordinates of the point that PANE shows at X, Y, in metres, as two values."
   (let ((scale (pane-scale pane)))
     (values (/ (+ x (pane-left pane)) scale) (/ (+ y (pane-top pane)) scale))))
 
@@ -46,7 +46,8 @@
           reach))))
 
 (defun robots-at-middle (pane subjects x y)
-  "Return those of SUBJECTS that are robots with X, Y of PANE at their middle, the one shown first."
+  "Return the robots among SUBJECTS whose middle is close to X, Y of PANE. The robot whose details
+the window shows comes first."
   (let ((robots (remove-if-not (lambda (subject)
                                  (and (typep subject 'robot-image)
                                       (at-middle-p pane subject x y)))
@@ -55,8 +56,8 @@
                  :key (lambda (image) (shown-robot-p (window-of pane) image)))))
 
 (defun draggable-at (pane x y)
-  "Return the thing or robot that a drag from X, Y of PANE moves, or NIL: the selection, or a robot
-at its middle, whatever it stands on, or the smallest subject there."
+  "Return the thing or robot that a drag from X, Y of PANE moves, or NIL. It is the selected one if
+it is at X, Y; else a robot with its middle there; else the smallest one there."
   (let ((subjects (remove-if-not (lambda (subject) (typep subject '(or thing-image robot-image)))
                                  (subjects-under pane x y)))
         (key (window-selection (window-of pane))))
@@ -80,14 +81,14 @@ at its middle, whatever it stands on, or the smallest subject there."
                (move-view pane (- from-x x) (- from-y y)))))))
 
 (defun show-ghost (pane subject x y)
-  "Show in PANE where SUBJECT would be if it were dropped at X, Y."
+  "Mark in PANE the place X, Y where SUBJECT would be dropped, and describe the place in the strip."
   (multiple-value-bind (to-x to-y) (point-at pane x y)
     (setf (pane-ghost pane) (list x y))
     (hint (window-of pane)
           (if (cell-at pane x y)
               (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]" (subject-title subject)
                       to-x to-y (wall-at-p (view-map pane) to-x to-y))
-              (format nil "~A: that is not on the map" (subject-title subject))))
+              (format nil "~A: this place is not on the map" (subject-title subject))))
     (repaint-if-changed pane)))
 
 (defun paint-ghost (pane)
@@ -98,7 +99,7 @@ at its middle, whatever it stands on, or the smallest subject there."
                                            :line-thickness 2)))))
 
 (defgeneric moving-line (subject x y window)
-  (:documentation "Return the line that puts SUBJECT at X, Y, two texts, for the prompt of WINDOW.")
+  (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, two texts.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
     (format nil "(move-thing ~A ~A ~A)" (thing-form image) x y))
@@ -116,7 +117,7 @@ at its middle, whatever it stands on, or the smallest subject there."
           (give-line (window-conversation window)
                      (moving-line subject (coordinate-text x) (coordinate-text y) window))
           (hint window ""))
-        (hint window "That is not on the map."))
+        (hint window "This place is not on the map."))
     (repaint-if-changed pane)))
 
 (defmethod handle-drop ((pane world-pane) x y)

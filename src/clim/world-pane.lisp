@@ -16,10 +16,10 @@
    (fitted :initform nil :accessor pane-fitted)
    (scale-seen :initform graphics-scale* :accessor pane-scale-seen)
    (following-p :initform nil :accessor pane-following-p))
-  (:documentation "A part of the world."))
+  (:documentation "The part of the world that a pane shows, with its scale."))
 
-(defconstant +least-scale+ 1/16 "The least number of pixels of a cell in a window.")
-(defconstant +in-view+ 40 "How many pixels of the map stay in view, however it is moved.")
+(defconstant +least-scale+ 1/16 "The least scale of a window, in pixels per cell.")
+(defconstant +in-view+ 40 "The number of pixels of the map that always stay in view.")
 
 (defun window-map (window)
   (snapshot-map (window-snapshot window)))
@@ -27,22 +27,25 @@
 (defun view-map (pane) (window-map (window-of pane)))
 
 (defun pane-edges (pane)
-  "Return how many pixels at the left, top and bottom of PANE its coordinates and scale bar take."
+  "Return the widths in pixels of the coordinates and the scale bar at the left, top and bottom of
+PANE, as a list."
   (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
-  "Return the box (left top right bottom) of PANE in which the map is in view."
+  "Return the box (left top right bottom) of PANE that shows the map, without coordinates and scale
+bar."
   (multiple-value-bind (width height) (pane-size pane)
     (destructuring-bind (left top bottom) (pane-edges pane)
       (list left top (max left width) (max top (- height bottom))))))
 
 (defun in-view-p (pane x y)
-  "True if the map is in view at X, Y of PANE, and not a strip at its edge."
+  "True if X, Y of PANE is inside the box that shows the map, not in the coordinates or the scale
+bar."
   (destructuring-bind (left top right bottom) (view-box pane)
     (and (<= left x) (< x right) (<= top y) (< y bottom))))
 
 (defun place-view (pane left top)
-  "Make the view of PANE begin at LEFT, TOP, but not off the map."
+  "Move the upper left corner of the view of PANE to LEFT, TOP, but keep the map in view."
   (destructuring-bind (from-x from-y to-x to-y) (view-box pane)
     (let ((map (view-map pane)) (scale (pane-scale pane)))
       (flet ((within (value cells from to)
@@ -52,23 +55,24 @@
               (pane-top pane) (within top (map-height map) from-y to-y))))))
 
 (defparameter *all-in-view* "The whole map is in view; the wheel zooms in."
-  "What the strip says when there is nothing to follow.")
+  "The text in the strip if the robot is to be followed but the view shows the whole map.")
 
 (defun fit-no-longer (pane)
-  "Note that the user has changed the view of PANE; the strip no longer says that it fits."
+  "Record that the user has changed the view of PANE, so that it no longer fits the map
+automatically."
   (setf (pane-fitting-p pane) nil)
   (when (equal *all-in-view* (window-hint (window-of pane)))
     (setf (window-hint (window-of pane)) "")
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 (defun move-view (pane dx dy)
-  "Move the view of PANE by DX, DY pixels, but not off the map."
+  "Move the view of PANE by DX, DY pixels, but keep the map in view."
   (fit-no-longer pane)
   (place-view pane (+ (pane-left pane) dx) (+ (pane-top pane) dy))
   (repaint-if-changed pane))
 
 (defun zoom (pane factor &optional (x 0) (y 0))
-  "Make the view of PANE FACTOR times larger; the point at X, Y stays there."
+  "Magnify the view of PANE by FACTOR, so that the point at X, Y of PANE stays in place."
   (let ((old (pane-scale pane)))
     (setf (pane-scale pane) (clamp (* old factor) +least-scale+ 128))
     (let ((ratio (/ (pane-scale pane) old)))
@@ -78,7 +82,8 @@
 ;;; Fitting.
 
 (defun fitting-scale (map width height)
-  "Return how many pixels to a cell let all of MAP be in view in WIDTH times HEIGHT pixels."
+  "Return the largest scale, in pixels per cell, with which the whole MAP fits into WIDTH x HEIGHT
+pixels."
   (let* ((scale (min (/ width (map-width map)) (/ height (map-height map))))
          (step (cond ((< scale 1) +least-scale+) ((< scale 4) 1/4) (t 1))))
     (clamp (* step (floor scale step)) +least-scale+ 64)))
@@ -93,7 +98,7 @@
               (pane-top pane) (- (+ top (rest-of height (map-height map)))))))))
 
 (defun fit (pane)
-  "Show the whole map in PANE, also when its size changes."
+  "Fit the view of PANE to the whole map, now and whenever the size of PANE changes."
   (setf (pane-fitting-p pane) t
         (pane-fitted pane) nil)
   (repaint-if-changed pane))
@@ -101,7 +106,8 @@
 ;;; The robot.
 
 (defun robot-place (pane)
-  "Return where in PANE the window's robot is, in pixels, or NIL."
+  "Return the pixel coordinates in PANE of the window's robot, as two values, or NIL if there is
+none."
   (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
     (and robot
          (values (- (* scale (robot-image-x robot)) (pane-left pane))
@@ -115,7 +121,7 @@
                     (+ (pane-top pane) (- y (/ (+ top bottom) 2))))))))
 
 (defun off-centre-p (pane)
-  "True if the window's robot is not in the middle half of PANE."
+  "True if the window's robot is outside the middle half of PANE."
   (multiple-value-bind (x y) (robot-place pane)
     (destructuring-bind (left top right bottom) (view-box pane)
       (flet ((off-p (at from to) (> (abs (- at (/ (+ from to) 2))) (/ (- to from) 4))))
@@ -129,7 +135,7 @@
 ;;; Before each picture.
 
 (defun apply-user-scale (pane)
-  "If the user has set a valid GRAPHICS-SCALE*, make it the scale of the view of PANE."
+  "If the user has changed GRAPHICS-SCALE* to a valid scale, give the view of PANE this scale."
   (unless (eql graphics-scale* (shiftf (pane-scale-seen pane) graphics-scale*))
     (when (handler-case (progn (users-scale) t)
             (misuse () nil))
@@ -138,7 +144,7 @@
       (centre-robot pane))))
 
 (defun prepare-view (pane)
-  "Move the view of PANE to where it should be for its next picture."
+  "Fit or move the view of PANE as the user has chosen, before PANE is painted."
   (multiple-value-bind (width height) (pane-size pane)
     (let ((key (list width height (view-map pane) (pane-edges pane))))
       (apply-user-scale pane)
@@ -207,7 +213,7 @@
     (when old (clim:deallocate-pixmap old))))
 
 (defun terrain (pane width height)
-  "Return a pixmap of the terrain that is in view in PANE."
+  "Return a pixmap of the terrain that PANE shows, cached while the view does not change."
   (let ((key (terrain-key pane width height)))
     (unless (and (pane-terrain pane) (equal key (pane-terrain-key pane)))
       (forget-terrain pane)
@@ -220,7 +226,7 @@
     (pane-terrain pane)))
 
 (defun show-terrain (pane pixmap)
-  "Cover PANE with PIXMAP, which has the same size."
+  "Copy PIXMAP to PANE, which has the same size."
   (clim:with-identity-transformation (pane)
     (multiple-value-bind (width height) (size-on-screen pane)
       (clim:copy-from-pixmap pixmap 0 0 width height pane 0 0))))

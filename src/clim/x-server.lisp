@@ -10,15 +10,15 @@
 ;;; Settings that users make for all programs on a screen, such as its resolution.
 
 (defun resolution-in (resources)
-  "Return the number of Xft.dpi in RESOURCES, the lines that xrdb keeps on an X server, or NIL."
+  "Return the number of Xft.dpi in RESOURCES, the X resources of a screen as a string, or NIL."
   (loop for line in (uiop:split-string resources :separator '(#\Newline))
         for (name value) = (uiop:split-string line :separator '(#\:))
         when (string= name "Xft.dpi")
           return (parse-integer value :junk-allowed t)))
 
 (defgeneric screen-resolution (port)
-  (:documentation "Return the resolution in dots per inch that the user of PORT's screen has asked
-for, or NIL.")
+  (:documentation "Return the resolution in dots per inch that the X resources of PORT's screen set,
+or NIL.")
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
@@ -28,7 +28,7 @@ for, or NIL.")
                          "")))))
 
 (defun lose-port (port)
-  "Close the windows on PORT, whose X server has gone; end the thread that reads its events."
+  "Close the windows on PORT, whose X server has gone, and end the thread that reads its events."
   (when (with-lock (*windows-lock*) (member port (shiftf *ports* (remove port *ports*))))
     (lose-windows port)
     (ignore-errors (clim:destroy-port port))
@@ -58,13 +58,13 @@ for, or NIL.")
     (call-next-method)))
 
 (defun muffle-servers-warning (condition)
-  "Muffle CONDITION if it is McCLIM's warning of what the X server could not do."
+  "Muffle CONDITION if it is McCLIM's warning about a request that the X server could not fulfil."
   (when (eql 0 (search "Received CLX" (princ-to-string condition)))
     (muffle-warning condition)))
 
 ;; CLX keeps an event that led to an error, and would process it again.
 (defgeneric drop-event (port)
-  (:documentation "Discard the event that PORT is reading.")
+  (:documentation "Discard the event that PORT is processing.")
   (:method ((port clim:basic-port)))
   (:method ((port clim-clx:clx-port))
     (xlib:discard-current-event (clim-clx:clx-port-display port))))
@@ -72,7 +72,8 @@ for, or NIL.")
 ;; McCLIM warns of what the server could not do at once, such as giving the focus to a window that
 ;; is just being hidden. That is harmless and not shown at the terminal.
 (defun call-dropping-trouble (port function)
-  "Call FUNCTION, which reads an event of PORT; on an error, drop the event, or lose PORT."
+  "Call FUNCTION, which reads an event of PORT. If it signals an error, discard the event, or close
+PORT if the connection is lost."
   (handler-bind ((warning #'muffle-warning)
                  (error (lambda (condition)
                           ;; An error from one event does not mean that the connection is lost.
@@ -89,16 +90,16 @@ for, or NIL.")
 ;;; starts another. (The thread that ends cannot do it: Lisp may be ending all.)
 
 (defvar *unread-ports* '()
-  "The ports with windows whose events no thread reads any more.")
+  "The ports whose events no thread reads, because the thread has ended.")
 
 (defun note-unread (port)
-  "Note that the thread which reads the events of PORT ends, and wake the windows there, if any."
+  "Record that the thread which reads the events of PORT ends, and refresh the windows on PORT."
   (with-lock (*windows-lock*)
     (when (member port *ports*) (pushnew port *unread-ports*)))
   (mapc #'request-refresh (windows-on port)))
 
 (defun read-events-again (port)
-  "Read the events of PORT in a new thread, if the one that did so has ended."
+  "Start a new thread that reads the events of PORT, if the old thread has ended."
   (when (with-lock (*windows-lock*)
           (member port (shiftf *unread-ports* (remove port *unread-ports*))))
     (start-thread (lambda () (loop (clim:process-next-event port))) "events of windows")))
@@ -115,12 +116,12 @@ for, or NIL.")
 ;;; library fails then, only another library does.
 
 (deftype program-fault ()
-  "Errors of a program, not of its connection."
+  "Errors in a program, not in its connection to the X server."
   '(or type-error cell-error program-error control-error arithmetic-error))
 
 (defun clx-fails-p ()
-  "True if CLX by itself cannot read a long answer of the X server: which keys are down takes 40
-bytes, and CLX reads 32 of them first."
+  "True if CLX fails to read an answer of the X server that is longer than 32 bytes. The test asks
+which keys are down: this answer has 40 bytes."
   (handler-case (let ((display (xlib:open-default-display)))
                   (unwind-protect (xlib:query-keymap display)
                     (xlib:close-display display :abort t))
@@ -129,7 +130,8 @@ bytes, and CLX reads 32 of them first."
     (error () nil)))
 
 (defun words-for-fault (condition clx-fails-p)
-  "Return the message on CONDITION, an error of McCLIM's, or CLX's if CLX-FAILS-P, while X answers."
+  "Return the message about CONDITION, an error of McCLIM, or of CLX if CLX-FAILS-P, while the X
+server answers."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)
@@ -138,7 +140,8 @@ bytes, and CLX reads 32 of them first."
           (and clx-fails-p ars-magna.clx:*clx-remedy*)))
 
 (defun words-for-no-port (condition)
-  "Return the message on CONDITION, which came up when CLIM's port was opened."
+  "Return the message about CONDITION, an error that occurred when the connection to the X server
+was opened."
   (typecase condition
     (program-fault (words-for-fault condition (clx-fails-p)))
     (xlib:connection-failure
@@ -149,10 +152,11 @@ bytes, and CLX reads 32 of them first."
                (environment-value "DISPLAY") (one-line-text condition)))))
 
 (defun window-port ()
-  "Return CLIM's port to the X server. Signals MISUSE if there is none."
+  "Return CLIM's port for the X server. Signals MISUSE if the X server cannot be reached."
   (unless (or clim:*default-server-path*
               (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
-    (reject-use "No display: there is no X server; set the environment variable DISPLAY."))
+    (reject-use "No display: the environment variable DISPLAY is not set. ~
+                 Set DISPLAY to an X server."))
   (handler-case (clim:find-port)
     (error (condition) (reject-use "~A" (words-for-no-port condition)))))
 
@@ -165,17 +169,18 @@ bytes, and CLX reads 32 of them first."
 ;;; once more when no other thread reads.
 
 (defvar *come-p* (constantly nil)
-  "A function that says whether what the X server is read for, in this thread, has come.")
+  "A function that returns true if the input for which this thread reads from the X server has
+arrived.")
 
 (defun read-for (read display timeout force-output-p come-p &rest arguments)
-  "Call READ, CLX's function, with DISPLAY and the other arguments. What it reads for has come when
-COME-P is true of ARGUMENTS."
+  "Call READ, CLX's function, with the other arguments. COME-P is a function that returns true of
+ARGUMENTS when the awaited input has arrived."
   (let* ((*come-p* (lambda () (apply come-p arguments)))
          (end (apply read display timeout force-output-p come-p arguments)))
     (if (eq end :come) nil end)))
 
 (defun wait-unless-come (wait display timeout)
-  "Call WAIT, CLX's function; but return :COME if what is read for has come."
+  "Call WAIT, CLX's function, unless the awaited input has arrived; in that case return :COME."
   (if (funcall *come-p*) :come (funcall wait display timeout)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-for)

@@ -8,15 +8,17 @@
 ;;; in its turn. Programs that do not animate show the first frame. A page for browsers can also be
 ;;; stopped and searched: see film.lisp.
 
-(defconstant +frame-limit+ 600 "The most frames of a film, unless the user asks for more.")
+(defconstant +frame-limit+ 600
+  "The largest number of frames of a film, unless the user sets :EVERY.")
 
 (defvar *frame-hook* (constantly nil)
-  "A function that is called with the tick of each frame that is drawn, to report progress.")
+  "A function that is called with the tick of each drawn frame, to report progress.")
 
 (defun call-with-frames (function journal every until &key part (watch #'identity))
-  "Replay JOURNAL up to the tick UNTIL, by default its end. Call FUNCTION with snapshots of the
-beginning, every EVERY ticks, and the end, each of PART of the map, NIL for all. Call WATCH with the
-simulation at the beginning and after each tick. Signals what FUNCTION does."
+  "Replay JOURNAL up to the tick UNTIL, by default its end. Call FUNCTION with a snapshot at the
+beginning, every EVERY ticks, and at the end. The snapshots show PART of the map, or the whole map
+if PART is NIL. Call WATCH with the simulation at the beginning and after each tick. Errors of
+FUNCTION are signalled after the replay."
   (let ((last nil) (queue *message-queue*) (trouble nil))
     (labels ((draw ()
                ;; Errors in drawing are signalled here. In the replayed run, errors of an observer
@@ -45,7 +47,8 @@ simulation at the beginning and after each tick. Signals what FUNCTION does."
                       +frame-limit+))))
 
 (defun write-frame (canvas index count seconds function)
-  "Write a group, drawn by FUNCTION: frame INDEX of COUNT, in an animation that takes SECONDS."
+  "Write frame INDEX, of COUNT frames, as an SVG group that FUNCTION draws. The animation lasts
+SECONDS."
   (write-svg canvas "<g" (if (zerop index) "" " visibility=\"hidden\"") ">
 <animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"" seconds
              "s\" repeatCount=\"indefinite\" values=\"")
@@ -62,7 +65,7 @@ simulation at the beginning and after each tick. Signals what FUNCTION does."
 "))
 
 (defun draw-tick-label (canvas tick)
-  "Write TICK in the corner of CANVAS, on a light strip, since there may be a wall."
+  "Write TICK in the corner of CANVAS, on a white background, because a wall may be there."
   (let ((text (format nil "tick ~D" tick)))
     (wipe canvas 0 0 (+ 7 (words-width text)) +line-height+)
     (draw-text canvas 3 12 text)))
@@ -83,15 +86,16 @@ simulation at the beginning and after each tick. Signals what FUNCTION does."
               (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)
-  "Return TITLE, a string or NIL, with a remark if JOURNAL is replayed ANYWAY."
+  "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
+that says so."
   (let ((words (and anyway (typep title '(or null string)) (repeated-words journal))))
     (if words
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)
         title)))
 
 (defun checked-end-tick (operator journal until)
-  "Return the last tick to show of JOURNAL: UNTIL, an argument of OPERATOR, or if it is NIL the end.
-Signals WRONG-ARGUMENT if UNTIL is not a tick of JOURNAL."
+  "Return the last tick of JOURNAL to show. It is UNTIL, an argument of OPERATOR, or the end of
+JOURNAL if UNTIL is NIL. Signals WRONG-ARGUMENT if UNTIL is not a tick of JOURNAL."
   (let ((end (journal-end journal)))
     (unless (typep until `(or null (integer 0 ,end)))
       (reject-argument operator :until until
@@ -99,7 +103,7 @@ Signals WRONG-ARGUMENT if UNTIL is not a tick of JOURNAL."
     (or until end)))
 
 (defun numbered-file (file number)
-  "Return FILE with NUMBER in its name: for run.png and 1, run-0001.png."
+  "Return the pathname FILE with NUMBER added to its name: run-0001.png for run.png and 1."
   (merge-pathnames (make-pathname :name (format nil "~A-~4,'0D" (pathname-name file) number))
                    (merge-pathnames file)))
 
@@ -107,22 +111,24 @@ Signals WRONG-ARGUMENT if UNTIL is not a tick of JOURNAL."
 (define-with-keywords save-animation
     (journal file &key every until (rate 10) series (display :world) moments (kinds t)
                        (layers *picture-layers*) (in-color t) scale title part anyway)
-  "Replay a run and save it in FILE as a film. Return the truename, or with SERIES a list of them.
-JOURNAL is a journal, a file with one, or NIL for that of the current simulation so far. A frame
-shows every EVERY ticks up to the tick UNTIL, by default the end; by default there are at most 600
-frames. The first shows the beginning. RATE is the number of frames a second.
+  "Replay a run and save it in FILE as a film. Return the truename of FILE, or with SERIES a list of
+truenames. JOURNAL is a journal, the name of a journal file, or NIL for the journal of the current
+simulation. The film has a frame for the beginning and for every EVERY ticks up to the tick UNTIL,
+by default the end. By default EVERY is chosen so that the film has at most 600 frames. RATE is the
+number of frames per second.
 
 The name of FILE chooses the kind of film:
-- .html: a page for any browser, without a network, to play, stop and search the run. It lists what
-  robots grasped, released and stowed; commands that failed; plans and parts of plans that failed or
-  were ended; errors in your code; and MOMENTS of your own, each a moment or a list of a tick and a
-  string. KINDS chooses among them: see SAVE-RUN-PICTURE. The page fits its window: a SCALE larger
-  than suits the map has no effect.
-- .svg: an animated picture of the world, about ten times as large.
-- .svg or .png with SERIES: numbered pictures of DISPLAY, for run.png run-0001.png and so on.
+- .html: a page for any browser that plays, stops and searches the run, without a network. The page
+  lists what robots grasped, released and stowed; commands that failed; plans and parts of plans
+  that failed or were ended; errors in your code; and MOMENTS of your own, each a moment or a list
+  of a tick and a string. KINDS chooses the kinds of listed events: see SAVE-RUN-PICTURE. The page
+  fits its window, so a SCALE larger than suits the map has no effect.
+- .svg: an animated picture of the world. The file is about ten times as large as an .html file.
+- .svg or .png with SERIES: numbered pictures of DISPLAY. If FILE is run.png, the first picture is
+  run-0001.png.
 
-ANYWAY accepts a run whose definitions are not the present ones. The other arguments are those of
-SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
+With ANYWAY, replay a run even if definitions have changed since. The other arguments are those of
+SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the errors of REPLAY."
   (let* ((kind (if series
                    (picture-kind 'save-animation file)
                    (picture-kind 'save-animation file '(:html :svg)
@@ -160,11 +166,12 @@ SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and what REPLAY does."
 (addition journal-moments)
 (define-with-keywords journal-moments
     (journal &key until anyway)
-  "Replay a run and return a list of its notable events, moments, in order. They are that a robot
-grasped, released or stowed something, that a command failed, that a plan or a part of one failed or
-was ended, and errors in your code. JOURNAL is a journal, a file with one, or NIL for that of the
-current simulation so far; UNTIL is the last tick, by default that of its end. ANYWAY accepts a run
-whose definitions are not the present ones. Signals what REPLAY does."
+  "Replay a run and return a list of its notable events, which are MOMENT objects, in order. Notable
+events are: a robot grasped, released or stowed something; a command failed; a plan or a part of a
+plan failed or was ended; an error occurred in your code. JOURNAL is a journal, the name of a
+journal file, or NIL for the journal of the current simulation. UNTIL is the last tick to replay, by
+default the end of JOURNAL. With ANYWAY, replay a run even if definitions have changed since.
+Signals the errors of REPLAY."
   (let ((journal (resolve-journal journal 'journal-moments)))
     (checked-end-tick 'journal-moments journal until)
     (multiple-value-bind (watch seen) (make-moments-watcher)
@@ -183,24 +190,25 @@ whose definitions are not the present ones. Signals what REPLAY does."
   (check-map-options 'save-animation :title title :layers layers :scale scale))
 
 (defun files-text (files)
-  "Return the names of FILES, one or more of a series, the last first, as a text."
+  "Return a text with the first and the last name of FILES, a list of numbered files in reverse
+order."
   (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
 
 (defun warn-of-older-frames (file count)
-  "Warn if there are files of an older series FILE, longer than the new one of COUNT files. They are
-not deleted: the user did not ask for that."
+  "Warn if files of an older and longer series FILE remain after the new series of COUNT files. The
+older files are not deleted, because the user did not request that."
   (let ((older (loop for number from (1+ count)
                      for frame = (numbered-file file number)
                      while (probe-file frame) collect frame)))
     (when older
-      (warning-set (format nil "~A are of an older series, which was longer than this one of ~D. ~
-                                Delete them before you make a film of the files."
+      (warning-set (format nil "~A are left from an older and longer series; the new series has ~D ~
+                                files. Delete the older files before you make a film of the series."
                            (files-text (reverse older)) count)))))
 
 (defun call-for-series (function files)
-  "Call FUNCTION, which writes the next file of a series. If it signals MISUSE, add to the message
-which FILES, the last first, have been written."
+  "Call FUNCTION, which writes the next file of a series. If FUNCTION signals MISUSE, add the names
+of FILES, the files already written, to the message."
   (handler-case (funcall function)
     (misuse (trouble)
       (if files

@@ -16,21 +16,20 @@
 
 (define-record (gcontext (:constructor create-gcontext
                              (&key foreground background line-width line-style dashes)
-                             "Return a new graphics context: by default solid black lines, one
-pixel wide.")
+                             "Return a new graphics context. By default it draws solid black lines,
+one pixel wide.")
                          (:copier copy-gcontext))
-  "The colours, lines and dashes to draw with."
+  "A graphics context: colours, line width, line style and dashes for drawing."
   (foreground #x000000 color
               "the colour that the graphics context draws with. Can be set" :writable :export)
   (background #xFFFFFF color
               "the colour that CLEAR-AREA and image glyphs fill with. Can be set" :writable :export)
   (line-width 1 (real 0)
-              "how wide lines are, in pixels; 0 means the thinnest. Can be set" :writable :export)
+              "the width of lines in pixels; 0 is the thinnest. Can be set" :writable :export)
   (line-style :solid line-style
-              "how lines look: :SOLID, :DASH or :DOUBLE-DASH. Can be set" :writable :export)
-  (dashes 4 dashes "how long dashes and the gaps between them are, in pixels: one integer for all,
-by default 4, or a list (dash gap ...). Can be set. A canvas may have its own dashes
-instead" :writable :export))
+              "the style of lines: :SOLID, :DASH or :DOUBLE-DASH. Can be set" :writable :export)
+  (dashes 4 dashes "the lengths of dashes and gaps, in pixels: one integer for all, by default 4, or
+a list (dash gap ...). Can be set. A canvas may use other dashes" :writable :export))
 
 (public draw-gcontext*)
 (defvar draw-gcontext* (create-gcontext)
@@ -40,13 +39,13 @@ instead" :writable :export))
 ;; As reading 208 says.
 (defvar graphics-scale* 8
   "The width of a grid cell in pixels, in the display of the world (manual B). The default is 8.
-With that value, pictures without a :SCALE choose a scale that suits their map; another value is the
-scale of these pictures too. In a body of :graphics or :draw-function, it is the scale of the
-picture.")
+While GRAPHICS-SCALE* is 8, pictures without a :SCALE choose a scale that suits their map. Any other
+value is also the scale of these pictures. In a :graphics or :draw-function body, GRAPHICS-SCALE* is
+the scale of the picture.")
 
 (public in-color*)
 (defvar in-color* t
-  "True while drawing on a display that has colours, false on a monochrome one (manual B.1).")
+  "True while drawing on a display with colours, false on a monochrome display (manual B.1).")
 
 (defun check-pen (foreground line-width line-style &optional dashes)
   (check-argument with-color foreground (typep foreground '(or null color))
@@ -59,11 +58,12 @@ picture.")
   (check-argument with-gcontext dashes
                   (or (null dashes) (whole-p dashes 1 1000)
                       (and (consp dashes) (every (lambda (dash) (whole-p dash 1 1000)) dashes)))
-                  "an integer from 1 to 1000, in pixels, or a list of such"))
+                  "an integer from 1 to 1000, in pixels, or a list of such integers"))
 
 (defun call-with-gcontext (function gcontext &key foreground background line-width line-style
                                                 dashes)
-  "Call FUNCTION while GCONTEXT has the values of the other arguments that are not NIL."
+  "Call FUNCTION with GCONTEXT temporarily changed: each keyword argument that is not NIL sets an
+attribute of GCONTEXT."
   (check-pen foreground line-width line-style dashes)
   (let ((old (copy-gcontext gcontext)))
     (flet ((set-to (foreground background line-width line-style dashes)
@@ -78,26 +78,28 @@ picture.")
                 (gcontext-line-width old) (gcontext-line-style old) (gcontext-dashes old))))))
 
 (defmacro with-gcontext ((gcontext &rest options) &body body)
-  "Run BODY while GCONTEXT has the :foreground, :background, :line-width, :line-style and :dashes of
-OPTIONS, as CLX does."
+  "Run BODY with GCONTEXT temporarily changed. OPTIONS are :foreground, :background, :line-width,
+:line-style and :dashes, as in CLX."
   `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
 
 (public with-color)
 (defmacro with-color (color &body body)
-  "Run BODY drawing in COLOR, one of the colours in the manual's vectors or any integer #xRRGGBB;
-in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
+  "Run BODY, which draws in COLOR. COLOR is an element of the manual's vectors of colours or any
+integer #xRRGGBB. If the display has no colours, BODY draws in black (manual B.1). Signals
+WRONG-ARGUMENT."
   (with-gensyms (value)
     `(let ((,value ,color))
        (with-gcontext (draw-gcontext* :foreground (if in-color* ,value black*)) ,@body))))
 
 (public with-lines)
 (defmacro with-lines ((&key width style) &body body)
-  "Run BODY drawing lines WIDTH pixels wide in STYLE, one of CLX's: :SOLID, :DASH or :DOUBLE-DASH
-(manual B.1). Signals WRONG-ARGUMENT."
+  "Run BODY, which draws lines WIDTH pixels wide in the CLX line style STYLE, :SOLID, :DASH or
+:DOUBLE-DASH (manual B.1). Signals WRONG-ARGUMENT."
   `(with-gcontext (draw-gcontext* :line-width ,width :line-style ,style) ,@body))
 
 (defmacro with-dashes ((dashes &key (width 1)) &body body)
-  "Run BODY drawing lines WIDTH pixels wide with DASHES, a list (dash gap ...), or solid if NIL."
+  "Run BODY, which draws lines WIDTH pixels wide. DASHES is a list of lengths (dash gap ...), or NIL
+for solid lines."
   (with-gensyms (value)
     `(let ((,value ,dashes))
        (with-gcontext (draw-gcontext* :line-width ,width :line-style (if ,value :dash :solid)
@@ -115,75 +117,80 @@ in black if the display has no colours (manual B.1). Signals WRONG-ARGUMENT."
 (defclass canvas ()
   ((color-p :initarg :color-p :initform t :reader canvas-color-p
             :documentation "True if the canvas shows colours."))
-  (:documentation "An object to draw on."))
+  (:documentation "A canvas: an object to draw on, such as a window or an SVG file."))
 (setf (documentation 'canvas-color-p 'function)
       "True if the canvas shows colours.")
 
 (defun canvas-p (object)
-  "True of a canvas."
+  "True if OBJECT is a canvas."
   (typep object 'canvas))
 
-(defconstant +character-width+ 7 "About how wide a character on a canvas is, in pixels.")
+(defconstant +character-width+ 7 "The approximate width of a character on a canvas, in pixels.")
 (defconstant +line-height+ 16 "The distance between lines of text on a canvas, in pixels.")
 
 (defgeneric paint-rectangles (canvas gcontext rectangles fill-p)
   (:documentation
-   "Paint each of RECTANGLES, a sequence x y width height ..., filled if FILL-P."))
+   "Paint RECTANGLES, a sequence x y width height ..., as outlines, or filled if FILL-P."))
 
 (defgeneric paint-arc (canvas gcontext x y width height start extent fill-p)
   (:documentation
-   "Paint the arc inscribed in a box from the angle START over EXTENT, both in radians,
-counterclockwise from the right; a slice of pie if FILL-P. The outline of a whole circle stays
-within the box, however wide the line is."))
+   "Paint the arc inscribed in the box X, Y, WIDTH, HEIGHT. It begins at the angle START and extends
+over the angle EXTENT, both in radians, counterclockwise from the right. If FILL-P, fill the slice
+of pie. The outline of a whole circle stays within the box, for any width of the line."))
 
 (defgeneric paint-path (canvas gcontext points fill-p)
-  (:documentation "Paint the lines through POINTS, a sequence x y ..., or the polygon if FILL-P."))
+  (:documentation "Paint a line through POINTS, a sequence x y .... If FILL-P, paint the filled
+polygon instead."))
 
 (defgeneric paint-segments (canvas gcontext segments)
-  (:documentation "Paint each of SEGMENTS, a sequence x1 y1 x2 y2 ..., as a line."))
+  (:documentation "Paint SEGMENTS, a sequence x1 y1 x2 y2 ..., as separate lines."))
 
 (defgeneric paint-string (canvas gcontext x y string)
-  (:documentation "Paint STRING, without new lines, its base line beginning at X, Y."))
+  (:documentation "Paint STRING, which has no newlines. Its base line begins at X, Y."))
 
 (defgeneric call-with-clipping (function canvas x y width height)
-  (:documentation "Call FUNCTION. What it paints outside the box stays invisible."))
+  (:documentation "Call FUNCTION with its painting clipped to the box X, Y, WIDTH, HEIGHT of
+CANVAS."))
 
 (defgeneric call-with-origin (function canvas x y)
-  (:documentation "Call FUNCTION with X, Y as the origin of all coordinates."))
+  (:documentation "Call FUNCTION with X, Y as the origin of all coordinates on CANVAS."))
 
 (defmacro with-clipping ((canvas x y width height) &body body)
-  "Run BODY. What it draws on CANVAS outside the box, in pixels, stays invisible."
+  "Run BODY with its drawing on CANVAS clipped to the box X, Y, WIDTH, HEIGHT, in pixels."
   `(call-with-clipping (lambda () ,@body) ,canvas ,x ,y ,width ,height))
 
 (defmacro with-origin ((canvas x y) &body body)
-  "Run BODY with X, Y, in pixels, as the origin of what it draws on CANVAS."
+  "Run BODY with X, Y, in pixels, as the origin of all coordinates on CANVAS."
   `(call-with-origin (lambda () ,@body) ,canvas ,x ,y))
 
 ;;; Subjects: what a part of a drawing represents.
 
 (defgeneric subject-title (subject)
-  (:documentation "Return a short string that names SUBJECT, which is drawn on a canvas.")
+  (:documentation "Return a short string that names SUBJECT, an object that is drawn on a canvas.")
   (:method (subject) (princ-to-string subject)))
 
 (defgeneric call-with-subject (function canvas subject)
-  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at it.")
+  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at
+SUBJECT.")
   (:method (function canvas subject)
     (declare (ignore canvas subject))
     (funcall function)))
 
 (defmacro with-subject ((canvas subject) &body body)
-  "Run BODY, which draws SUBJECT on CANVAS: an object with a SUBJECT-TITLE."
+  "Run BODY, which draws SUBJECT on CANVAS. SUBJECT is an object with a SUBJECT-TITLE."
   `(call-with-subject (lambda () ,@body) ,canvas ,subject))
 
 ;;; Starting to draw.
 
 (defun call-on-canvas (function canvas &key (scale graphics-scale*))
-  "Call FUNCTION with the variables of manual B.1 bound for CANVAS, GRAPHICS-SCALE* to SCALE."
+  "Call FUNCTION with DRAW-GCONTEXT* and IN-COLOR* (manual B.1) bound for CANVAS, and with
+GRAPHICS-SCALE* bound to SCALE."
   (let ((draw-gcontext* (create-gcontext))
         (in-color* (canvas-color-p canvas))
         (graphics-scale* scale))
     (funcall function)))
 
 (defmacro with-canvas ((canvas &rest options) &body body)
-  "Run BODY with DRAW-GCONTEXT*, IN-COLOR* and GRAPHICS-SCALE* bound for CANVAS. OPTIONS: :scale."
+  "Run BODY with DRAW-GCONTEXT* and IN-COLOR* bound for CANVAS. The option :scale binds
+GRAPHICS-SCALE*."
   `(call-on-canvas (lambda () ,@body) ,canvas ,@options))

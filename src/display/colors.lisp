@@ -12,7 +12,7 @@
 ;;; in grey. tests/palette.lisp measures it.
 
 (deftype color ()
-  "A colour as #xRRGGBB."
+  "A colour, an integer #xRRGGBB."
   '(unsigned-byte 24))
 
 (defun mix-colors (dark light fraction)
@@ -37,13 +37,14 @@
 (defconstant +plain+ 9 "The index of the plain colour in a vector of 12 shades.")
 
 (defun shades-around (dark plain light)
-  "Return a vector of 12 colours from DARK through PLAIN, at +PLAIN+, to LIGHT."
+  "Return a vector of 12 colours from DARK through PLAIN to LIGHT. PLAIN is at the index +PLAIN+."
   (concatenate 'simple-vector
                (shades (1+ +plain+) dark plain)
                (subseq (shades (- 12 +plain+) plain light) 1)))
 
 (defmacro define-shades (&rest definitions)
-  "Define variables as vectors of 12 shades. DEFINITIONS are lists (variable dark plain light hue)."
+  "Define variables whose values are vectors of 12 shades. DEFINITIONS are lists (variable dark
+plain light hue), where HUE is the name of the colour in the documentation."
   `(progn
      ,@(loop for (variable dark plain light hue) in definitions
              collect `(public ,variable)
@@ -62,8 +63,8 @@
   (lightviolet* #x421468 #xB585DE #xE8D6F8 "light violet"))
 
 (defun color-called (name)
-  "Return the vector of shades with the name NAME, the value of a :color attribute (a symbol or
-string), or NIL if NAME is not a colour."
+  "Return the vector of shades of the colour NAME, a symbol or string, such as the value of a :color
+attribute. Return NIL if NAME is not a colour."
   (and (typep name '(and (or symbol string) (not null)))
        (let ((variable (find-symbol (concatenate 'string (name-string name) "*")
                                     :ars-magna.canvas)))
@@ -71,8 +72,8 @@ string), or NIL if NAME is not a colour."
               (symbol-value variable)))))
 
 (defun shade (name &optional (index +plain+))
-  "Return shade INDEX, from 0, dark, to 11, light, of the colour NAME, the value of a :color
-attribute; black if NAME is not a colour (manual B; reading 212)."
+  "Return shade INDEX of the colour NAME, the value of a :color attribute. INDEX is from 0, dark, to
+11, light. Return black if NAME is not a colour (manual B; reading 212)."
   (let ((shades (color-called name)))
     (if shades (aref shades index) black*)))
 
@@ -81,10 +82,10 @@ attribute; black if NAME is not a colour (manual B; reading 212)."
 ;;; Luminance and contrast are those of the Web Content Accessibility Guidelines 2.1. A contrast of
 ;;; less than 3 is hard to see.
 
-(defconstant +least-contrast+ 3 "The least contrast of what is drawn to its background.")
+(defconstant +least-contrast+ 3 "The least contrast of lines and texts to their background.")
 
 (defun linear-light (byte)
-  "Return the light, from 0 to 1, of the value BYTE of one of the three primaries."
+  "Return the linear light, from 0 to 1, of BYTE, the value of a primary colour from 0 to 255."
   (let ((value (/ byte 255d0)))
     (if (<= value 0.04045d0)
         (/ value 12.92d0)
@@ -97,11 +98,12 @@ attribute; black if NAME is not a colour (manual B; reading 212)."
                       (- (* 1.055d0 (power light (/ 2.4d0))) 0.055d0))))))
 
 (defun primaries (color)
-  "Return a list of the light of red, green and blue in COLOR, each from 0 to 1."
+  "Return the linear light of red, green and blue in COLOR, as a list of numbers from 0 to 1."
   (loop for position in '(16 8 0) collect (linear-light (ldb (byte 8 position) color))))
 
 (defun color-of-primaries (primaries)
-  "Return the colour with PRIMARIES, a list of the light of red, green and blue."
+  "Return the colour with PRIMARIES, a list of the linear light of red, green and blue, from 0 to
+1."
   (reduce (lambda (color light) (logior (ash color 8) (byte-of-light light)))
           primaries :initial-value 0))
 
@@ -110,17 +112,17 @@ attribute; black if NAME is not a colour (manual B; reading 212)."
   (reduce #'+ (mapcar #'* '(0.2126d0 0.7152d0 0.0722d0) (primaries color))))
 
 (defun color-contrast (color other)
-  "Return the contrast of COLOR to OTHER, from 1 to 21."
+  "Return the contrast ratio of COLOR and OTHER, from 1 to 21."
   (let ((a (+ 0.05d0 (luminance color))) (b (+ 0.05d0 (luminance other))))
     (/ (max a b) (min a b))))
 
 (defun ink-on (color)
-  "Return black or white, whichever has more contrast to COLOR: at least 4.5."
+  "Return black or white, whichever has the higher contrast ratio to COLOR. It is at least 4.5."
   (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
 (defun tint-grey (grey hue fraction)
-  "Return the colour GREY mixed with FRACTION, from 0 to 1, of the colour HUE. The luminance stays
-the same, and so does a print in grey."
+  "Return the colour GREY mixed with FRACTION, from 0 to 1, of the colour HUE. The result has the
+luminance of GREY, so it is printed in the same grey."
   (let* ((light (luminance grey)) (strength (luminance hue)))
     (color-of-primaries
      (loop for primary in (primaries hue)
@@ -145,22 +147,24 @@ the same, and so does a print in grey."
       :chequers ((:box 0 0 1/2 1/2) (:box 1/2 1/2 1/2 1/2))
       :arrows ((:stroke 0 1/4 1/2 3/4) (:stroke 1/2 3/4 1 1/4)))
   :test #'equal
-  :documentation "Textures by name, each a list of marks: (:across Y), (:down X), (:rising),
-(:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
+  :documentation "The textures by name, as a property list. Each texture is a list of marks:
+(:across Y), (:down X), (:rising), (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
 (defun tile-edges (low high tile)
-  "Return the beginnings of the tiles that lie, at least in part, between LOW and HIGH."
+  "Return the coordinates where the tiles begin that overlap the range from LOW to HIGH. TILE is the
+size of tiles."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun levels (low high tile part)
-  "Return the coordinates from LOW up to HIGH that are at PART, from 0 to 1, of a tile."
+  "Return the coordinates from LOW up to HIGH at the fraction PART, from 0 to 1, of each tile. TILE
+is the size of tiles."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
 
 (defun slants (left top right bottom tile sign)
-  "Return the diagonals through corners of tiles, cut to the rectangle: on them, y - SIGN x is a
-multiple of TILE."
+  "Return the diagonals of all tiles as lines x1 y1 x2 y2 ..., clipped to the rectangle LEFT, TOP,
+RIGHT, BOTTOM. TILE is the size of tiles. SIGN is 1 for falling diagonals and -1 for rising ones."
   (let* ((ends (list (* sign left) (* sign right)))
          (least (- top (reduce #'max ends))) (most (- bottom (reduce #'min ends))))
     (loop for c in (rest (tile-edges least most tile))
@@ -170,7 +174,8 @@ multiple of TILE."
             append (list from (+ c (* sign from)) to (+ c (* sign to))))))
 
 (defun strokes-in-tiles (left top right bottom tile stroke)
-  "Return STROKE, x1 y1 x2 y2 in parts of a tile, for each tile of the rectangle, cut to it."
+  "Return the line STROKE repeated for each tile of the rectangle, and clipped to the rectangle, as
+a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
   (flet ((cut-to (low value high) (clamp value low high)))
     (destructuring-bind (x1 y1 x2 y2) stroke
       (loop for y in (tile-edges top bottom tile)
@@ -181,7 +186,8 @@ multiple of TILE."
                                       (cut-to top (+ y (* y2 tile)) bottom)))))))
 
 (defun mark-segments (mark left top right bottom tile)
-  "Return the lines x1 y1 x2 y2 ... of MARK, which is not a box, in the rectangle."
+  "Return the lines x1 y1 x2 y2 ... that MARK, a mark of a texture but not a box, draws in the
+rectangle."
   (ecase (first mark)
     (:across (loop for y in (levels top bottom tile (second mark)) append (list left y right y)))
     (:down (loop for x in (levels left right tile (second mark)) append (list x top x bottom)))
@@ -190,7 +196,7 @@ multiple of TILE."
     (:stroke (strokes-in-tiles left top right bottom tile (rest mark)))))
 
 (defun mark-boxes (mark left top right bottom tile)
-  "Return the boxes x y width height ... of MARK, a box, in the rectangle."
+  "Return the boxes x y width height ... that MARK, a box of a texture, draws in the rectangle."
   (destructuring-bind (x y width height) (rest mark)
     (loop for (x1 y1 x2 y2) on (strokes-in-tiles left top right bottom tile
                                                  (list x y (+ x width) (+ y height)))
@@ -199,8 +205,8 @@ multiple of TILE."
             append (list x1 y1 (- x2 x1) (- y2 y1)))))
 
 (defun draw-texture (canvas gcontext texture rectangles tile)
-  "Draw TEXTURE, one of +TEXTURES+, in RECTANGLES, a list x y width height ..., in tiles TILE pixels
-wide and high."
+  "Draw TEXTURE, a name in +TEXTURES+, in RECTANGLES, a list x y width height .... The tiles of the
+texture are TILE pixels wide and high."
   (let ((segments '()) (boxes '()) (marks (getf +textures+ texture)))
     (loop for (x y width height) on rectangles by #'cddddr
           do (dolist (mark marks)

@@ -11,14 +11,15 @@
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
 (defconstant +object-height+ 12 "The height of things in a display, in pixels.")
-(defconstant +largest-unit+ 8 "The most pixels of width for each unit of a thing's size.")
+(defconstant +largest-unit+ 8
+  "The greatest width of a thing in a display for each unit of its size, in pixels.")
 
 (defun characters-in (width)
-  "Return how many characters fit into WIDTH pixels, at least 1."
+  "Return the number of characters that fit into WIDTH pixels, but at least 1."
   (max 1 (floor width +character-width+)))
 
 (defun draw-line-of-text (canvas x y width text)
-  "Write TEXT, cut to fit into WIDTH, in the line whose top is at Y."
+  "Write TEXT on one line with its top at Y, cut to end before WIDTH."
   (let ((count (characters-in (- width x +margin+))))
     (draw-text canvas x (+ y 12)
                (if (<= (length text) count)
@@ -26,7 +27,7 @@
                    (concatenate 'string (subseq text 0 (1- count)) "~")))))
 
 (defun draw-paragraph (canvas x y width text)
-  "Write TEXT, in as many lines as needed, from Y. Return where it ends."
+  "Write TEXT from Y down, wrapped to end before WIDTH. Return the y coordinate of its end."
   (dolist (line (wrapped-text text (characters-in (- width x +margin+))) y)
     (draw-line-of-text canvas x y width line)
     (incf y +line-height+)))
@@ -34,7 +35,7 @@
 ;;; Things.
 
 (defun images-shown (robot)
-  "Return a list of the images of things that the displays of ROBOT show."
+  "Return a list of the images of all things that the displays of ROBOT show."
   (remove-if-not #'thing-image-p
                  (append (mapcar #'designator-image-denotation (robot-image-designators robot))
                          (loop for camera in (robot-image-cameras robot)
@@ -48,11 +49,12 @@
                                  (robot-image-bins robot)))))
 
 (defvar *size-unit* +largest-unit+
-  "The pixels of width for each unit of size, the same for all things of a robot, so that their
-widths are in proportion.")
+  "The width in pixels of a thing of size 1. It is the same for all things in the displays of a
+robot, so that their widths are in proportion.")
 
 (defun size-unit (robot)
-  "Return the pixels for a unit of size with which the largest thing shown of ROBOT fits."
+  "Return the width in pixels of a thing of size 1 with which the largest thing in the displays of
+ROBOT fits."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
                          :initial-value 0)))
     (if (< (* largest +largest-unit+) +object-width+)
@@ -60,11 +62,13 @@ widths are in proportion.")
         (/ +object-width+ largest))))
 
 (defun thing-width (image)
-  "Return the width of the thing, in pixels: in proportion to its size, but at least 2."
+  "Return the width of the thing of IMAGE in a display, in pixels. It is in proportion to the size
+of the thing, but at least 2."
   (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
-  "Draw a frame in the current colour, with a black outline that is visible on white."
+  "Draw a frame in the current colour, with a black outline so that light colours are visible on
+white."
   (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
     (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
     (when (and in-color* (<= 4 width))
@@ -78,7 +82,8 @@ widths are in proportion.")
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
 
 (defun draw-block (canvas image x y)
-  "Draw a thing as a rectangle: solid if it blocks movement, crossed out if it obstructs view."
+  "Draw the thing of IMAGE as a rectangle, which is filled if the thing blocks movement and crossed
+out if the thing obstructs view."
   (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
          (bottom (+ y +object-height+ -1)) (solid-p (thing-image-obsmove-p image)))
     (with-color (thing-image-color image)
@@ -92,13 +97,15 @@ widths are in proportion.")
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
 (defun note-undrawable (image value trouble)
-  "Report once that TROUBLE prevents VALUE, the :draw-function of the thing, from drawing it."
+  "Report once that VALUE, the :draw-function of the thing of IMAGE, cannot be used because of
+TROUBLE, a text."
   (unless (gethash value *broken-graphics*)
     (setf (gethash value *broken-graphics*) t)
     (error-set (subject-title image) " is drawn plainly: " trouble)))
 
 (defun draw-by-itself (canvas image x y)
-  "Draw the thing by its :draw-function (reading 211). True if it has one that works."
+  "Draw the thing of IMAGE by its :draw-function (reading 211). Return true if the thing has a
+:draw-function that works."
   (let ((value (thing-image-draw-function image)))
     (multiple-value-bind (function trouble) (drawing-code value)
       (when trouble (note-undrawable image value trouble))
@@ -116,7 +123,7 @@ widths are in proportion.")
       (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
 (defun draw-location (canvas location x y width)
-  "Draw LOCATION, which a part is inside of: the image of a thing, a text, or NIL."
+  "Draw LOCATION, the container that a hand or camera is in: the image of a thing, a text, or NIL."
   (cond ((null location))
         ((stringp location) (draw-line-of-text canvas x y width (format nil "in ~A" location)))
         (t (draw-line-of-text canvas x y width "in ")
@@ -166,8 +173,8 @@ widths are in proportion.")
                              (point-at-distance x y angle +dial+))))))
 
 (defun draw-dial (canvas robot camera y)
-  "Draw CAMERA as a wedge in its direction on the map, as wide as its field of view, with a tick in
-the believed direction of what it tracks."
+  "Draw the field of view of CAMERA as a wedge, in its direction on the map. A short line shows the
+believed direction of the thing that CAMERA tracks."
   (let* ((x (+ +margin+ +dial+)) (y (+ y +dial+))
          (half (* 1/2 (camera-image-field-of-view camera)))
          (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
@@ -182,22 +189,23 @@ the believed direction of what it tracks."
       (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
 
 (defun view-text (camera)
-  "Return a text of the last view of CAMERA that was asked for, and its age. Unlike STATUS, a
-display does not look again, so that it shows nothing that the robot cannot know."
+  "Return a text with the last view that was requested of CAMERA, and its age. Unlike STATUS, a
+display takes no new view, so that it shows only what the robot knows."
   (if (camera-image-view camera)
-      (format nil "View, asked for ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
+      (format nil "View, requested ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
               (camera-image-view-age camera) (camera-image-view camera))
-      "View: none asked for yet"))
+      "View: none requested yet"))
 
 (defun draw-track-line (canvas track x y width)
-  "Write the type and distance of TRACK, the image of a designator, and draw what it denotes."
+  "Write the type and distance of TRACK, the image of a tracked designator, and draw what TRACK
+denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
     (draw-line-of-text canvas x y width text)
     (draw-denotation canvas track (+ x (words-width text)) y width)))
 
 (defun draw-camera (canvas robot camera y width)
-  "Draw CAMERA from Y; return where that ends."
+  "Draw CAMERA from Y down. Return the y coordinate of the end of the drawing."
   (let ((left (+ (* 2 +margin+) (* 2 +dial+))) (track (camera-image-track camera)) (next y))
     (with-subject (canvas camera)
       (draw-dial canvas robot camera y)
@@ -210,7 +218,7 @@ display does not look again, so that it shows nothing that the robot cannot know
 ;;; Hands.
 
 (defun draw-hand (canvas robot hand y width)
-  "Draw HAND from Y; return where its picture ends."
+  "Draw HAND from Y down. Return the y coordinate of the end of the drawing."
   (declare (ignore robot))
   (let ((left (+ +margin+ (* 10 +character-width+)))
         (contents (hand-image-contents hand)))
@@ -225,7 +233,7 @@ display does not look again, so that it shows nothing that the robot cannot know
 ;;; Storage bins.
 
 (defun draw-bin (canvas robot bin y width)
-  "Draw BIN from Y; return where its picture ends."
+  "Draw BIN from Y down. Return the y coordinate of the end of the drawing."
   (declare (ignore robot))
   (with-subject (canvas bin)
     (draw-line-of-text canvas +margin+ y width
@@ -243,23 +251,26 @@ display does not look again, so that it shows nothing that the robot cannot know
       (:cameras "Cameras" draw-camera robot-image-cameras)
       (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
-  :documentation "The displays except that of the world: lists (name title function [parts]). With
-PARTS, FUNCTION draws each of the parts that PARTS returns.")
+  :documentation "The displays except the display of the world: lists (name title function [parts]).
+FUNCTION draws the display. With PARTS, a function that returns parts of the robot, FUNCTION draws
+one part.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))
   :test #'cl:equal
-  :documentation "The displays: bird's eye view, robot state, robot designators, cameras, hands and
-storage bins.")
+  :documentation "The names of the displays: bird's eye view, robot state, robot designators,
+cameras, hands and storage bins.")
 
-(defconstant +detail-width+ 340 "The width of every display but that of the world, in pixels.")
+(defconstant +detail-width+ 340
+  "The width of each display except the display of the world, in pixels.")
 
 (defun display-title (display)
   "Return the title of the window of DISPLAY, one of +DISPLAYS+ (manual B)."
   (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-detail (canvas display robot width)
-  "Draw one of the displays of ROBOT, WIDTH pixels wide; return its height."
+  "Draw DISPLAY, one of the displays of ROBOT except the world, WIDTH pixels wide. Return its height
+in pixels."
   (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
     (let ((*size-unit* (size-unit robot)))
       (if parts
@@ -268,8 +279,8 @@ storage bins.")
           (funcall draw canvas robot width)))))
 
 (defun draw-titled (canvas display robot x y)
-  "Draw a display of ROBOT with its title and a frame, its upper left corner at X, Y; return its
-height."
+  "Draw DISPLAY of ROBOT with its title and a frame, and with its upper left corner at X, Y. Return
+its height in pixels."
   (let ((height 0) (top (+ +line-height+ 2)))
     (with-origin (canvas x (+ y top))
       (setf height (draw-detail canvas display robot +detail-width+)))
@@ -282,7 +293,7 @@ height."
     (+ top height 1)))
 
 (defun draw-all (canvas snapshot robot layers title)
-  "Draw the six displays side by side; return the width and height."
+  "Draw the world and, beside it, the other five displays. Return the width and height in pixels."
   (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers :title title)
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
@@ -291,9 +302,9 @@ height."
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
                                                      (width +detail-width+) title)
-  "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS from SNAPSHOT and ROBOT, the image of a robot
-in it. Return the width and height drawn, in pixels. WIDTH is that of the details, LAYERS are those
-of the world, TITLE is above it: see DRAW-FRAMED. Call this within WITH-CANVAS."
+  "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS. ROBOT is the image of a robot in SNAPSHOT.
+Return the width and height in pixels. WIDTH is the width of the displays except the world. LAYERS
+and TITLE are for the world: see DRAW-FRAMED. Call this within WITH-CANVAS."
   (case display
     (:all (draw-all canvas snapshot robot layers title))
     (:world (draw-framed-world canvas snapshot layers :title title))

@@ -11,13 +11,14 @@
 ;;; checked here, and the values are of no use.
 
 (defvar *calls-left* nil
-  "How often drawing code may still draw; NIL for no limit.")
+  "The number of calls of drawing functions that user code may still make, or NIL for no limit.")
 
 (defun check-drawing (operator canvas gcontext numbers)
   (when (and *calls-left* (minusp (decf *calls-left*)))
-    (reject-use "It has drawn too many things for one place. Correct the endless loop."))
+    (reject-use "The drawing code has made too many calls for one thing or cell. ~
+                 Correct its endless loop."))
   (unless (canvas-p canvas)
-    (reject-argument operator "drawable" canvas "the window that the body was given"))
+    (reject-argument operator "drawable" canvas "the window that was passed to the drawing code"))
   (unless (gcontext-p gcontext)
     (reject-argument operator "gcontext" gcontext "draw-gcontext*"))
   (unless (every #'within-reason-p numbers)
@@ -27,14 +28,17 @@
   (check-drawing operator canvas gcontext numbers)
   (unless (zerop (mod (length numbers) multiple))
     (reject-argument operator "coordinates" numbers
-                     (format nil "~D numbers for each" multiple))))
+                     (format nil "~D numbers for each element" multiple))))
 
 (defmacro define-drawing (name (canvas gcontext numbers . rest) documentation &body body)
-  "Define NAME, which checks NUMBERS: a list of required arguments, or (SEQUENCE MULTIPLE)."
+  "Define the drawing function NAME, which checks its arguments. NUMBERS is a list of required
+arguments that must be numbers. Or it is (SEQUENCE MULTIPLE): SEQUENCE is an argument with a
+multiple of MULTIPLE numbers."
   (let ((many (integerp (second numbers))))
     (multiple-value-bind (forms declarations) (parse-body body)
       `(defun ,name (,canvas ,gcontext ,@(if many (list (first numbers)) numbers) ,@rest)
-         ,(format nil "~A As CLX has it (manual B.1). Signals WRONG-ARGUMENT." documentation)
+         ,(format nil "~A The function is that of CLX (manual B.1). Signals ~
+                       WRONG-ARGUMENT." documentation)
          ,@declarations
          ,(if many
               `(check-sequence ',name ,canvas ,gcontext ,@numbers)
@@ -47,29 +51,31 @@
   (paint-rectangles drawable gcontext (list x y width height) fill-p))
 
 (define-drawing draw-rectangles (drawable gcontext (rectangles 4) &optional fill-p)
-    "Draw each rectangle of the sequence RECTANGLES, x y width height ..., filled if FILL-P."
+    "Draw the rectangles of the sequence RECTANGLES, x y width height ..., filled if FILL-P."
   (paint-rectangles drawable gcontext rectangles fill-p))
 
 (define-drawing draw-arc (drawable gcontext (x y width height angle1 angle2) &optional fill-p)
-    "Draw an arc inscribed in the box with its upper left corner at X, Y, from ANGLE1 over an
-extent of ANGLE2, in radians, counterclockwise from three o'clock; a filled slice if FILL-P."
+    "Draw an arc inscribed in the box with its upper left corner at X, Y. The arc begins at ANGLE1
+and extends over ANGLE2, in radians, counterclockwise from three o'clock. If FILL-P, fill the
+slice."
   (paint-arc drawable gcontext x y width height angle1 angle2 fill-p))
 
 (define-drawing draw-arcs (drawable gcontext (arcs 6) &optional fill-p)
-    "Draw each arc of the sequence ARCS, x y width height angle1 angle2 ..., as DRAW-ARC does."
+    "Draw the arcs of the sequence ARCS, x y width height angle1 angle2 ..., as DRAW-ARC does."
   (let ((numbers (coerce arcs 'list)))
     (loop for (x y width height angle1 angle2) on numbers by (lambda (list) (nthcdr 6 list))
           do (paint-arc drawable gcontext x y width height angle1 angle2 fill-p))))
 
 (define-drawing draw-line (drawable gcontext (x1 y1 x2 y2) &optional relative-p)
-    "Draw a line from X1, Y1 to X2, Y2, which counts from there if RELATIVE-P."
+    "Draw a line from X1, Y1 to X2, Y2. If RELATIVE-P, X2 and Y2 are relative to X1 and Y1."
   (paint-segments drawable gcontext
                   (if relative-p
                       (list x1 y1 (+ x1 x2) (+ y1 y2))
                       (list x1 y1 x2 y2))))
 
 (defun absolute-points (points)
-  "Return POINTS, x y ..., each relative to the one before, as a list of absolute points."
+  "Return absolute coordinates, as a list x y ..., for POINTS, x y ..., each relative to the point
+before."
   (loop with x = 0 and y = 0
         for (dx dy) on (coerce points 'list) by #'cddr
         collect (incf x dx)
@@ -77,17 +83,17 @@ extent of ANGLE2, in radians, counterclockwise from three o'clock; a filled slic
 
 (define-drawing draw-lines (drawable gcontext (points 2)
                                      &key relative-p fill-p (shape :complex))
-    "Draw lines through the sequence POINTS, x y ..., each counting from the last if RELATIVE-P;
-the polygon if FILL-P. SHAPE is a hint and changes nothing."
+    "Draw lines through the sequence POINTS, x y .... If RELATIVE-P, each point is relative to the
+point before. If FILL-P, fill the polygon. SHAPE has no effect."
   (declare (ignore shape))
   (paint-path drawable gcontext (if relative-p (absolute-points points) points) fill-p))
 
 (define-drawing draw-segments (drawable gcontext (segments 4))
-    "Draw each line of the sequence SEGMENTS, x1 y1 x2 y2 ...."
+    "Draw the separate lines of the sequence SEGMENTS, x1 y1 x2 y2 ...."
   (paint-segments drawable gcontext segments))
 
 (defun pixels (points)
-  "Return the rectangles x y width height ... of the pixels at POINTS."
+  "Return a list x y width height ... with a rectangle for the pixel at each of POINTS, x y ...."
   (loop for (x y) on (coerce points 'list) by #'cddr
         append (list (floor x) (floor y) 1 1)))
 
@@ -96,8 +102,8 @@ the polygon if FILL-P. SHAPE is a hint and changes nothing."
   (paint-rectangles drawable gcontext (pixels (list x y)) t))
 
 (define-drawing draw-points (drawable gcontext (points 2) &optional relative-p)
-    "Draw the pixel at each of the sequence POINTS, x y ..., each counting from the last if
-RELATIVE-P."
+    "Draw the pixel at each point of the sequence POINTS, x y .... If RELATIVE-P, each point is
+relative to the point before."
   (paint-rectangles drawable gcontext
                     (pixels (if relative-p (absolute-points points) points)) t))
 
@@ -114,14 +120,14 @@ RELATIVE-P."
 
 (define-drawing draw-glyphs (drawable gcontext (x y) sequence
                                       &key (start 0) end translate width size)
-    "Draw the characters of SEQUENCE from START to END, their base line beginning at X, Y.
-TRANSLATE, WIDTH and SIZE change nothing: canvases have one font."
+    "Draw the characters of SEQUENCE from START to END. Their base line begins at X, Y. TRANSLATE,
+WIDTH and SIZE have no effect, because canvases have one font."
   (declare (ignore translate width size))
   (paint-string drawable gcontext x y (glyph-text sequence start end)))
 
 (define-drawing draw-glyph (drawable gcontext (x y) glyph &key translate width size)
-    "Draw the character GLYPH, its base line beginning at X, Y. TRANSLATE, WIDTH and SIZE change
-nothing."
+    "Draw the character GLYPH. Its base line begins at X, Y. TRANSLATE, WIDTH and SIZE have no
+effect."
   (declare (ignore translate width size))
   (paint-string drawable gcontext x y (glyph-text (list glyph) 0 1)))
 
@@ -143,8 +149,8 @@ nothing."
   (draw-image-glyphs drawable gcontext x y (list glyph)))
 
 (defun clear-area (drawable &key (x 0) (y 0) (width 0) (height 0) exposures-p)
-  "Fill a rectangle with white. EXPOSURES-P changes nothing. As CLX has it. Signals
-WRONG-ARGUMENT."
+  "Fill a rectangle with the background colour. EXPOSURES-P has no effect. The function is that of
+CLX. Signals WRONG-ARGUMENT."
   (declare (ignore exposures-p))
   (check-drawing 'clear-area drawable draw-gcontext* (list x y width height))
   (paint-background drawable draw-gcontext* x y width height)
@@ -158,7 +164,7 @@ WRONG-ARGUMENT."
 
 (define-constant +text-font+ "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
   :test #'equal
-  :documentation "The font family for an SVG document in which DRAW-WORDS writes.")
+  :documentation "The font family of SVG documents in which DRAW-WORDS writes texts.")
 
 (defparameter *widths*
   (let ((widths (make-array 128 :initial-element 1.02d0)))
@@ -170,10 +176,10 @@ WRONG-ARGUMENT."
           do (loop for character across characters
                    do (setf (svref widths (char-code character)) width)))
     widths)
-  "The widths of the ASCII characters, in heights of the font.")
+  "The widths of the ASCII characters, as fractions of the height of the font.")
 
 (defun text-width (string size &optional bold-p)
-  "Return the greatest width of STRING, in pixels, in a font SIZE pixels high."
+  "Return an upper bound for the width of STRING, in pixels, in a font SIZE pixels high."
   (* size (if bold-p 1.2d0 1)
      (loop for character across string
            for code = (char-code character)
@@ -181,9 +187,9 @@ WRONG-ARGUMENT."
 
 (defgeneric paint-text (canvas gcontext x y string size anchor upward-p bold-p)
   (:documentation
-   "Paint STRING, without new lines, in a font SIZE pixels high. X, Y is the :START, :MIDDLE or :END
-of its base line, by ANCHOR. It runs upward if UPWARD-P, else to the right. By default a canvas uses
-its one font, to the right.")
+   "Paint STRING, which has no newlines, in a font SIZE pixels high. ANCHOR, :START, :MIDDLE or
+:END, is the point of the base line that lies at X, Y. The text runs upward if UPWARD-P, else to the
+right. The default method ignores SIZE, UPWARD-P and BOLD-P, because a canvas has one font.")
   (:method (canvas gcontext x y string size anchor upward-p bold-p)
     (declare (ignore size upward-p bold-p))
     (let ((width (* +character-width+ (length string))))
@@ -192,15 +198,15 @@ its one font, to the right.")
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return the width in pixels of characters that DRAW-WORDS draws on CANVAS in a
-font SIZE pixels high, if all have the same: by default that of the one font of a canvas.")
+  (:documentation "Return the width in pixels that layouts assume for a character that DRAW-WORDS
+draws on CANVAS in a font SIZE pixels high. The default method returns +CHARACTER-WIDTH+.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))
 
 (defun draw-words (canvas gcontext x y string &key (size 12) (anchor :start) upward-p bold-p)
-  "Draw STRING in a font SIZE pixels high, with the :START, :MIDDLE or :END of its base line, by
-ANCHOR, at X, Y: upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT."
+  "Draw STRING in a font SIZE pixels high, upward if UPWARD-P, else to the right. ANCHOR, :START,
+:MIDDLE or :END, is the point of the base line that lies at X, Y. Signals WRONG-ARGUMENT."
   (check-drawing 'draw-words canvas gcontext (list x y size))
   (check-argument draw-words anchor (member anchor '(:start :middle :end))
                   ":start, :middle or :end")
@@ -208,12 +214,12 @@ ANCHOR, at X, Y: upward if UPWARD-P, else to the right. Signals WRONG-ARGUMENT."
   nil)
 
 (defgeneric call-with-opacity (function canvas opacity)
-  (:documentation "Call FUNCTION, which paints with OPACITY, from 0 to 1. By default a canvas paints
-opaquely.")
+  (:documentation "Call FUNCTION with what it paints on CANVAS at OPACITY, from 0 to 1. The default
+method ignores OPACITY.")
   (:method (function canvas opacity)
     (declare (ignore canvas opacity))
     (funcall function)))
 
 (defmacro with-opacity ((canvas opacity) &body body)
-  "Run BODY, which draws on CANVAS with OPACITY, from 0 to 1."
+  "Run BODY with what it draws on CANVAS at OPACITY, from 0 to 1."
   `(call-with-opacity (lambda () ,@body) ,canvas ,opacity))

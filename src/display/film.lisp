@@ -15,13 +15,13 @@
 ;;; Frames.
 
 (defstruct (reel (:constructor make-reel ()) (:copier nil))
-  "The lines of SVG in frames, with their NUMBERS by text; and FRAMES, latest first, each a vector
-of such numbers."
+  "The frames of a film, as lines of SVG. NUMBERS is a table from the text of each line to its
+number. FRAMES, the latest first, are vectors of numbers of lines."
   (numbers (make-hash-table :test 'cl:equal) :type hash-table :read-only t)
   (frames '() :type list))
 
 (defun lines-of (text)
-  "Return the lines of TEXT, which ends in a newline, each with its newline."
+  "Return a list of the lines of TEXT, each with its newline. TEXT ends in a newline."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
         while end collect (subseq text start (1+ end))))
@@ -34,13 +34,14 @@ of such numbers."
       (push (cl:map 'vector #'number-of (lines-of text)) (reel-frames reel)))))
 
 (defun reel-lines (reel)
-  "Return a vector of the lines of REEL, by number."
+  "Return a vector of the texts of the lines of REEL, by number."
   (let ((lines (make-array (hash-table-count (reel-numbers reel)))))
     (maphash (lambda (line number) (setf (aref lines number) line)) (reel-numbers reel))
     lines))
 
 (defun changes-in (frame before)
-  "Return a list place number ... of the changes in FRAME since BEFORE, which is as long."
+  "Return the differences between the frames BEFORE and FRAME, vectors of equal length, as a list
+index number ... of lines."
   (loop for number across frame
         for old across before
         for place from 0
@@ -49,7 +50,8 @@ of such numbers."
 ;;; The data of a film, in JSON, which is also JavaScript.
 
 (defun write-array (writer items out)
-  "Write the sequence ITEMS as an array, each item by WRITER, a function of the item and OUT."
+  "Write the sequence ITEMS to OUT as a JSON array. WRITER is a function that writes an item to a
+stream."
   (write-char #\[ out)
   (let ((first-p t))
     (cl:map nil (lambda (item)
@@ -62,7 +64,8 @@ of such numbers."
   (write-json-string text out :in-page t))
 
 (defun write-frames (frames out)
-  "Write FRAMES, in order: the first whole, the others as changes if they are as long."
+  "Write FRAMES to OUT in order. A frame that has as many lines as the frame before is written as
+the differences; other frames are written whole."
   (let ((before nil))
     (flet ((write-frame (frame out)
              (cond ((and before (= (length frame) (length before)))
@@ -75,7 +78,7 @@ of such numbers."
       (write-array #'write-frame frames out))))
 
 (defun frame-at (tick ticks)
-  "Return the number of the first frame at or after TICK. TICKS are those of all frames."
+  "Return the number of the first frame at or after TICK. TICKS are the ticks of all frames."
   (or (position-if (lambda (shown) (>= shown tick)) ticks)
       (1- (length ticks))))
 
@@ -119,7 +122,8 @@ of such numbers."
                 append (list value (if (string= value "1") " selected" "") text))))
 
 (defun write-aside (legend moments several-p out)
-  "Write the part beside the picture: the moments, and LEGEND, items of a list."
+  "Write the part of the page beside the picture: the list of MOMENTS, and LEGEND, a text of HTML
+list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
                <ol id=\"moments\">~%" moments)
   (dolist (moment moments)
@@ -132,9 +136,10 @@ of such numbers."
           (string= "" legend) legend))
 
 (defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
-  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of its first frame; frames
-replace its group movers. LAST-PICTURE, of the last frame, is for browsers that run no scripts.
-LEGEND is a text of list items. If SEVERAL-P, MOMENTS name their robots."
+  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of the first frame, whose
+group `movers' the other frames replace. LAST-PICTURE, an SVG document of the last frame, is for
+browsers that run no scripts. LEGEND is a text of HTML list items. If SEVERAL-P, name the robots of
+MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-text title out)
@@ -159,8 +164,8 @@ LEGEND is a text of list items. If SEVERAL-P, MOMENTS name their robots."
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
 (defun still-text (snapshot movers layers in-color scale)
-  "Return an SVG document of the map of SNAPSHOT and LAYERS, with the SVG text MOVERS over it in a
-group called movers."
+  "Return an SVG document of the map of SNAPSHOT with LAYERS. Above the map is the SVG text MOVERS,
+in a group called `movers'."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
@@ -176,15 +181,15 @@ group called movers."
           (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
 (defstruct (film-contents (:constructor make-film-contents (opening)) (:copier nil))
-  "What a film that begins with the snapshot OPENING shows: the images of THINGS, by thing; those of
-ROBOTS and the entries of LINES, the latest first."
+  "What a film shows, for its legend. OPENING is its first snapshot. THINGS is a table from things
+to their images. ROBOTS are images of robots, and LINES legend entries of lines, the latest first."
   (opening nil :type snapshot :read-only t)
   (robots '() :type list)
   (things (make-hash-table :test #'eq) :type hash-table :read-only t)
   (lines '() :type list))
 
 (defun add-film-contents (snapshot layers contents)
-  "Add what SNAPSHOT shows with LAYERS to CONTENTS."
+  "Add the things, robots and lines that SNAPSHOT shows with LAYERS to CONTENTS."
   (let ((things (film-contents-things contents)))
     (loop for image across (snapshot-things snapshot)
           do (unless (gethash (thing-image-thing image) things)
@@ -205,7 +210,7 @@ ROBOTS and the entries of LINES, the latest first."
                     layers :lines (reverse (film-contents-lines contents)))))
 
 (defun film-legend (contents layers in-color)
-  "Return the legend of a film as items of a list in HTML."
+  "Return the legend of a film with CONTENTS as a text of HTML list items."
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas)
@@ -222,8 +227,9 @@ ROBOTS and the entries of LINES, the latest first."
           (format out "</li>~%"))))))
 
 (defun record-film (journal every until watch part layers in-color scale)
-  "Replay JOURNAL; call WATCH with the simulation after each tick. Return five values: the reel, the
-ticks of its frames, stills of the first and the last frame, and the contents."
+  "Replay JOURNAL and record a film. Call WATCH with the simulation after each tick. Return five
+values: the reel, the ticks of its frames, SVG documents of the first and the last frame, and the
+contents."
   (let ((reel (make-reel)) (ticks '()) (contents nil) (first nil) (last nil)
         ;; The legend and the title of a page are HTML.
         (shown (set-difference layers '(:legend :title))))
@@ -245,7 +251,7 @@ ticks of its frames, stills of the first and the last frame, and the contents."
       (values reel (reverse ticks) (still first) (still last) contents))))
 
 (defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
-  "Return the page of a film of JOURNAL, with MOMENTS besides those found in it."
+  "Return the HTML page of a film of JOURNAL. MOMENTS are added to the moments found in the run."
   (multiple-value-bind (watch seen) (make-moments-watcher)
     (multiple-value-bind (reel ticks first last contents)
         (record-film journal every until watch part layers in-color scale)

@@ -9,25 +9,26 @@
 ;;; forks have the trails of the moment of the fork, and rewinding cuts them.
 
 (defstruct (trail (:constructor make-trail (points count)) (:copier nil))
-  "Where a robot has been: POINTS is a list x y tick placements x y ... of COUNT points, newest
-first. Placements count how often the robot was put somewhere: if they differ, it was put
-elsewhere."
+  "The trail of a robot. POINTS is a list x y tick placements x y ... of COUNT points, the newest
+first. The number of placements counts how often the robot was put somewhere. If it differs between
+two points, the robot was put elsewhere between them."
   (points '() :type list :read-only t)
   (count 0 :type fixnum :read-only t))
 
 (defstruct (look (:constructor make-look (view x y ends)) (:copier nil))
-  "The rays of a camera's last view: from X, Y to ENDS, a list x y x y ...."
+  "The rays of a camera's last view. They lead from X, Y to ENDS, a list x y x y ...."
   (view '() :type list :read-only t)
   (x 0d0 :type double-float :read-only t)
   (y 0d0 :type double-float :read-only t)
   (ends '() :type list :read-only t))
 
 (defstruct (history (:copier nil))
-  "The recorded past of a simulation, except trails."
+  "The views of the cameras in a simulation, recorded for pictures. Trails are recorded in the
+simulation itself."
   ;; An association list by camera: there are few cameras.
   (looks '() :type list))
 
-(defconstant +trail-length+ 4000 "The most points of a trail that are drawn.")
+(defconstant +trail-length+ 4000 "The largest number of points of a trail that are drawn.")
 (defconstant +trail-step+ 0.1d0 "The least distance between the points of a trail, in metres.")
 
 (defun trail-called (name simulation)
@@ -35,14 +36,14 @@ elsewhere."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
 (defmacro do-trail ((points &rest variables) &body body)
-  "Run BODY, clauses of LOOP, for each of those POINTS of a trail that pictures show, newest first.
-VARIABLES are bound to its x, y, tick and placements."
+  "Run BODY, clauses of LOOP, for each point in POINTS of a trail, the newest first, as far as
+pictures show the trail. VARIABLES are bound to the x, y, tick and placements of the point."
   `(loop for (,@variables) on ,points by #'cddddr
          repeat +trail-length+
          ,@body))
 
 (defun moved-p (points x y)
-  "True unless the first of POINTS is less than +TRAIL-STEP+ from X, Y."
+  "True if X, Y is at least +TRAIL-STEP+ from the first point of POINTS, or if POINTS is empty."
   (declare #.*hot* (type double-float x y))
   (or (null points)
       (>= (+ (abs (- x (the double-float (first points))))
@@ -50,8 +51,8 @@ VARIABLES are bound to its x, y, tick and placements."
           +trail-step+)))
 
 (defun add-placement (robot tick points)
-  "Return POINTS, of a trail. If ROBOT has been put elsewhere since, add that place: by TICK it may
-have driven on."
+  "Return POINTS of a trail. If ROBOT has been put elsewhere since the newest point, add the place
+where ROBOT was put, because ROBOT may have moved away from there by TICK."
   (if (and points
            (/= (the fixnum (robot-placements robot)) (the fixnum (fourth points)))
            (moved-p (list (robot-x robot) (robot-y robot)) (robot-put-x robot) (robot-put-y robot)))
@@ -59,16 +60,16 @@ have driven on."
       points))
 
 (defun add-place (robot tick points)
-  "Return POINTS, of a trail, with the place of ROBOT at TICK as the newest."
+  "Return POINTS of a trail with a new point for the position of ROBOT at TICK."
   (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
          (add-placement robot tick points)))
 
 (defun new-points (points before)
-  "Return the number of POINTS, of a trail, before its tail BEFORE."
+  "Return the number of points in POINTS, a trail, before its tail BEFORE."
   (loop for rest on points by #'cddddr until (eq rest before) count t))
 
 (defun extended-trail (trail robot tick)
-  "Return a trail like TRAIL, one or NIL, with the place of ROBOT at TICK as the newest point."
+  "Return a copy of TRAIL, a trail or NIL, with a new point for the position of ROBOT at TICK."
   (let* ((before (and trail (trail-points trail)))
          (points (add-place robot tick before))
          (count (+ (if trail (trail-count trail) 0) (new-points points before))))
@@ -77,7 +78,8 @@ have driven on."
         (make-trail points count))))
 
 (defun note-position (simulation robot)
-  "Record the place of ROBOT of SIMULATION, if it has moved. This runs in every tick."
+  "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. This function is called
+in every tick."
   (declare #.*hot* (type robot robot))
   (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
@@ -86,8 +88,9 @@ have driven on."
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
 (defun points-of-trail (robot)
-  "Return a list x y tick placements ... of where ROBOT has been, newest first; NIL if no trail is
-recorded. Forks do not record trails: their last piece leads straight to where ROBOT is."
+  "Return the points of the trail of ROBOT, as a list x y tick placements ..., the newest first.
+Return NIL if no trail is recorded. Forks do not record trails, so the last part of their trails is
+a straight line to the present position of ROBOT."
   (let* ((simulation (robot-simulation robot))
          (trail (trail-called (robot-name robot) simulation)))
     (cond ((null trail) '())
@@ -104,8 +107,9 @@ recorded. Forks do not record trails: their last piece leads straight to where R
 ;;; Looks.
 
 (defun ray-ends (map opaque-p x y first step count)
-  "Return a list x y ... of where COUNT rays of sight from X, Y end in MAP: one in direction FIRST,
-each other STEP radians further. OPAQUE-P is a function of the index of a cell."
+  "Return the end points of COUNT rays of sight from X, Y in MAP, as a list x y .... The first ray
+has the direction FIRST, and each next one is STEP radians further. OPAQUE-P is a function of the
+index of a cell that returns true if the cell ends a ray."
   (loop for ray below count
         for angle = (+ first (* ray step))
         for dx = (cosine angle) and dy = (sine angle)
@@ -116,7 +120,7 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
         collect (+ x (* end dx)) collect (+ y (* end dy))))
 
 (defun take-look (camera)
-  "Return the look of CAMERA's last view, supposing that it was taken where CAMERA is now."
+  "Return the rays of CAMERA's last view, on the assumption that CAMERA has not moved since."
   (let* ((robot (camera-robot camera))
          (x (robot-x robot)) (y (robot-y robot))
          (count (min 60 (camera-resolution camera)))
@@ -148,7 +152,7 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
     (loop for camera across (robot-cameras robot) do (note-look history camera))))
 
 (defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "From simulations to pairs of their history and the observer that records it.")
+  "A table from simulations to pairs of the history and the observer that records this history.")
 
 (defun history-of (simulation)
   "Return the history of SIMULATION, or NIL."
@@ -156,8 +160,8 @@ each other STEP radians further. OPAQUE-P is a function of the index of a cell."
 
 (addition keep-history)
 (defun keep-history (&optional (simulation (current-simulation)))
-  "Record a history of SIMULATION from now on, so that its pictures can show the trails of robots
-and the rays of the last views. Return the history."
+  "Record a history of SIMULATION from now on. Pictures can then show the trails of robots and the
+rays of the cameras' last views. Return the history."
   (or (history-of simulation)
       (let* ((history (make-history))
              (observer (lambda (simulation) (note-moment history simulation))))
@@ -168,8 +172,9 @@ and the rays of the last views. Return the history."
         history)))
 
 (defun follow-rewind (old new)
-  "Give NEW, which replaces OLD, the trails of OLD up to the present tick of NEW. If OLD has a
-history, record one of NEW instead."
+  "Copy the trails of the simulation OLD, up to the present tick of NEW, to the simulation NEW,
+which replaces OLD after a rewind. If a history of OLD is recorded, record a history of NEW
+instead."
   (setf (simulation-trails new)
         (loop for (name . trail) in (simulation-trails old)
               collect (cons name (trail-until (simulation-tick new) trail))))

@@ -16,8 +16,8 @@
       (funcall function))))
 
 (defmacro with-halo ((color &key (width 1) dashes) &body body)
-  "Run BODY, which draws lines, twice: for a white halo, and then in COLOR, a dark one, WIDTH pixels
-wide, with DASHES."
+  "Run BODY, which draws lines, twice: first for a white halo, then in the dark colour COLOR, WIDTH
+pixels wide, with DASHES."
   `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Each of several robots or ways has a colour and dashes by its position. There are 8 colours and
@@ -28,29 +28,30 @@ wide, with DASHES."
 (define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
   :test #'cl:equal
-  :documentation "The colours of several robots or ways, by position.")
+  :documentation "The colours of robots or ways in one picture, by their position in the list.")
 
 (define-constant +line-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
   :test #'cl:equal
-  :documentation "The dashes and gaps of several robots or ways, by position; NIL is a solid line.")
+  :documentation "The dashes and gaps of robots or ways in one picture, by their position in the
+list. NIL means a solid line.")
 
 (defun nth-cyclic (position sequence)
-  "Return the element of SEQUENCE at POSITION, as if SEQUENCE were repeated for ever."
+  "Return the element of SEQUENCE at POSITION, modulo the length of SEQUENCE."
   (elt sequence (mod position (length sequence))))
 
 (defun nth-ink (position)
-  "Return the colour of the robot or way at POSITION among several."
+  "Return the colour of the robot or way at POSITION in a list of several."
   (nth-cyclic position +line-inks+))
 
 (defun nth-dashes (position)
   (nth-cyclic position +line-dashes+))
 
 (defun to-pixels (metres)
-  "Return METRES in pixels."
+  "Return METRES converted to pixels by GRAPHICS-SCALE*."
   (* metres graphics-scale*))
 
 (defun pixels-of (points)
-  "Return POINTS, a list of coordinates in metres, in pixels."
+  "Return POINTS, a list of coordinates in metres, converted to pixels."
   (mapcar #'to-pixels points))
 
 (defun point-at-distance (x y angle radius)
@@ -58,7 +59,8 @@ wide, with DASHES."
   (list (+ x (* radius (cosine angle))) (+ y (* radius (sine angle)))))
 
 (defun draw-circle (canvas x y radius fill-p)
-  "Draw a filled circle, or a circular line with its middle RADIUS pixels from X, Y."
+  "Draw a circle around X, Y. If FILL-P, fill the circle; else draw a line whose middle is RADIUS
+pixels from X, Y."
   (let ((reach (if fill-p radius (+ radius (/ (max 1 (gcontext-line-width draw-gcontext*)) 2)))))
     (draw-arc canvas draw-gcontext* (- x reach) (- y reach) (* 2 reach) (* 2 reach) 0 2pi fill-p)))
 
@@ -89,7 +91,7 @@ wide, with DASHES."
   :test #'cl:equal
   :documentation "The colours of rays, from the least to the greatest parameter of walls.")
 
-(defconstant +grid-ink+ #x8A8A8A "The colour of the grid, which lies on white.")
+(defconstant +grid-ink+ #x8A8A8A "The colour of the grid, which is drawn on white.")
 (defconstant +frame-ink+ #x606060 "The colour of frames and ticks, on white.")
 
 ;;;; Walls
@@ -104,23 +106,26 @@ wide, with DASHES."
 (define-constant +substance-inks+ '(:yellow :cyan :red :blue :grey :green :lightcyan :violet
                                     :lightyellow :lightviolet)
   :test #'cl:equal
-  :documentation "The colours of substances, cyclically in order of definition.")
+  :documentation "The colours of substances, in order of their definition; after the last colour,
+the first follows.")
 
 (define-constant +tints+ '(:yellow #xC8B060 :cyan #x58B0B8 :red #xC08878 :blue #x7890D0
                            :green #x78A878 :lightcyan #x88C4B0 :violet #xA080C8
                            :lightyellow #xC0C488 :lightviolet #xC8A4D8)
   :test #'cl:equal
-  :documentation "The hues of these colours; grey has none.")
+  :documentation "The hue that walls get for each of +SUBSTANCE-INKS+. Grey has no hue.")
 
-(defconstant +tint-strength+ 0.55d0 "How much of its hue a wall has, from 0 to 1.")
+(defconstant +tint-strength+ 0.55d0 "The strength of the hue of a wall, from 0 to 1.")
 
 (define-constant +wall-textures+ '(:lines :hatching :bricks :falling-hatching :plain :dots :posts
                                    :crosses :net :chequers :arrows)
   :test #'cl:equal
-  :documentation "The textures of substances, cyclically in order of definition.")
+  :documentation "The textures of substances, in order of their definition; after the last texture,
+the first follows.")
 
 (defun substance-position (name)
-  "Return the number of substances defined before the one called NAME, or NIL if there is none."
+  "Return the number of substances that were defined before the substance called NAME. Return NIL if
+there is no such substance."
   (position name (all-substances) :key #'substance-name :test #'same-name-p))
 
 (defun substance-ink (name)
@@ -129,13 +134,16 @@ wide, with DASHES."
 
 ;;; Lightness.
 
-(defconstant +least-shade+ 8 "The shade of grey* of the darkest walls.")
-(defconstant +shade-of-zero+ 14 "The shade of grey* of walls with the parameter 0.")
-(defconstant +greatest-shade+ 36 "The shade of grey* of the lightest walls; it is seen on white.")
-(defconstant +middle-parameter+ 60 "The parameter whose shade is halfway between those two.")
+(defconstant +least-shade+ 8 "The index in GREY* of the shade of the darkest walls.")
+(defconstant +shade-of-zero+ 14 "The index in GREY* of the shade of walls with the parameter 0.")
+(defconstant +greatest-shade+ 36
+  "The index in GREY* of the shade of the lightest walls. This shade is visible on white.")
+(defconstant +middle-parameter+ 60
+  "The parameter whose shade is halfway between +SHADE-OF-ZERO+ and +GREATEST-SHADE+.")
 
 (defun wall-shade (parameter)
-  "Return the shade of grey* of walls with PARAMETER, the same in each map."
+  "Return the index in GREY* of the shade of walls with PARAMETER. The shade is the same in each
+map."
   (let ((part (/ parameter (+ (abs parameter) +middle-parameter+))))
     (+ +shade-of-zero+
        (round (* part (if (minusp part)
@@ -143,20 +151,20 @@ wide, with DASHES."
                           (- +greatest-shade+ +shade-of-zero+)))))))
 
 (defun wall-color (shade hue)
-  "Return the shade SHADE of grey*, tinted with HUE, a colour or NIL."
+  "Return the grey at index SHADE of GREY*, tinted with the colour HUE unless HUE is NIL."
   (let ((grey (svref grey* shade)))
     (if hue (tint-grey grey hue +tint-strength+) grey)))
 
 ;;; Looks.
 
 (defstruct (material (:constructor make-material (hue texture)) (:copier nil))
-  "The look of the walls of a substance: HUE is a colour or NIL."
+  "The look of the walls of a substance. HUE is a colour, or NIL for grey walls."
   (hue nil :type (or null color) :read-only t)
   (texture :plain :type keyword :read-only t))
 
 (defun free-texture (name taken)
-  "Return the texture for the substance called NAME in a map whose other substances have the
-textures TAKEN."
+  "Return a texture for the substance called NAME in a map: its usual texture, or the next one that
+is not in TAKEN, the textures of other substances of the map."
   (let* ((first (or (substance-position name) 0))
          (all (loop for position from first repeat (length +wall-textures+)
                     collect (nth-cyclic position +wall-textures+))))
@@ -164,7 +172,8 @@ textures TAKEN."
         (first all))))
 
 (defun textures-for (names)
-  "Return a list (name texture) for each of NAMES, the substances of a map, in order of definition."
+  "Return lists (name texture) for NAMES, the names of the substances of a map, in the order of the
+definitions of these substances."
   (let ((taken '()))
     (loop for name in (stable-sort (copy-list names) #'<
                                    :key (lambda (name)
@@ -172,7 +181,8 @@ textures TAKEN."
           collect (list name (first (push (free-texture name taken) taken))))))
 
 (defun materials-of (map)
-  "Return a vector of the materials of the substances of MAP, by number."
+  "Return a vector of the materials of the substances of MAP, indexed by the number of the
+substance."
   (let ((textures (textures-for (remove nil (coerce (map-substance-types map) 'list)))))
     (cl:map 'vector (lambda (name)
                       (make-material (and name (getf +tints+ (substance-ink name)))

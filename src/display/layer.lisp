@@ -20,7 +20,8 @@
 ;;; the argument SHOWN, or NIL. The legend calls it too, and so lists exactly what is drawn.
 
 (defstruct (layer (:copier nil) (:conc-name %layer-))
-  "Something that pictures can show: see DEFINE-LAYER."
+  "A layer of pictures: something that they can show besides walls, things and robots. See
+DEFINE-LAYER."
   (name nil :type keyword) (title "" :type string) (sentence "" :type string)
   (default-p nil) (depth :robots :type keyword) (shown nil) (draw nil) (note nil) (boxes nil)
   (ink nil) (dashes '() :type list) (width 1) (legend nil) (entries nil) (last-p nil)
@@ -32,7 +33,7 @@
 (defvar *picture-layers* '())
 
 (defun picture-layers ()
-  "Return the names of the layers, in the order of menus."
+  "Return the names of all layers, in the order of menus."
   (mapcar #'%layer-name *layers*))
 
 (defun document-layers ()
@@ -48,7 +49,8 @@
                                      (%layer-sentence layer)))))))
 
 (defun add-layer (layer)
-  "Add LAYER, in the place of one of the same name, or after all others. Return its name."
+  "Add LAYER to *LAYERS*, at the end or in place of a layer of the same name. Return the name of
+LAYER."
   (let* ((name (%layer-name layer)) (old (find name *layers* :key #'%layer-name)))
     (cond (old (setf *layers* (substitute layer old *layers*)))
           (t (setf *layers* (append *layers* (list layer)))
@@ -58,42 +60,46 @@
     name))
 
 (defmacro define-layer (name title sentence &rest options)
-  "Define the layer NAME, a keyword, called TITLE in menus. SENTENCE says what it shows. OPTIONS:
-- :default-p t: pictures show it unless :LAYERS is given.
-- :depth: where it is drawn, by default :ROBOTS: see the head of layer.lisp.
-- :shown, a function: returns what to draw, by default the :note of the robot.
-- :draw, a function that draws this: see there.
-- :note, a function of a robot: returns what snapshots keep for this layer, an image or data for
-  EQUAL.
-- :ink, by default that of each robot, :dashes and :width: the look of its lines.
+  "Define the layer NAME, a keyword, with TITLE in menus. SENTENCE says what the layer shows.
+OPTIONS:
+- :default-p t: pictures show the layer unless :LAYERS is given.
+- :depth: the depth at which the layer is drawn, by default :ROBOTS. See the head of layer.lisp.
+- :shown, a function: returns what to draw. The default is the value of :note for the robot. See the
+  head of layer.lisp.
+- :draw, a function: draws the value of :shown. See the head of layer.lisp.
+- :note, a function of a robot: returns what snapshots keep for this layer, an image or data that
+  can be compared by EQUAL.
+- :ink, by default the colour of each robot, :dashes and :width: the look of the lines of the layer.
 - :legend: the text for these lines in the legend. :entries, a function of the snapshot, returns
-  further entries. :last-p t puts the line after those of other layers.
-- :boxes, a function of the arguments of :draw but the canvas: returns boxes that names avoid.
-- :text-name: the name in text maps. :text, a function of a text view and the image of a robot,
-  returns pairs of a block and a glyph. :text-depth: where these are visible: :ABOVE things, :BELOW
-  things, or on the :FLOOR, where there is nothing else."
+  further entries of the legend. :last-p t puts the entry of the lines after those of other layers.
+- :boxes, a function of the arguments of :draw except the canvas: returns boxes that names avoid.
+- :text-name: the name of the layer in text maps. :text, a function of a text view and the image of
+  a robot, returns pairs of a block and a glyph. :text-depth is the depth of these glyphs: :ABOVE
+  things, :BELOW things, or on the :FLOOR, below everything else."
   `(add-layer (make-layer :name ,name :title ,title :sentence ,sentence ,@options)))
 
 ;;; Layers by name.
 
 (defun layer-called (name)
-  "Return the layer called NAME. Signals WRONG-ARGUMENT."
+  "Return the layer called NAME. Signals WRONG-ARGUMENT if there is none."
   (or (find name *layers* :key #'%layer-name)
       (reject-argument 'layer-title "layer" name
                        (format nil "one of ~{~(~S~)~^, ~}" (picture-layers)))))
 
 (defun layer-title (name)
-  "Return what menus call the layer NAME, a keyword."
+  "Return the title in menus of the layer NAME, a keyword."
   (%layer-title (layer-called name)))
 
 (defun layer-ink (name)
-  "Return the colour of the lines of the layer NAME; of lines in the colours of robots, the first."
+  "Return the colour of the lines of the layer NAME. If the lines have the colours of robots, return
+the colour of the first robot."
   (or (%layer-ink (layer-called name)) (nth-ink 0)))
 
 (defun layer-dashes (name) (%layer-dashes (layer-called name)))
 
 (defun layers-at (depth &optional (names (picture-layers)))
-  "Return the layers called NAMES that are drawn at DEPTH, in the order of menus."
+  "Return the layers that are drawn at DEPTH and whose names are in the list NAMES, in the order of
+menus."
   (remove-if-not (lambda (layer)
                    (and (eq depth (%layer-depth layer)) (member (%layer-name layer) names)))
                  *layers*))
@@ -101,19 +107,21 @@
 ;;; Text maps have other names for layers. The prompt accepts both.
 
 (defun text-layers ()
-  "Return the names in text maps of the layers that these can show."
+  "Return the names in text maps of the layers that text maps can show."
   (remove nil (mapcar #'%layer-text-name *layers*)))
 
 (defun layer-named (name)
-  "Return the name in pictures of the layer NAME, a keyword: its name in pictures or in text maps."
+  "Return the name in pictures of a layer. NAME, a keyword, is its name in pictures or in text
+maps."
   (let ((layer (find name *layers* :key #'%layer-text-name)))
     (if layer (%layer-name layer) name)))
 
 (defun text-layer-named (name)
-  "Return the name in text maps of the layer NAME, a keyword: its name in pictures or in text maps."
+  "Return the name in text maps of a layer. NAME, a keyword, is its name in pictures or in text
+maps."
   (let ((layer (find name *layers* :key #'%layer-name)))
     (or (and layer (%layer-text-name layer)) name)))
 
 (defun layer-words (name)
-  "Return the names that the prompt accepts for the layer NAME, one or two, as a text."
+  "Return a text with the one or two names that the prompt accepts for the layer NAME."
   (format nil "~A~@[ or ~A~]" name (%layer-text-name (layer-called name))))

@@ -8,8 +8,8 @@
 ;;; clockwise from the right, on the map and on the canvas.
 
 (defun shown-at (depth layers image &rest more)
-  "Return lists (layer shown . MORE) of those of LAYERS at DEPTH that show something of IMAGE, a
-snapshot or the image of a robot or camera."
+  "Return lists (layer shown . MORE) for the layers of the list LAYERS at DEPTH that show something
+of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robot or camera."
   (loop for layer in (layers-at depth layers)
         for shown = (if (%layer-shown layer)
                         (funcall (%layer-shown layer) image)
@@ -17,7 +17,8 @@ snapshot or the image of a robot or camera."
         when shown collect (list* layer shown more)))
 
 (defun shown-below-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT below things, as SHOWN-AT does, from the lowest up."
+  "Return what LAYERS show of SNAPSHOT below things, as a list like that of SHOWN-AT, from the
+lowest layer up."
   (append (shown-at :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
@@ -27,12 +28,12 @@ snapshot or the image of a robot or camera."
           (shown-at :things layers snapshot)))
 
 (defun shown-above-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT above things, as SHOWN-AT does."
+  "Return what LAYERS show of SNAPSHOT above things, as a list like that of SHOWN-AT."
   (loop for robot in (snapshot-robots snapshot)
         append (shown-at :labels layers robot robot snapshot)))
 
 (defun shown-lines (snapshot layers)
-  "Return all that LAYERS show of SNAPSHOT, as SHOWN-AT does."
+  "Return all that LAYERS show of SNAPSHOT, as a list like that of SHOWN-AT."
   (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
 
 (defun draw-shown (canvas shown)
@@ -40,10 +41,11 @@ snapshot or the image of a robot or camera."
         do (apply (%layer-draw layer) canvas arguments)))
 
 (defconstant +beyond+ 8
-  "How far robots are drawn beyond the edges of the map, in pixels; no margin is narrower.")
+  "The distance in pixels to which robots are drawn beyond the edges of the map. No margin is
+narrower.")
 
 (defun draw-movers (canvas snapshot layers)
-  "Draw what is not terrain of SNAPSHOT on CANVAS: things, robots, and what LAYERS show of them."
+  "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them."
   (let* ((map (snapshot-map snapshot)) (around (* 2 +beyond+))
          (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
     (with-clipping (canvas 0 0 width height)
@@ -66,11 +68,11 @@ snapshot or the image of a robot or camera."
   :default-p t :depth :on-walls :draw 'draw-places :entries 'place-entries)
 
 (define-layer :grid "Grid"
-  "Borders of cells; where these are small, of every fifth or tenth."
+  "Borders of cells. Where cells are small, the borders of every fifth or tenth cell."
   :depth :under-walls :draw 'draw-grid)
 
 (define-layer :wedges "Fields of view"
-  "What each camera has in its field of view, up to walls and things that block the view."
+  "The field of view of each camera, up to walls and things that block the view."
   :depth :cameras :shown 'unobstructed-camera :draw 'draw-wedge
   :ink #x7A1030 :legend "in view"
   :text-name :cones :text 'cone-marks :text-depth :floor)
@@ -81,37 +83,39 @@ snapshot or the image of a robot or camera."
   :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'reading-entries)
 
 (define-layer :tracks "Tracks"
-  "Where the robot believes the objects to be that its cameras track."
+  "The positions where each robot believes the objects to be that its cameras track."
   :default-p t :depth :cameras :shown 'camera-image-track :draw 'draw-track :boxes 'track-boxes
   :ink #x8A1010 :dashes '(5 2 1 2) :legend "tracked")
 
 (define-layer :designators "Designators"
-  "Where the robot believes its designated objects to be, joined to where they really are."
+  "The positions where each robot believes its designated objects to be, joined to their real
+positions."
   :depth :labels :shown 'robot-image-designators :draw 'draw-designators-on-map
   :boxes 'designator-boxes
   :ink #x0C3C78 :dashes '(4) :legend "believed, true"
   :text-name :belief :text 'belief-marks :text-depth :above)
 
 (define-layer :odometer "Odometer"
-  "The position and the range of headings that the main odometer estimates."
+  "The position and the range of headings that each robot's main odometer estimates."
   :shown 'robot-image-odometer :draw 'draw-odometer
   :ink #x4A1A80 :dashes '(7 2) :legend "odometer")
 
 (define-layer :trail "Trail"
-  "Where each robot has been."
+  "The way that each robot has gone."
   :depth :ways :shown 'robots-with-trails :draw 'draw-trails
   :dashes '(2 2) :legend "trail" :entries 'trail-jump-entries
   :text-name :way :text 'trail-marks)
 
 (define-layer :planned-way "Planned way"
-  "The way that each robot is about to go, if its program publishes it: see PUBLISH-WAY."
+  "The way that each robot is about to go, if its program publishes the way: see PUBLISH-WAY."
   :default-p t :depth :ways :shown 'robots-with-plans :draw 'draw-planned-ways
   :boxes 'ends-of-planned-ways
   :dashes '(6 4) :width 2 :legend "planned way"
   :text-name :plan :text 'planned-marks)
 
 (define-layer :reach "What moves by itself"
-  "A dashed ring around each thing that has kickers. How far these move it cannot be known."
+  "A dashed ring around each thing that has kickers. The distance that kickers can move a thing is
+unknown."
   :depth :things :shown 'moving-things :draw 'draw-reach
   :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 

@@ -11,32 +11,33 @@
 
 (defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
                   (:copier nil))
-  "An entry of a legend: TEXT beside a sample WIDTH pixels wide. WHOLE is the full text if TEXT is
-abridged, or NIL."
+  "An entry of a legend: TEXT beside a sample that is WIDTH pixels wide. WHOLE is the full text if
+TEXT is abridged, else NIL."
   (width +sample-width+ :type real :read-only t)
   (text "" :type string :read-only t)
   (sample (constantly nil) :type function :read-only t)
   (whole nil :type (or null string) :read-only t))
 
 (defmacro entry-with-sample ((canvas x y) text &body body)
-  "Return an entry with TEXT and a sample that BODY draws."
+  "Return a legend entry with TEXT and a sample that BODY draws on CANVAS around X, Y."
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
 (defun named-entry (name sample &optional (more "") (width +sample-width+))
-  "Return an entry with NAME, a string, abridged if it is long, then MORE, and with SAMPLE, WIDTH
-pixels wide."
+  "Return a legend entry whose text is NAME, a string that is abridged if it is long, followed by
+MORE. SAMPLE is a function that draws the sample, WIDTH pixels wide."
   (let ((text (short-name name)))
     (make-entry (concatenate 'string text more) sample
                 :whole (and (string/= text name) name) :width width)))
 
 (defmacro named-entry-with-sample ((canvas x y) (name &rest more-and-width) &body body)
-  "Return an entry for NAME with a sample that BODY draws. MORE-AND-WIDTH: a text to append to the
-name, and the width of the sample in pixels."
+  "Return a legend entry for NAME with a sample that BODY draws on CANVAS around X, Y.
+MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the sample in pixels."
   `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)
                 ,@more-and-width))
 
 (defun grouped (objects key)
-  "Return the list OBJECTS as lists of those for which KEY returns equal values, in their order."
+  "Return the list OBJECTS divided into lists of the objects for which KEY returns equal values. The
+order of objects is kept."
   (let ((groups '()))
     (dolist (object objects (mapcar #'reverse (mapcar #'rest (reverse groups))))
       (let* ((value (funcall key object)) (group (assoc value groups :test #'cl:equal)))
@@ -44,10 +45,11 @@ name, and the width of the sample in pixels."
             (push object (rest group))
             (push (list value object) groups))))))
 
-(defconstant +longest-names+ 32 "About how many characters several names beside one sample have.")
+(defconstant +longest-names+ 32
+  "The largest number of characters of several names beside one sample.")
 
 (defun join-names (texts)
-  "Return TEXTS joined, as many as there is room for, and the number of the others."
+  "Return a text that joins as many of TEXTS as +LONGEST-NAMES+ allows, and counts the others."
   (loop with joined = (first texts)
         for rest on (rest texts)
         for longer = (format nil "~A, ~A" joined (first rest))
@@ -56,8 +58,8 @@ name, and the width of the sample in pixels."
         finally (return (format nil "~A~@[ and ~D more~]" joined (and rest (length rest))))))
 
 (defun names-entry (names sample)
-  "Return an entry for NAMES, lists (name more) of two strings each, with SAMPLE: things with these
-names look the same."
+  "Return a legend entry for several NAMES of things that look the same. NAMES are lists (name more)
+of two strings. SAMPLE is a function that draws the sample."
   (flet ((texts (function)
            (loop for (name more) in names
                  collect (concatenate 'string (funcall function name) more))))
@@ -68,7 +70,8 @@ names look the same."
 ;;; Robots.
 
 (defun robot-entry (name position)
-  "Return an entry for the robot called NAME, a string, at POSITION among those of its world."
+  "Return the legend entry for the robot called NAME, a string. POSITION is its position in the list
+of robots of its world."
   (named-entry-with-sample (canvas x y) (name) (draw-ring canvas x y 6 0 position)))
 
 (defun robot-entries (snapshot)
@@ -78,7 +81,7 @@ names look the same."
 ;;; Walls: the substances, with the range of their parameters.
 
 (defun map-cells-shown (function snapshot)
-  "Call FUNCTION with the index of each cell that SNAPSHOT shows of its map."
+  "Call FUNCTION with the index of each cell in the part of the map that SNAPSHOT shows."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (loop with width = (map-width (snapshot-map snapshot))
           for row from top below bottom
@@ -86,8 +89,8 @@ names look the same."
                    do (funcall function index)))))
 
 (defun parameter-ranges (snapshot)
-  "Return lists (number least greatest), for each substance of walls that SNAPSHOT shows, of its
-number and the range of parameters, by number."
+  "Return a list (number least greatest) for each substance of the walls that SNAPSHOT shows: its
+number and the range of its parameters. The lists are sorted by number."
   (let ((map (snapshot-map snapshot)) (ranges '()))
     (flet ((note (index)
              (when (logtest +wall+ (aref (map-flags map) index))
@@ -107,7 +110,7 @@ number and the range of parameters, by number."
 (defconstant +sample-tile+ 6 "The width of tiles of textures in legends, in pixels.")
 
 (defun draw-swatch (canvas x y left right)
-  "Draw two cells side by side with the looks LEFT and RIGHT."
+  "Draw a sample of two wall cells side by side, with the looks LEFT and RIGHT."
   (with-origin (canvas (- x 9) (- y 6))
     (loop for look in (list left right) for start in '(0 9)
           do (draw-wall-look canvas look (list start 0 9 12) +sample-tile+))))
@@ -142,7 +145,7 @@ number and the range of parameters, by number."
     (draw-place-at canvas type (- x 6) (- y 6))))
 
 (defun place-mark-svg (type)
-  "Return an SVG document of the mark of the place type TYPE, to compare marks."
+  "Return an SVG document with the mark of the place type TYPE. It serves to compare marks."
   (let ((color-p in-color*))
     (with-output-to-string (out)
       (with-svg (canvas out :color-p color-p)
@@ -161,25 +164,26 @@ number and the range of parameters, by number."
 ;;; Things: each look once, with the names of all things that look so.
 
 (defun sample-half (image)
-  "Return half the width of the sample of the thing, in pixels: as on the map if the line is high
-enough."
+  "Return half the width of the sample of the thing of IMAGE, in pixels. It is as wide as on the map
+if a line of the legend has room for that."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +largest-thing+))))
     (half-width image)))
 
 (defun thing-look (image)
-  "Return the look of the thing as a list. Things with equal looks can hardly be told apart."
+  "Return the look of the thing of IMAGE as a list. Things with equal looks can hardly be
+distinguished in a picture."
   (list (thing-image-color image) (thing-shape image) (round (sample-half image))
         (thing-image-container-p image) (thing-image-obsview-p image)))
 
 (defun thing-kinds (snapshot)
-  "Return lists of images of things that look the same, ordered by the first name in each."
+  "Return lists of images of things that look the same, sorted by the first name in each list."
   (grouped (stable-sort (coerce (snapshot-things snapshot) 'list)
                         #'name-before-p :key #'thing-image-name)
            #'thing-look))
 
 (defun names-with-counts (images)
-  "Return lists (name more) for the names of IMAGES; MORE is the number of things if there are
-several."
+  "Return lists (name more) for the names of IMAGES, images of things. MORE is a text with the
+number of things if several have the same name, else an empty text."
   (loop for (image . others) in (grouped images #'thing-image-name)
         collect (list (thing-image-name image)
                       (format nil "~@[ (~D)~]" (and others (1+ (length others)))))))
@@ -212,8 +216,9 @@ several."
 ;;; Lines.
 
 (defun jump-entries (ways snapshot color)
-  "Return a list of the entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump of WAYS: lists of
-pieces, lists x y ... in pixels."
+  "Return a list with the legend entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump in WAYS.
+A jump is where a robot was put elsewhere. Each of WAYS is a list of pieces, lists x y ... in
+pixels."
   (and (jumps-seen-p ways (pixels-of (shown-part snapshot)))
        (list (entry-with-sample (canvas x y) "put elsewhere"
                (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))
@@ -238,12 +243,12 @@ pieces, lists x y ... in pixels."
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
 (defun further-entries (layers snapshot)
-  "Return the :entries of LAYERS for SNAPSHOT."
+  "Return the legend entries that the functions :ENTRIES of LAYERS return for SNAPSHOT."
   (loop for layer in layers
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
 (defun line-entries (snapshot layers)
-  "Return the entries for those of LAYERS for which something of SNAPSHOT is drawn."
+  "Return the legend entries for the lines that LAYERS draw of SNAPSHOT."
   (let* ((shown (mapcar #'first (shown-lines snapshot layers)))
          (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*))
          (drawn (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
@@ -252,10 +257,10 @@ pieces, lists x y ... in pixels."
 
 ;;; The whole.
 
-(defconstant +entry-limit+ 80 "The most entries of a legend.")
+(defconstant +entry-limit+ 80 "The largest number of entries of a legend.")
 
 (defun fade-samples (entries opacity)
-  "Return ENTRIES with samples drawn with OPACITY."
+  "Return ENTRIES with their samples drawn at OPACITY, from 0 to 1."
   (loop for entry in entries
         collect (let ((sample (entry-sample entry)))
                   (make-entry (entry-text entry)
@@ -267,8 +272,8 @@ pieces, lists x y ... in pixels."
                        &key (lines (line-entries snapshot layers))
                             (robots (robot-entries snapshot))
                             (opacity 1))
-  "Return the entries of the legend of a picture of SNAPSHOT with LAYERS. LINES are the entries of
-lines, ROBOTS those of robots. OPACITY is that of the map."
+  "Return the legend entries for a picture of SNAPSHOT with LAYERS. LINES are the entries for lines,
+and ROBOTS the entries for robots. OPACITY, from 0 to 1, is the opacity of the map."
   (let* ((terrain (append (wall-entries snapshot)
                           (further-entries (append (layers-at :under-walls layers)
                                                    (layers-at :on-walls layers))

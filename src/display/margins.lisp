@@ -7,37 +7,39 @@
 (defconstant +usual-scale+ 8 "The default of GRAPHICS-SCALE*.")
 
 (define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
-  "a number of pixels to a cell, from 1 to 256")
+  "a number of pixels per cell, from 1 to 256")
 
 (defun users-scale ()
-  "Return GRAPHICS-SCALE* if the user has set it to another value than the default, else NIL.
-Signals MISUSE if it is not a scale."
+  "Return GRAPHICS-SCALE* if the user has set a value other than the default, else NIL. Signals
+MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (cond ((eql graphics-scale* +usual-scale+) nil)
         ((argument-of-type-p graphics-scale* 'picture-scale) graphics-scale*)
-        (t (reject-use "graphics-scale* is ~S, but should be ~A. Set it to such a number, or to ~
-                        ~D: then pictures have the scale that suits their map."
+        (t (reject-use "graphics-scale* is ~S, but must be ~A. Set it to such a number, or to ~D, ~
+                        so that each picture has the scale that suits its map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
 ;;; Without a given scale, the map with title, coordinates and scale bar is at most +WIDEST+ by
 ;;; +HIGHEST+. The legend is added beside the map or below it, where the page becomes less large.
 ;;; The map does not shrink for it.
 
-(defconstant +widest+ 900 "The greatest width of a map without a given scale, in pixels.")
-(defconstant +highest+ 700 "The greatest height of a map without a given scale, in pixels.")
-(defconstant +least-scale+ 4 "The least pixels to a cell without a given scale.")
-(defconstant +greatest-scale+ 40 "The most pixels to a cell without a given scale.")
+(defconstant +widest+ 900 "The greatest width of a map if no scale is given, in pixels.")
+(defconstant +highest+ 700 "The greatest height of a map if no scale is given, in pixels.")
+(defconstant +least-scale+ 4 "The least scale if no scale is given, in pixels per cell.")
+(defconstant +greatest-scale+ 40 "The greatest scale if no scale is given, in pixels per cell.")
 (defconstant +readable-scale+ 20
-  "From this many pixels to a cell on a picture is magnified as a whole.")
+  "With a scale of more pixels per cell, a picture is magnified as a whole, with its text.")
 
 (defstruct (arrangement (:copier nil))
-  "The layout of a picture, in pixels. LEFT to BOTTOM are the margins of the map, WIDTH and HEIGHT
-the size of the whole. COLUMNS are lists of entries of the legend, which is below the map if
-BELOW-P, else LEGEND-LEFT from the left of the map. TITLE and SUBTITLE are lists of lines."
+  "The layout of a picture, in pixels. LEFT, TOP, RIGHT and BOTTOM are the margins of the map. WIDTH
+and HEIGHT are the size of the picture. COLUMNS are the columns of the legend, lists of entries. The
+legend is below the map if BELOW-P, else LEGEND-LEFT pixels from the left of the map. TITLE and
+SUBTITLE are lists of lines."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
   (title '()) (subtitle '()) (width 0) (height 0))
 
 (defun room-for (layers)
-  "Return the margins left of, above, right of and below the map for LAYERS without a legend."
+  "Return a list of the margins at the left, top, right and bottom of the map that LAYERS need,
+without a legend."
   (flet ((shown-p (layer) (member layer layers)))
     (if (layers-at :margin layers)
         (list (if (shown-p :coordinates) 36 8)
@@ -49,7 +51,7 @@ BELOW-P, else LEGEND-LEFT from the left of the map. TITLE and SUBTITLE are lists
 ;;; The scale bar, which may be wider than a small map.
 
 (defun bar-metres (width)
-  "Return the length of a scale bar below WIDTH metres, in metres."
+  "Return the length in metres of the scale bar for a map WIDTH metres wide."
   (or (first (last (round-numbers (min width (/ 140 graphics-scale*)))))
       1))
 
@@ -57,30 +59,32 @@ BELOW-P, else LEGEND-LEFT from the left of the map. TITLE and SUBTITLE are lists
   (format nil "~D m" metres))
 
 (defun scale-bar-width (width)
-  "Return the width of the scale bar below WIDTH metres with its text, in pixels."
+  "Return the width in pixels of the scale bar and its text for a map WIDTH metres wide."
   (let ((metres (bar-metres width)))
     (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
 
 ;;; Scales.
 
 (defun fitting-scale (snapshot layers)
-  "Return the pixels to a cell with which a picture of SNAPSHOT with LAYERS is not too large."
+  "Return the scale, in pixels per cell, with which a picture of SNAPSHOT with LAYERS is at most
++WIDEST+ by +HIGHEST+ pixels large."
   (destructuring-bind (left top right bottom) (room-for layers)
     (multiple-value-bind (width height) (shown-size snapshot)
       (clamp (floor (min (/ (- +widest+ left right) width) (/ (- +highest+ top bottom) height)))
              +least-scale+ +greatest-scale+))))
 
 (defun suitable-scale (scale snapshot layers)
-  "Return SCALE; if it is NIL, GRAPHICS-SCALE* if the user has set it, else the scale that suits the
-map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is not a scale."
+  "Return SCALE unless it is NIL. Otherwise return GRAPHICS-SCALE* if the user has set a value, else
+the scale that suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (or scale
       (users-scale)
       (fitting-scale snapshot layers)))
 
 (defun drawn-scale (scale snapshot layers)
-  "Return the pixels to a cell with which to draw a picture of SNAPSHOT with SCALE (see
-SUITABLE-SCALE) and LAYERS, and by how much to magnify it then, text and lines included: by 1, or
-more if SCALE is larger than suits the map and than +READABLE-SCALE+."
+  "Return two values: the scale, in pixels per cell, with which to draw a picture of SNAPSHOT with
+LAYERS, and the factor by which to magnify the drawn picture, with text and lines. SCALE is the
+wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than suits the map and than
++READABLE-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
          (zoom (max 1 (/ (rational scale)
                          (max +readable-scale+ (fitting-scale snapshot layers))))))
@@ -89,16 +93,16 @@ more if SCALE is larger than suits the map and than +READABLE-SCALE+."
 ;;; The legend.
 
 (defun columns-of (entries rows)
-  "Return ENTRIES as a list of lists of at most ROWS entries."
+  "Return ENTRIES divided into columns, lists of at most ROWS entries."
   (loop while entries
         collect (loop repeat rows while entries collect (pop entries))))
 
 (defun samples-width (column)
-  "Return the width of the samples of COLUMN, a list of entries, in pixels."
+  "Return the width in pixels of the widest sample in COLUMN, a list of legend entries."
   (reduce #'max column :key #'entry-width))
 
 (defun column-width (column)
-  "Return the width of COLUMN, a list of entries, in pixels."
+  "Return the width in pixels of COLUMN, a list of legend entries."
   (+ 18 (samples-width column)
      (loop for entry in column maximize (words-width (entry-text entry)))))
 
@@ -109,7 +113,8 @@ more if SCALE is larger than suits the map and than +READABLE-SCALE+."
   (* +line-height+ (length (first columns))))
 
 (defun columns-below (entries width)
-  "Return ENTRIES in columns, as low as possible, that together are at most WIDTH pixels wide."
+  "Return ENTRIES divided into columns that together are at most WIDTH pixels wide and as low as
+possible."
   (loop for rows from 1
         for columns = (columns-of entries rows)
         when (or (null (rest columns)) (<= (columns-width columns) width))
@@ -118,8 +123,8 @@ more if SCALE is larger than suits the map and than +READABLE-SCALE+."
 ;;; The whole.
 
 (defun arrangement-with (room edge map-height columns below-p)
-  "Return an arrangement around a map MAP-HEIGHT pixels high that reaches EDGE pixels to the right.
-ROOM is the value of ROOM-FOR."
+  "Return an arrangement for a map MAP-HEIGHT pixels high and EDGE pixels wide, with the legend
+COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of ROOM-FOR."
   (destructuring-bind (left top right bottom) room
     (let ((below (if (and columns below-p) (+ 8 (columns-height columns)) 0))
           (beside (if (and columns (not below-p)) (columns-width columns) 0)))
@@ -155,8 +160,8 @@ ROOM is the value of ROOM-FOR."
 (defconstant +least-title+ 360 "The least room for a line of a title, in pixels.")
 
 (defun lines-within (text width per-character)
-  "Return TEXT, a string or NIL, as lines at most WIDTH pixels wide. A character is PER-CHARACTER
-wide."
+  "Return TEXT, a string or NIL, as a list of lines of at most WIDTH pixels. A character is
+PER-CHARACTER pixels wide."
   (and text
        (loop for line in (uiop:split-string text :separator '(#\Newline))
              append (wrapped-text line (max 1 (floor width per-character))))))
@@ -165,8 +170,8 @@ wide."
   (ceiling (* per-character (reduce #'max lines :key #'length :initial-value 0))))
 
 (defun add-title (arrangement title subtitle per-pixel)
-  "Give ARRANGEMENT the TITLE, and SUBTITLE, a string or NIL, below that; a character is PER-PIXEL
-pixels wide for each pixel that its font is high."
+  "Add TITLE and, below it, SUBTITLE, a string or NIL, to ARRANGEMENT. The width of a character is
+PER-PIXEL times the height of its font."
   (let* ((room (max +least-title+ (arrangement-width arrangement)))
          (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
          (title-character (* per-pixel +title-size+))
@@ -189,11 +194,11 @@ pixels wide for each pixel that its font is high."
 ;;; The parts. The origin is that of the map.
 
 (defun title-of (robots map)
-  "Return a title for ROBOTS, a list of drawn names, in the map named MAP."
+  "Return a title for a picture with ROBOTS, a list of their names as drawn, in the map named MAP."
   (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
 (defun map-title (snapshot)
-  "Return the default title of a picture of SNAPSHOT."
+  "Return the default title of a picture of SNAPSHOT: its robots, map and tick."
   (format nil "~A, tick ~D"
           (title-of (mapcar #'robot-title (snapshot-robots snapshot))
                     (map-name (snapshot-map snapshot)))
@@ -210,7 +215,7 @@ pixels wide for each pixel that its font is high."
         (incf y +subtitle-step+)))))
 
 (defun draw-coordinates (canvas snapshot)
-  "Write metres above and to the left of the part of the map that SNAPSHOT shows."
+  "Write coordinates in metres above and to the left of the part of the map that SNAPSHOT shows."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (with-color +frame-ink+
       (dolist (metres (marks-between left right 40))
@@ -223,14 +228,15 @@ pixels wide for each pixel that its font is high."
           (draw-text canvas (- -8 (words-width text)) (+ y 4) text))))))
 
 (defun draw-scale-bar (canvas width y)
-  "Draw a scale bar for WIDTH metres around Y."
+  "Draw the scale bar for a map WIDTH metres wide, with its middle at Y."
   (let* ((metres (bar-metres width)) (x (to-pixels metres)))
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
     (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))
 
 (defun draw-entry (canvas entry x y width)
-  "Draw ENTRY, its upper left corner at X, Y, in a column of samples WIDTH pixels wide."
+  "Draw the legend entry ENTRY with its upper left corner at X, Y. WIDTH is the width in pixels of
+the samples in its column."
   (let ((middle (+ y (/ +line-height+ 2))))
     (flet ((words () (draw-text canvas (+ x width 4) (+ middle 4) (entry-text entry))))
       (funcall (entry-sample entry) canvas (+ x -1 (/ width 2)) middle)
@@ -239,7 +245,7 @@ pixels wide for each pixel that its font is high."
           (words)))))
 
 (defun draw-legend (canvas arrangement x y)
-  "Draw the legend of ARRANGEMENT, its upper left corner at X, Y."
+  "Draw the legend of ARRANGEMENT with its upper left corner at X, Y."
   (dolist (column (arrangement-columns arrangement))
     (loop for entry in column for row from 0
           do (draw-entry canvas entry x (+ y (* row +line-height+)) (samples-width column)))
@@ -261,8 +267,8 @@ pixels wide for each pixel that its font is high."
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
 (defun call-on-part (function canvas snapshot)
-  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT. What it draws on CANVAS
-outside of the part to show stays invisible."
+  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT, and with its drawing on
+CANVAS clipped to the part of the map that SNAPSHOT shows."
   (if (snapshot-part snapshot)
       (destructuring-bind (left top right bottom) (pixels-of (snapshot-part snapshot))
         (with-clipping (canvas 0 0 (- right left) (- bottom top))
@@ -270,10 +276,11 @@ outside of the part to show stays invisible."
       (funcall function)))
 
 (defun draw-framed (canvas snapshot layers draw &key title subtitle more legend)
-  "Draw what LAYERS list around the map of SNAPSHOT, and call DRAW, which draws the map and what is
-on it. Return the width and height of all, and how far from the left the map begins. TITLE is above,
-by default robots, map and tick; then SUBTITLE, if any. MORE are entries at the beginning of the
-legend; LEGEND are options of LEGEND-ENTRIES for the others."
+  "Draw a picture of SNAPSHOT with the margins, title and legend that LAYERS list. DRAW is a
+function that draws the map and its contents. Return three values in pixels: the width and the
+height of the picture, and the left margin of the map. TITLE is by default the robots, the map and
+the tick. SUBTITLE is a string or NIL. MORE are the first entries of the legend. LEGEND are options
+of LEGEND-ENTRIES for the other entries."
   (let* ((entries (and (member :legend layers)
                        (append more (apply #'legend-entries snapshot layers legend))))
          (arrangement (arrange snapshot layers entries))
@@ -286,8 +293,8 @@ legend; LEGEND are options of LEGEND-ENTRIES for the others."
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
 (defun draw-framed-world (canvas snapshot layers &key title)
-  "Draw the world of SNAPSHOT with what LAYERS list around it, and TITLE as in DRAW-FRAMED. Return
-the width and height."
+  "Draw the world of SNAPSHOT with LAYERS, and with TITLE as in DRAW-FRAMED. Return the width and
+height in pixels."
   (draw-framed canvas snapshot layers
                (lambda ()
                  (draw-terrain canvas (snapshot-map snapshot) :layers layers)
@@ -301,12 +308,12 @@ the width and height."
 
 (defmacro with-map-svg ((canvas stream snapshot &rest options) &body body)
   "Run BODY, which draws a picture of SNAPSHOT on CANVAS and returns its width and height in pixels.
-Then write it to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
+Then write the picture to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
   `(call-with-map-svg (lambda (,canvas) ,@body) ,stream ,snapshot ,@options))
 
 (defun framed-text (snapshot draw &key layers in-color scale title subtitle more legend)
-  "Return an SVG document of SNAPSHOT. DRAW, a function of a canvas, draws the map and what is on
-it. The other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
+  "Return an SVG document of SNAPSHOT. DRAW, a function of a canvas, draws the map and its contents.
+The other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
   (with-output-to-string (out)
     (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
       (draw-framed canvas snapshot layers (lambda () (funcall draw canvas))

@@ -10,19 +10,20 @@
 
 (define-constant +moment-kinds+ '(:grasp :release :stow :failure :plan :part :error :note)
   :test #'cl:equal
-  :documentation "The kinds of moments.")
+  :documentation "The kinds of moments, which are notable events of a run.")
 
 (addition moment-p)
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
-  "A notable event: at TICK, to the robot named ROBOT, which was at X, Y. TEXT describes it."
-  (tick 0 real "the tick at which it happened" :addition)
-  (kind :note symbol "its kind: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN that failed or
-was ended; :PART of a plan that failed, perhaps handled by the plan, or was ended; :ERROR in users'
-code; :NOTE of a user" :addition)
-  (text "" string "a short description of it" :addition)
-  (x nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
-  (y nil (or null real) "where the robot was then, in metres, or NIL if that is unknown" :addition)
-  (robot nil symbol "the name of the robot, a symbol, or NIL if that is unknown" :addition)
+  "A notable event of a run. At TICK it happened to the robot named ROBOT, which was at X, Y. TEXT
+describes the event."
+  (tick 0 real "the tick of the event" :addition)
+  (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN
+that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;
+:ERROR in users' code; :NOTE of a user" :addition)
+  (text "" string "a short description of the event" :addition)
+  (x nil (or null real) "the robot's x coordinate then, in metres, or NIL if unknown" :addition)
+  (y nil (or null real) "the robot's y coordinate then, in metres, or NIL if unknown" :addition)
+  (robot nil symbol "the name of the robot, a symbol, or NIL if it is unknown" :addition)
   (code nil symbol "the error code of a command that failed, or NIL" :export))
 
 (defmethod print-object ((moment moment) stream)
@@ -31,7 +32,8 @@ code; :NOTE of a user" :addition)
             (moment-text moment))))
 
 (defstruct (observation (:constructor make-observation (held stowed failure)) (:copier nil))
-  "What each hand of a robot holds, what each of its bins contains, and what failed last."
+  "The state of a robot after a tick, to find moments. HELD lists the thing in each hand, and STOWED
+the contents of each bin. FAILURE is the last failure of a command."
   (held '() :type list :read-only t)
   (stowed '() :type list :read-only t)
   (failure nil :read-only t))
@@ -42,11 +44,13 @@ code; :NOTE of a user" :addition)
                     (robot-failure robot)))
 
 (defun observation-before (new)
-  "Return the observation before the first one, NEW: runs begin with empty hands."
+  "Return the observation to compare NEW, the first one, with. It has empty hands, as at the
+beginning of a run."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
 
 (defun changes-of-hands (old new)
-  "Return lists (kind text) of what hands have grasped or released between two observations."
+  "Return lists (kind text) for the things that hands have grasped or released between the
+observations OLD and NEW."
   (loop for before in (observation-held old)
         for after in (observation-held new)
         unless (eq before after)
@@ -67,15 +71,15 @@ code; :NOTE of a user" :addition)
         (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
 (defun moments-between (old new robot tick)
-  "Return the moments between two observations of ROBOT, the later one at TICK."
+  "Return the moments of ROBOT between its observations OLD and NEW. TICK is the tick of NEW."
   (loop for (kind text code) in (append (changes-of-hands old new) (changes-of-bins old new)
                                         (failures-since old new robot))
         collect (make-moment tick kind text (robot-x robot) (robot-y robot) (robot-name robot)
                              code)))
 
 (defun make-moments-watcher ()
-  "Return two functions. Call the first with a simulation after each tick. The second, without
-arguments, returns the moments so far, the earliest first."
+  "Return two functions. The first must be called with a simulation after each tick. The second,
+without arguments, returns the moments found so far, the earliest first."
   (let ((observations '()) (moments '()))
     (values (lambda (simulation)
               (dolist (robot (simulation-robots simulation))
@@ -90,7 +94,8 @@ arguments, returns the moments so far, the earliest first."
 ;;; A journal itself records the ends of plans, and errors in users' code.
 
 (defun moments-in-remarks (journal until)
-  "Return the moments in the remarks of JOURNAL, up to the tick UNTIL or its end."
+  "Return the moments in the remarks of JOURNAL, up to the tick UNTIL, or to the end of JOURNAL if
+UNTIL is NIL."
   (loop for (tick kind text robot x y) in (reverse (journal-remarks journal))
         for blueprint = (and robot (find-blueprint robot nil))
         when (or (null until) (<= tick until))
@@ -99,23 +104,24 @@ arguments, returns the moments so far, the earliest first."
 ;;; Users' own moments.
 
 (defun parse-moment (object)
-  "Return the moment for OBJECT, a moment or a list (tick text [robot]); NIL for other objects."
+  "Return the moment for OBJECT, a moment or a list (tick text [robot]). Return NIL for other
+objects."
   (cond ((moment-p object) object)
         ((typep object '(cons integer (cons string (or null (cons symbol null)))))
          (make-moment (first object) :note (second object) nil nil (third object)))))
 
 (defun checked-moments (operator moments end)
-  "Return the list MOMENTS, an argument of OPERATOR, as moments of a run that ends at the tick END.
-Signals WRONG-ARGUMENT."
+  "Return a list of moments for MOMENTS, an argument of OPERATOR. Signals WRONG-ARGUMENT unless all
+of them are moments, or lists (tick text [robot]), up to the tick END."
   (let ((own (and (proper-list-p moments) (mapcar #'parse-moment moments))))
     (unless (and (proper-list-p moments)
                  (every (lambda (moment)
                           (and moment (typep (moment-tick moment) `(integer 0 ,end))))
                         own))
       (reject-argument operator :moments moments
-                       (format nil "a list of moments, or of lists of a tick, a string and perhaps ~
-                                    a robot's name, with ~
-                                    whole ticks from 0 to ~D, the last one shown"
+                       (format nil "a list whose elements are moments or lists (tick string ~
+                                    [robot-name]), with whole ticks from 0 to ~D, the last tick ~
+                                    shown"
                                end)))
     own))
 
@@ -127,7 +133,8 @@ Signals WRONG-ARGUMENT."
                      (format nil "T for all, or a list of some of ~{~(~S~)~^, ~}" +moment-kinds+))))
 
 (defun moments-of-kinds (kinds moments)
-  "Return those of MOMENTS whose kind is in the list KINDS, and users' own; all if KINDS is T."
+  "Return the moments in MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return
+all."
   (if (eq kinds t)
       moments
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))
@@ -137,10 +144,10 @@ Signals WRONG-ARGUMENT."
   (stable-sort (copy-list moments) #'< :key #'moment-tick))
 
 (defparameter *expected-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)
-  "Codes of failures that plans expect and handle.")
+  "The error codes of failures that plans usually expect and handle.")
 
 (defun moment-weight (moment)
-  "Return the importance of MOMENT, from 0, the most, to 3."
+  "Return the rank of MOMENT by importance, from 0, the most important, to 3."
   (case (moment-kind moment)
     (:note 0)
     (:failure (if (member (moment-code moment) *expected-codes*) 3 2))
@@ -148,7 +155,7 @@ Signals WRONG-ARGUMENT."
     (t 1)))
 
 (defun moment-words (moment several-p)
-  "Return a description of MOMENT, which names its robot if SEVERAL-P: if there are several."
+  "Return a description of MOMENT. If SEVERAL-P, the description names the robot."
   (format nil "~@[~A: ~]~A"
           (and several-p (moment-robot moment) (drawn-name (moment-robot moment)))
           (moment-text moment)))

@@ -11,13 +11,14 @@
 ;;; whatever its colour is.
 
 (defconstant +largest-thing+ 3/2 "The greatest width of a thing on the map, in cells.")
-(defconstant +largest-size+ 64 "The :size of the things that are drawn so wide.")
+(defconstant +largest-size+ 64
+  "The least :size of things that are drawn as wide as +LARGEST-THING+.")
 (defconstant +least-width+ 5 "The width of a thing of size 0 on the map, in pixels.")
 
 ;; As reading 241 says.
 (defun half-width (image)
-  "Return half the width of the thing on the map, in pixels. Its area grows with its size. Without
-colours all things have the same width."
+  "Return half the width of the thing of IMAGE on the map, in pixels. The drawn area grows with the
+size of the thing. Without colours all things have the same width."
   (if in-color*
       (let ((largest (max (1+ +least-width+) (* graphics-scale* +largest-thing+)))
             (part (/ (clamp (thing-image-size image) 0 +largest-size+) +largest-size+)))
@@ -27,14 +28,14 @@ colours all things have the same width."
 ;;; Shapes. Things that move by themselves have a point.
 
 (defun thing-shape (image)
-  "Return the shape of the thing: :SQUARE if it blocks the way, else :ROUND; if it moves by itself,
-:HOUSE or :DIAMOND."
+  "Return the shape of the thing of IMAGE. It is :SQUARE if the thing blocks the way, else :ROUND.
+For a thing that moves by itself, it is :HOUSE or :DIAMOND."
   (if (thing-image-moving-p image)
       (if (thing-image-obsmove-p image) :house :diamond)
       (if (thing-image-obsmove-p image) :square :round)))
 
 (defun draw-shape (canvas shape x y half)
-  "Draw SHAPE, filled, that reaches HALF pixels from its middle at X, Y."
+  "Draw SHAPE, filled, around X, Y. The shape reaches HALF pixels from its middle."
   (flet ((polygon (&rest points)
            (draw-lines canvas draw-gcontext* points :fill-p t)))
     (let ((left (- x half)) (top (- y half)) (right (+ x half)) (bottom (+ y half)))
@@ -46,7 +47,7 @@ colours all things have the same width."
                          left bottom left (- y (/ half 3))))))))
 
 (defun draw-body (canvas image x y half)
-  "Draw the shape of the thing with halo and outline."
+  "Draw the shape of the thing of IMAGE with a halo and an outline."
   (let ((shape (thing-shape image)) (more (if (thing-image-moving-p image) 3/2 1)))
     (with-gcontext (draw-gcontext* :foreground white*)
       (draw-shape canvas shape x y (+ half more)))
@@ -55,7 +56,7 @@ colours all things have the same width."
       (draw-shape canvas shape x y (max 1 (- half more))))))
 
 (defun draw-rim (canvas image x y half)
-  "Draw the rim of a container, or a dot if there is no room."
+  "Draw the rim of the container of IMAGE, or a dot if there is no room for a rim."
   (let ((inner (- half 3)))
     (cond ((< inner 3/2) (draw-circle canvas x y 1 t))
           ((eq :square (thing-shape image))
@@ -69,7 +70,7 @@ colours all things have the same width."
                        append (list (- x dx 1/2) (- y dy 1/2) (+ x dx -1/2) (+ y dy -1/2)))))
 
 (defun draw-thing-sample (canvas image x y half)
-  "Draw the thing in colour around X, Y, reaching HALF pixels to each side."
+  "Draw the thing of IMAGE in colour around X, Y. The drawing reaches HALF pixels to each side."
   (draw-body canvas image x y half)
   (with-color (ink-on (thing-image-color image))
     (when (thing-image-container-p image) (draw-rim canvas image x y half))
@@ -77,7 +78,8 @@ colours all things have the same width."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  "Draw the small vertical line of the manual's figure, with a halo that makes it visible on walls."
+  "Draw the small vertical line that denotes a thing in the manual's figure. A halo makes the line
+visible on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
     (flet ((upright (more)
@@ -87,7 +89,7 @@ colours all things have the same width."
       (upright 0))))
 
 (defun draw-things (canvas images)
-  "Draw the things, the large ones first, so that they hide no small ones."
+  "Draw the things of IMAGES, the large things first, so that they hide no small things."
   (dolist (image (stable-sort (coerce images 'list) #'> :key #'thing-image-size))
     (let ((x (to-pixels (thing-image-x image))) (y (to-pixels (thing-image-y image))))
       (with-subject (canvas image)
@@ -112,20 +114,20 @@ colours all things have the same width."
 ;;; second five are hollow.
 
 (defun robot-radius ()
-  "Return the radius of the ring of a robot, in pixels: nearly a cell, but half a cell where cells
-are large, so that the ring fits into a map of one cell."
+  "Return the radius of the ring of a robot, in pixels. It is nearly a cell, but half a cell where
+cells are large, so that the ring fits into a map of one cell."
   (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
 (defconstant +between-rings+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
 (defun same-spot-p (image other)
-  "True if the rings of two robots would look like one."
+  "True if the robots of IMAGE and OTHER are so close that their rings would look like one ring."
   (> (robot-radius)
      (* 2 (to-pixels (max (abs (- (robot-image-x image) (robot-image-x other)))
                           (abs (- (robot-image-y image) (robot-image-y other))))))))
 
 (defun ring-radius (image robots)
-  "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. It is around the rings of
+  "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. The ring is around the rings of
 earlier ROBOTS on the same spot."
   (+ (robot-radius)
      (* +between-rings+ (count-on-spot image (ldiff robots (member image robots))))))
@@ -134,7 +136,7 @@ earlier ROBOTS on the same spot."
   (count-if (lambda (other) (same-spot-p image other)) robots))
 
 (defun spot-radius (image robots)
-  "Return the radius of the widest ring of ROBOTS on the spot of IMAGE, in pixels."
+  "Return the radius in pixels of the widest ring that ROBOTS have on the spot of IMAGE."
   (+ (robot-radius) (* +between-rings+ (1- (count-on-spot image robots)))))
 
 (defun draw-arrowhead (canvas x y radius angle fill-p)
@@ -148,12 +150,13 @@ earlier ROBOTS on the same spot."
                 :fill-p fill-p)))
 
 (defun hollow-head-p (position)
-  "True if the arrowhead of the robot at POSITION among its world's is drawn hollow."
+  "True if the arrowhead of a robot is drawn hollow. POSITION is the position of the robot in the
+list of robots of its world."
   (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
 (defun camera-lines (image radius)
-  "Return the lines, x y x y in pixels, of those cameras that are on the robot of IMAGE, drawn as a
-ring of RADIUS."
+  "Return lines, lists x y x y in pixels, for the cameras that are on the robot of IMAGE. The robot
+is drawn as a ring of RADIUS."
   (loop with x = (to-pixels (robot-image-x image)) and y = (to-pixels (robot-image-y image))
         for camera in (robot-image-cameras image)
         for angle = (+ (robot-image-angle image) (camera-image-angle camera))
@@ -162,7 +165,8 @@ ring of RADIUS."
                           (point-at-distance x y angle (* 8/5 radius)))))
 
 (defun draw-ring (canvas x y radius angle position)
-  "Draw the ring and the arrowhead, in direction ANGLE, of the robot at POSITION among its world's."
+  "Draw the ring of a robot, with an arrowhead in direction ANGLE. POSITION is the position of the
+robot in the list of robots of its world."
   (let ((color (nth-ink position)))
     (with-halo (color :width 2 :dashes (nth-dashes position)) (draw-circle canvas x y radius nil))
     (with-gcontext (draw-gcontext* :foreground white*)
@@ -178,7 +182,8 @@ ring of RADIUS."
       (with-halo ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
-  "Draw ROBOTS, the images of all robots, wide rings first, so that these hide no others."
+  "Draw ROBOTS, the images of all robots. Wide rings are drawn first, so that they hide no other
+rings."
   (loop for (image radius)
           in (stable-sort (loop for image in robots
                                 collect (list image (ring-radius image robots)))
@@ -194,7 +199,8 @@ ring of RADIUS."
   "The angle between rays that find the edge of a field of view, in radians.")
 
 (defun opaque-cells (snapshot)
-  "Return a predicate of the index of a cell: true if the cell blocks the view."
+  "Return a function of the index of a cell that returns true if the cell blocks the view in
+SNAPSHOT."
   (let* ((map (snapshot-map snapshot)) (flags (map-flags map))
          (hidden (loop for image across (snapshot-things snapshot)
                        when (thing-image-obsview-p image)
@@ -203,7 +209,7 @@ ring of RADIUS."
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
 (defun unobstructed-camera (camera)
-  "Return CAMERA if it is not inside of anything, so that it can see the map; else NIL."
+  "Return CAMERA if it can see the map because it is not inside a container, else NIL."
   (and (null (camera-image-location camera)) camera))
 
 (defun draw-wedge (canvas camera robot snapshot)
@@ -220,8 +226,8 @@ ring of RADIUS."
 ;;; Rays, coloured by their readings.
 
 (defun reading-color-index (map reading)
-  "Return the index of the colour for READING, scaled between the least and the greatest substance
-parameter of MAP."
+  "Return the index in +RAY-INKS+ of the colour for READING, which is scaled between the least and
+the greatest substance parameter of MAP."
   (let* ((least (map-least-parameter map)) (greatest (map-greatest-parameter map))
          (count (length +ray-inks+)))
     (if (< least greatest)
@@ -229,7 +235,7 @@ parameter of MAP."
         0)))
 
 (defun readings-for-rays (look count)
-  "Return COUNT of the numbers in the view, one for each ray of LOOK."
+  "Return COUNT readings of the view of LOOK, one for each ray."
   (let ((view (coerce (look-view look) 'vector)))
     (loop for ray below count
           collect (if (zerop (length view)) 0 (aref view (floor (* ray (length view)) count))))))
@@ -252,7 +258,8 @@ parameter of MAP."
 ;;; Beliefs.
 
 (defun believed-place (robot designator)
-  "Return the point (x y), in metres, where ROBOT believes DESIGNATOR to be, seen from where it is."
+  "Return the point (x y), in metres, where ROBOT believes the object of DESIGNATOR to be, relative
+to the real position of ROBOT."
   (point-at-distance (robot-image-x robot) (robot-image-y robot)
                      (+ (robot-image-angle robot) (designator-image-angle designator))
                      (designator-image-distance designator)))
@@ -260,7 +267,8 @@ parameter of MAP."
 (defun track-radius () (max 4 (* 1/2 graphics-scale*)))
 
 (defun draw-track (canvas designator robot snapshot)
-  "Draw a line to where ROBOT believes DESIGNATOR, which a camera tracks, to be."
+  "Draw a line from ROBOT to the believed position of the object of DESIGNATOR, which a camera
+tracks."
   (declare (ignore snapshot))
   (let ((target (pixels-of (believed-place robot designator))))
     (with-halo ((layer-ink :tracks) :dashes (layer-dashes :tracks))
@@ -271,14 +279,15 @@ parameter of MAP."
       (draw-circle canvas (first target) (second target) (track-radius) nil))))
 
 (defun track-boxes (designator robot snapshot)
-  "Return the box of the ring around where ROBOT believes DESIGNATOR to be, in pixels, as a list."
+  "Return a list of the box, in pixels, of the ring at the believed position of the object of
+DESIGNATOR."
   (declare (ignore snapshot))
   (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (list (box-around x y (+ 2 (track-radius))))))
 
 (defun draw-designator-on-map (canvas robot designator)
-  "Draw a cross with the number of DESIGNATOR where ROBOT believes it to be, and a line from there
-to what it denotes."
+  "Draw a cross with the number of DESIGNATOR at the believed position of its object, and a line
+from the cross to the real position of the object."
   (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
           (color (layer-ink :designators))
@@ -305,7 +314,7 @@ to what it denotes."
   (dolist (designator designators) (draw-designator-on-map canvas robot designator)))
 
 (defun odometer-box (odometer)
-  "Return the corners of the box of possible positions of ODOMETER, x y ..., in metres."
+  "Return the corners, x y ... in metres, of the box of positions that ODOMETER estimates."
   (let ((cos (cosine (odometer-image-axis odometer))) (sin (sine (odometer-image-axis odometer))))
     (loop for (across down) in '((-1 -1) (1 -1) (1 1) (-1 1) (-1 -1))
           for dx = (* across 1/2 (odometer-image-width odometer))
@@ -314,8 +323,8 @@ to what it denotes."
           collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
 
 (defun draw-odometer (canvas odometer robot snapshot)
-  "Draw the estimate of ODOMETER: a box of possible positions, and from its middle the bounds of the
-heading."
+  "Draw the estimate of ODOMETER: a box of possible positions, and two lines from its middle for the
+bounds of the heading."
   (declare (ignore robot snapshot))
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))

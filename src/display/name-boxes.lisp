@@ -6,15 +6,18 @@
 ;;; squares, and lists for each square the entries whose box meets it.
 
 (defconstant +square-side+ 32 "The width of a square of a box index, in pixels.")
-(defconstant +most-squares+ 1000 "A box that meets more squares than this is not listed in each.")
+(defconstant +most-squares+ 1000
+  "A box that overlaps more squares than this is not listed in each square.")
 
 (defstruct (box-index (:constructor make-box-index ()) (:copier nil))
-  "Entries (box . item) by the numbers of SQUARES; LARGE lists those that meet very many squares."
+  "An index of boxes. SQUARES is a table from the number of a square to the entries (box . item)
+whose box overlaps the square. LARGE lists the entries whose box overlaps very many squares."
   (squares (make-hash-table) :type hash-table :read-only t)
   (large '() :type list))
 
 (defun some-square (function box)
-  "Call FUNCTION with the numbers of the squares that BOX meets until it returns true; return that."
+  "Call FUNCTION with the number of each square that BOX overlaps until FUNCTION returns true.
+Return the last value of FUNCTION."
   (destructuring-bind (first-column first-row last-column last-row)
       (mapcar (lambda (pixels) (values (floor pixels +square-side+))) box)
     ;; Two squares may have the same number: callers check for overlaps.
@@ -41,7 +44,7 @@
     index))
 
 (defun find-overlapping-item (box index &optional (test (constantly t)))
-  "Return an item of INDEX whose box overlaps BOX and for which TEST is true, or NIL."
+  "Return an item of INDEX whose box overlaps BOX and for which TEST returns true, or NIL."
   (flet ((among (entries)
            (loop for (other . item) in entries
                  when (and (overlap-p box other) (funcall test item)) return item)))
@@ -56,8 +59,8 @@
 ;;; Names.
 
 (defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
-  "The owner of a name: NAME is at X, Y and reaches HALF pixels from there. ROBOT is the image of a
-robot, or NIL for a thing."
+  "A thing or robot on the map that has a name to write: it is called NAME, and is drawn up to HALF
+pixels around X, Y. ROBOT is the image of a robot, or NIL for a thing."
   (name "" :type string :read-only t)
   (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
   (robot nil :read-only t))
@@ -69,8 +72,8 @@ robot, or NIL for a thing."
 (defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
 (defun name-boxes (x y half width)
-  "Return boxes for a name WIDTH pixels wide beside an owner that reaches HALF pixels from X, Y: the
-best first."
+  "Return boxes for a name WIDTH pixels wide beside a spot that reaches HALF pixels from X, Y. The
+best box comes first."
   (let ((gap (+ half 2)) (high +name-height+))
     (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
                                   (list (- x gap width) (- y (/ high 2)))
@@ -92,8 +95,9 @@ best first."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes as NAME-BOXES does. If a box of the index MARKS lies there, such as the ring of a
-track, add boxes beside such a ring. Without a ring, a name so far away would be ambiguous."
+  "Return boxes as NAME-BOXES does. If a box of the index MARKS, such as the ring of a track,
+overlaps the spot, add boxes beside such a ring. Without a ring, names at this distance would be
+ambiguous."
   (append (name-boxes x y half width)
           (and (find-overlapping-item (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
@@ -104,7 +108,8 @@ track, add boxes beside such a ring. Without a ring, a name so far away would be
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
 (defun cells-below (map box function)
-  "True if FUNCTION, of the index of a cell, is true for a cell of MAP that BOX, within MAP, meets."
+  "True if FUNCTION, a function of the index of a cell, returns true for a cell of MAP that BOX
+overlaps. BOX must be within MAP."
   (destructuring-bind (left top right bottom) box
     (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
       (let ((width (map-width map)) (height (map-height map)))
@@ -126,12 +131,13 @@ track, add boxes beside such a ring. Without a ring, a name so far away would be
           thereis (do-trail ((robot-image-trail robot) x y)
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
-(defconstant +thick-wall+ 4 "From this many pixels to a cell on a name may hide a part of a wall.")
+(defconstant +thick-wall+ 4
+  "The least scale, in pixels per cell, at which names may hide parts of walls.")
 
 (defun box-cost (snapshot layers box anywhere-p)
-  "Return how much a name in BOX would hide on the map of SNAPSHOT with LAYERS: 0 for nothing, 1 for
-a trail, 2 for marks of places, 3 for both, 4 for a part of a wall. NIL if it may not stand there,
-on a wall that is not thick, unless ANYWHERE-P."
+  "Return a cost for what a name in BOX would hide on the map of SNAPSHOT with LAYERS: 0 for
+nothing, 1 for a trail, 2 for marks of places, 3 for a trail and marks, 4 for a part of a wall.
+Return NIL if the wall is thin and not ANYWHERE-P: the name is then not allowed in BOX."
   (let ((map (snapshot-map snapshot)))
     (cond ((not (on-wall-p map box))
            (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
@@ -139,8 +145,9 @@ on a wall that is not thick, unless ANYWHERE-P."
           ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
 
 (defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
-  "Return the first of those of BOXES that hide least (see BOX-COST), are in the part of the map
-that SNAPSHOT shows, meet none of the index TAKEN, and for which OWN-P is true; or NIL."
+  "Return the box in BOXES that hides least (see BOX-COST), or NIL if no box is possible. The box
+must be in the part of the map that SNAPSHOT shows, and must overlap no box of the index TAKEN.
+OWN-P must return true for the box."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (within-shown-p snapshot box)

@@ -12,12 +12,12 @@
 (defconstant +longest-name+ 24 "The most characters of a name on the map or beside a sample.")
 
 (defun short-name (name)
-  "Return the string NAME, or its beginning if it is long."
+  "Return the string NAME, cut to its beginning if it is long."
   (cut name +longest-name+))
 
 (defun drawn-name (name)
-  "Return what pictures call the symbol or string NAME: in lower case, but unchanged if some of its
-letters are already."
+  "Return the text for the symbol or string NAME in pictures: in lower case, or unchanged if NAME
+already has lower-case letters."
   (let ((text (string name)))
     (if (some #'lower-case-p text) text (string-downcase text))))
 
@@ -35,19 +35,20 @@ letters are already."
 ;;; Of things in one place the small ones are drawn last. A thing hides those of its own size.
 
 (defun pile-key (image)
-  "Return a list that is EQUALP to that of another image of a thing if one hides the other."
+  "Return a list for the image of a thing. The lists of two images are EQUALP if one thing hides the
+other."
   (list (thing-image-x image) (thing-image-y image) (half-width image)))
 
 (defun thing-spot (image hidden)
-  "Return the spot of the thing of IMAGE, which hides HIDDEN others, a number."
+  "Return the spot of the thing of IMAGE. HIDDEN is the number of things that this thing hides."
   (make-spot (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
                      (and (plusp hidden) hidden))
              (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
              (half-width image)))
 
 (defun thing-spots (images)
-  "Return the spots of those of IMAGES, things in the order in which they are drawn, the largest
-first, that no other one hides."
+  "Return the spots of the things in IMAGES that no other thing hides. IMAGES are in the order of
+drawing, the largest thing first."
   (let ((piles (make-hash-table :test 'equalp)))
     (dolist (image images) (push image (gethash (pile-key image) piles)))
     (loop for image in images
@@ -55,7 +56,7 @@ first, that no other one hides."
           when (eq image top) collect (thing-spot image (length hidden)))))
 
 (defun named-spots (snapshot)
-  "Return the spots of what is named on the map, in order of importance."
+  "Return the spots of the robots and things that get names on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
                 for robot in robots collect (robot-spot robot robots))
           (thing-spots (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
@@ -68,15 +69,16 @@ first, that no other one hides."
 ;;; line leads to it. The line crosses no other robot if that can be avoided.
 
 (defun confusable-p (spot other)
-  "True if the name of SPOT could be taken for that of OTHER. Spots at the same point, and rings
-around each other, share their names."
+  "True if the name of SPOT could be taken for the name of OTHER. This is false for spots at the
+same point and for rings around each other, whose names belong together."
   (not (or (eq spot other)
            (and (spot-robot spot) (spot-robot other)
                 (same-spot-p (spot-robot spot) (spot-robot other)))
            (and (= (spot-x spot) (spot-x other)) (= (spot-y spot) (spot-y other))))))
 
 (defun confusable-spots (spot spots reach)
-  "Return those of SPOTS within REACH pixels of SPOT with whose names that of SPOT can be confused."
+  "Return the spots in SPOTS that are within REACH pixels of SPOT and whose names could be confused
+with the name of SPOT."
   (flet ((near-p (from to) (< (abs (- from to)) reach)))
     (remove-if-not (lambda (other)
                      (and (near-p (spot-x spot) (spot-x other))
@@ -93,15 +95,19 @@ around each other, share their names."
   (sqrt (+ (expt (- to-x x) 2) (expt (- to-y y) 2))))
 
 (defun distance-from-ring (image x y)
-  "Return the distance of X, Y from the ring of the robot of IMAGE, in pixels; negative inside."
+  "Return the distance in pixels of X, Y from the ring of the robot of IMAGE. It is negative inside
+the ring."
   (- (pixel-distance x y (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image)))
      (robot-radius)))
 
-(defconstant +robot-margin+ 6 "How much nearer a name is to its robot than to others, in pixels.")
-(defconstant +thing-margin+ 3 "The same if one of the two is a thing.")
+(defconstant +robot-margin+ 6
+  "The least difference between a name's distances to another robot and to its own robot, in
+pixels.")
+(defconstant +thing-margin+ 3 "The value of +ROBOT-MARGIN+ if one of the two is a thing.")
 
 (defun spot-distance (spot box)
-  "Return the distance of BOX from SPOT, a ring or a square, in pixels; 0 or less if they meet."
+  "Return the distance in pixels of BOX from SPOT, a ring or a square. It is 0 or less if they
+overlap."
   (let ((x (spot-x spot)) (y (spot-y spot)) (half (spot-half spot)))
     (flet ((off (x y)
              (multiple-value-call #'pixel-distance x y (nearest-in box x y))))
@@ -112,14 +118,16 @@ around each other, share their names."
                  (clamp (clamp y top bottom) (- y half) (+ y half))))))))
 
 (defun unambiguous-p (spot box rivals)
-  "True if a name in BOX clearly belongs to SPOT and not to one of RIVALS, confusable spots."
+  "True if a name in BOX clearly belongs to SPOT and not to one of RIVALS, spots with confusable
+names."
   (loop with own = (spot-distance spot box)
         for rival in rivals
         for robots-p = (and (spot-robot spot) (spot-robot rival))
         never (< (spot-distance rival box) (+ own (if robots-p +robot-margin+ +thing-margin+)))))
 
 (defun confusable-spots-near (spot box spots reach)
-  "Return those CONFUSABLE-SPOTS of the index SPOTS that are near enough to BOX for a name there."
+  "Return the CONFUSABLE-SPOTS in the index SPOTS that are so near to BOX that a name in BOX could
+belong to them."
   (let ((off (+ 1 +robot-margin+ (max 0 (spot-distance spot box)))))
     (destructuring-bind (left top right bottom) box
       (confusable-spots
@@ -128,17 +136,19 @@ around each other, share their names."
        reach))))
 
 (defun beside-robot-p (spot rivals)
-  "True if one of RIVALS is a robot too near to SPOT for both names."
+  "True if one of RIVALS is a robot so near to SPOT that there is no room for both names."
   (some (lambda (rival)
           (and (spot-robot rival) (< (spot-distance rival (spot-box spot)) +robot-margin+)))
         rivals))
 
 (define-constant +leader-lengths+ '(10 18 28 40 56 76)
   :test #'cl:equal
-  :documentation "The lengths of lines to names, in pixels; the shortest that is free is used.")
+  :documentation "The possible lengths of lines to names, in pixels. The shortest possible length is
+used.")
 
 (defun box-at-end (x y angle width)
-  "Return the box of a name WIDTH pixels wide at the end X, Y of a line in direction ANGLE."
+  "Return the box of a name WIDTH pixels wide at the end of a line that ends at X, Y in direction
+ANGLE."
   (flet ((before (share size)
            (cond ((< share -1/3) size) ((< 1/3 share) 0) (t (/ size 2)))))
     (let ((left (- x (before (cosine angle) width)))
@@ -146,7 +156,8 @@ around each other, share their names."
       (list left top (+ left width) (+ top +name-height+)))))
 
 (defun leader-boxes (spot width)
-  "Return boxes at the ends of lines for the name of SPOT, WIDTH pixels wide, the nearest first."
+  "Return boxes for the name of SPOT, WIDTH pixels wide, at the ends of lines. The nearest box comes
+first."
   (loop for length in +leader-lengths+
         append (loop for turn below 16
                      for angle = (* turn (/ pi 8))
@@ -156,31 +167,31 @@ around each other, share their names."
                                (box-at-end x y angle width)))))
 
 (defun leader-ends (spot box)
-  "Return the ends of the line from SPOT to BOX, as a list x y x y."
+  "Return the two ends of the line from SPOT to BOX, as a list x y x y."
   (let ((x (spot-x spot)) (y (spot-y spot)))
     (multiple-value-bind (to-x to-y) (nearest-in box x y)
       (append (point-at-distance x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
               (list to-x to-y)))))
 
 (defun robots-to-avoid (spot rivals)
-  "Return the images of those robots of RIVALS that a line from SPOT must not cross. The line of a
-thing inside a ring may cross that ring."
+  "Return the images of the robots in RIVALS that a line from SPOT must not cross. If SPOT is a
+thing inside the ring of a robot, its line may cross this ring."
   (loop for rival in rivals
         when (and (spot-robot rival)
                   (or (spot-robot spot) (<= 2 (spot-distance rival (spot-box spot)))))
           collect (spot-robot rival)))
 
 (defun spot-blocked-p (spot at taken)
-  "True if the box AT, on a line from SPOT but outside of SPOT, meets a box of the index TAKEN. If
-SPOT is a thing, boxes that meet SPOT do not count."
+  "True if the box AT, a piece of a line from SPOT, is outside SPOT and overlaps a box of the index
+TAKEN. If SPOT is a thing, boxes that overlap SPOT are ignored."
   (let ((own (spot-box spot)))
     (and (not (overlap-p at own))
          (find-overlapping-item at taken (lambda (other)
                                            (or (spot-robot spot) (not (overlap-p other own))))))))
 
 (defun leader-clear-p (spot box taken rivals)
-  "True if the line from SPOT to BOX crosses no ring of a robot of RIVALS and no box of the index
-TAKEN but that of SPOT."
+  "True if the line from SPOT to BOX crosses no ring of a robot in RIVALS, and no box of the index
+TAKEN except the box of SPOT."
   (let ((robots (robots-to-avoid spot rivals)))
     (destructuring-bind (x y to-x to-y) (leader-ends spot box)
       (loop for step from 0 to 8
@@ -190,7 +201,8 @@ TAKEN but that of SPOT."
 
 (defun leader-box (snapshot layers spot width taken rivals)
   "Return the box at the end of a line where the name of SPOT, WIDTH pixels wide, hides least, or
-NIL. The line is clear if possible; that of a thing must be."
+NIL. The line crosses nothing, if possible. If SPOT is a thing and each line crosses something,
+return NIL."
   (let ((boxes (leader-boxes spot width)))
     (flet ((best (own-p)
              (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))
@@ -206,7 +218,7 @@ NIL. The line is clear if possible; that of a thing must be."
     (list (- left by) top (+ right by) bottom)))
 
 (defun marked-boxes (snapshot layers)
-  "Return the boxes of the numbers and rings that LAYERS show of SNAPSHOT."
+  "Return the boxes of the numbers and rings that LAYERS draw of SNAPSHOT."
   (loop for (layer . arguments) in (shown-lines snapshot layers)
         when (%layer-boxes layer) append (apply (%layer-boxes layer) arguments)))
 
@@ -218,7 +230,7 @@ NIL. The line is clear if possible; that of a thing must be."
                                         1))))
 
 (defun write-name (canvas name box)
-  "Write NAME in BOX, on white."
+  "Write NAME in BOX, on a white background."
   (destructuring-bind (left top right bottom) box
     (wipe canvas left top (- right left) (- bottom top))
     (with-color black*
@@ -226,15 +238,17 @@ NIL. The line is clear if possible; that of a thing must be."
 
 ;;; From here on SPOTS is a box index.
 
-(defconstant +reach-of-names+ 100 "How far around a name other owners are looked for, in pixels.")
+(defconstant +reach-of-names+ 100
+  "The distance from a name up to which spots with confusable names are searched, in pixels.")
 
 (defun reach-of-name (spot width)
-  "Return how many pixels around SPOT, with a name of WIDTH pixels, to look for confusable spots."
+  "Return the distance from SPOT up to which spots with confusable names are searched, in pixels.
+The name of SPOT is WIDTH pixels wide."
   (+ width (spot-half spot) +reach-of-names+))
 
 (defun box-beside-spot (snapshot layers spot width taken marks spots)
-  "Return the box beside SPOT where its name, WIDTH pixels wide, is unambiguous and hides least, or
-NIL."
+  "Return the box beside SPOT where the name of SPOT, WIDTH pixels wide, is unambiguous and hides
+least. Return NIL if there is no such box."
   (flet ((own-p (box)
            (unambiguous-p spot box
                           (confusable-spots-near spot box spots (reach-of-name spot width)))))
@@ -243,12 +257,12 @@ NIL."
               taken :anywhere-p (and (spot-robot spot) t) :own-p #'own-p)))
 
 (defun on-other-spot-p (spot spots)
-  "True if SPOT lies on or right beside another of SPOTS."
+  "True if SPOT overlaps another spot of the index SPOTS."
   (and (find-overlapping-item (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
 
 (defun name-box (snapshot layers spot width taken marks spots robots)
-  "Return the box for the name of SPOT, WIDTH pixels wide, or NIL; and whether it needs a line.
-ROBOTS is a list of those of SPOTS that are robots."
+  "Return two values: the box for the name of SPOT, WIDTH pixels wide, or NIL, and whether a line
+must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS."
   (let ((near (box-beside-spot snapshot layers spot width taken marks spots)))
     (if near
         (values near nil)
@@ -257,8 +271,9 @@ ROBOTS is a list of those of SPOTS that are robots."
             (values (leader-box snapshot layers spot width taken rivals) t))))))
 
 (defun draw-names (canvas snapshot layers &optional boxes)
-  "Write the names of robots and things where there is room beside what LAYERS list and BOXES.
-Without room, names of robots, and of things on or right beside others, are at the end of a line."
+  "Write the names of robots and things where they overlap neither BOXES nor what LAYERS draw. If
+there is no room beside it, a robot, or a thing that overlaps or touches another spot, has its name
+at the end of a line."
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (marked-boxes snapshot layers)))

@@ -6,7 +6,7 @@
 
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
                                               (in-color t) scale title)
-  "Write an SVG document of DISPLAY from SNAPSHOT and ROBOT, the image of a robot in it, to STREAM."
+  "Write an SVG document of DISPLAY to STREAM. ROBOT is the image of a robot in SNAPSHOT."
   (flet ((draw (canvas)
            (draw-display canvas display snapshot robot :layers layers :title title)))
     (if (member display '(:world :all))
@@ -16,7 +16,8 @@
           (with-canvas (canvas :scale (suitable-scale scale snapshot layers)) (draw canvas))))))
 
 (defun check-map-options (operator &key title layers scale)
-  "Signal WRONG-ARGUMENT for OPERATOR, which draws a map, unless TITLE, LAYERS and SCALE are valid."
+  "Signal WRONG-ARGUMENT unless TITLE, LAYERS and SCALE are valid options of OPERATOR, a function
+that draws a map."
   (unless (typep title '(or null string))
     (reject-argument operator :title title "a string or NIL"))
   (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
@@ -34,20 +35,22 @@
 (addition svg-picture)
 (define-with-keywords svg-picture
     (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
-  "Return a picture of the world of ROBOT as it is now: an SVG document, as a string. DISPLAY is one
-of :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
-LAYERS lists what the picture shows besides walls, things and robots. *PICTURE-LAYERS* documents the
-layers; () gives the bare map. TITLE, a string, replaces the default title of robots, map and tick
-if the layers have one. PART (left top right bottom), in cells, is the part of the map, by default
-all. IN-COLOR NIL gives a picture in black and white.
+  "Return a picture of the present world of ROBOT: an SVG document, as a string. DISPLAY is one of
+:WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
+LAYERS lists what the picture shows besides walls, things and robots; without layers it is ().
+*PICTURE-LAYERS* documents the layers. TITLE, a string, replaces the default title, which has
+robots, map and tick, if the layer :TITLE is shown. PART (left top right bottom), in cells, is the
+part of the map to show, by default the whole map. If IN-COLOR is NIL, the picture is black and
+white.
 
-SCALE is the number of pixels to a cell, from 1 to 256. By default it is GRAPHICS-SCALE* if you have
-set that to another value than 8, else what suits the map: from 4 to 40, so that the picture without
-its legend is at most 900 x 700 pixels, if 4 are enough for that. With a larger SCALE than that, and
-than 20, text and lines grow too. In a paper, text is readable in a column, 84 mm wide, if the
-picture is at most 400 pixels wide, and on a page, 174 mm wide, if it is at most 820.
+SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
+set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40, and
+makes the picture without its legend at most 900 x 700 pixels large if 4 is small enough. If SCALE
+is larger than the scale that suits the map, and larger than 20, text and lines grow too. In a
+paper, text is readable in a column, 84 mm wide, if the picture is at most 400 pixels wide. On a
+page, 174 mm wide, text is readable if the picture is at most 820 pixels wide.
 
-Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a scale."
+Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
@@ -67,26 +70,28 @@ Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a scale."
         (t "Choose a smaller scale if it is very large, or save it as .svg")))
 
 (defun reject-png (file words)
-  "Signal MISUSE: the picture cannot be written to FILE. WORDS is the message of rsvg-convert."
+  "Signal MISUSE, because the picture cannot be written to FILE. WORDS is the message of the program
+rsvg-convert."
   (let ((words (one-line words)))
-    (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[says nothing, but ~
-                 failed~;~:*says ~S~]. What was there is as before. ~A."
+    (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[failed without a ~
+                 message~;~:*says ~S~]. An older file of this name is unchanged. ~A."
                 (shown-name file) (and (plusp (length words)) (cut words 300))
                 (png-remedy words))))
 
 (defun write-png (svg out file)
-  "Convert the SVG document SVG to PNG by the program rsvg-convert. Write it to OUT, which becomes
-FILE."
+  "Convert the SVG document SVG to PNG with the program rsvg-convert and write the PNG to the stream
+OUT. FILE is the name of the file for messages."
   (multiple-value-bind (status words)
       (run-filter "rsvg-convert" '("--unlimited" "-f" "png") svg out)
     (cond ((null status)
-           (reject-use "PNG pictures need the program rsvg-convert, of Debian's package ~
+           (reject-use "PNG pictures need the program rsvg-convert, which is in Debian's package ~
                         librsvg2-bin: apt-get install librsvg2-bin. Or save the picture as .svg."))
           ((plusp status) (reject-png file words)))))
 
 (defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
-  "Return the one of KINDS in which the name of FILE ends. Signals WRONG-ARGUMENT if OPERATOR cannot
-save a picture there; the message lists ENDINGS."
+  "Return the element of KINDS that is the type of the file name FILE. Signals WRONG-ARGUMENT for
+OPERATOR if FILE has another type or cannot be written. The message lists ENDINGS, a text with the
+possible types."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (when (many-files-p file)
@@ -97,7 +102,8 @@ save a picture there; the message lists ENDINGS."
         (reject (format nil "a name that ends in ~A" endings)))))
 
 (defun save-svg (svg file kind)
-  "Write the SVG document SVG to FILE, as SVG or PNG by KIND. Return the truename."
+  "Write the SVG document SVG to FILE, as it is or as PNG if KIND is :PNG. Return the truename of
+FILE."
   (ecase kind
     (:svg (save-text svg file))
     (:png (let ((file (merge-pathnames file)))
@@ -105,8 +111,8 @@ save a picture there; the message lists ENDINGS."
                              :kind :image)))))
 
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
-  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does. ROBOT is the image of a robot in it,
-LOOK options of WRITE-PICTURE."
+  "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does. ROBOT is the image of a robot in
+SNAPSHOT. LOOK are options of WRITE-PICTURE."
   (save-svg (reporting-broken-graphics
               (with-output-to-string (stream)
                 (apply #'write-picture stream snapshot robot :display display look)))
@@ -115,9 +121,10 @@ LOOK options of WRITE-PICTURE."
 (addition save-picture)
 (define-with-keywords save-picture
     (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
-  "Save a picture of the world of ROBOT as it is now in FILE, replacing it, and return the truename.
-The name ends in .svg or, if the program rsvg-convert is installed, .png. The other arguments are
-those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
+  "Save a picture of the present world of ROBOT in FILE, replacing an older file. Return the
+truename of FILE. The name ends in .svg or, if the program rsvg-convert is installed, in .png. The
+other arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is
+needed but not installed."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
@@ -129,7 +136,7 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
 ;;;; Ways on a map
 
 (defun coordinates-of (point)
-  "Return the coordinates of POINT, a PT or a list (x y), as a list."
+  "Return the coordinates of POINT, a PT or a list (x y), as a list (x y)."
   (if (pt-p point) (list (pt-x point) (pt-y point)) point))
 
 (defun in-pixels (point)
@@ -151,9 +158,10 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
 
 (defun check-ways (ways)
   (check-argument save-way-picture ways (not (and (proper-list-p ways) (member nil ways)))
-                  "a list of ways without NIL, which FIND-WAY returns if there is no way")
+                  "a list of ways. It must not contain NIL, which FIND-WAY returns if there is no
+way")
   (check-argument save-way-picture ways (and (proper-list-p ways) (every #'way-p ways))
-                  "a list of ways, each a list of PTs or of lists (x y)"))
+                  "a list of ways; each way is a list of PT objects or of lists (x y)"))
 
 (defun point-on-map-p (point map)
   (destructuring-bind (x y) (coordinates-of point)
@@ -178,7 +186,8 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
                           (entry-with-sample (canvas x y) "end" (draw-goal canvas x y black*))))))
 
 (defun snapshot-of-map (map)
-  "Return a snapshot of the current world if it is in MAP, else of the empty MAP."
+  "Return a snapshot of the current world if its map is MAP, else a snapshot of MAP without robots
+and things."
   (let ((simulation *simulation*))
     (if (and simulation (eq map (world-map (simulation-world simulation))))
         (asking (simulation) (take-snapshot (simulation-world simulation)))
@@ -195,11 +204,12 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE without that program."
 (addition save-way-picture)
 (define-with-keywords save-way-picture
     (map ways file &key title (layers *picture-layers*) (in-color t) scale)
-  "Save in FILE, replacing it, a picture of MAP, a map or its name, and of WAYS in it: a list of
-ways, each a list of PTs or of lists (x y), as FIND-WAY returns it. Return the truename. If the
-current simulation is in MAP, the picture also has its things and robots. TITLE, a string, is above.
-FILE and the other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and
-MISUSE without the program that PNG needs."
+  "Save a picture of MAP, a map or the name of a map, with WAYS, in FILE, replacing an older file.
+WAYS is a list of ways. Each way is a list of PT objects or of lists (x y), such as FIND-WAY
+returns. Return the truename of FILE. If the current simulation is in MAP, the picture also has the
+things and robots of the simulation. TITLE, a string, is the title of the picture. FILE and the
+other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE if
+rsvg-convert is needed but not installed."
   (check-ways ways)
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))

@@ -10,22 +10,24 @@
 ;;; its image is the same object.
 
 (define-record snapshot
-  "What a world looks like at one moment."
+  "A snapshot: all that pictures show of a world at one moment."
   (tick 0 t "the tick at which the snapshot was taken" :export)
   (map nil t "the map of the world in the snapshot" :export)
   (things #() t "a vector of the images of the things on the floor, by serial number" :export)
   (robots '() t "a list of the images of the robots" :export)
   (part nil t
-        "the part of the map to show, (left top right bottom) in cells, or NIL for all" :export))
+        "the part of the map to show, (left top right bottom) in cells, or NIL for the whole
+map" :export))
 
 (define-record thing-image
-  "What a snapshot has of a thing."
+  "The image of a thing: all that pictures show of the thing at one moment."
   (thing nil t "the thing itself" :export)
   (x 0d0 t "the thing's x coordinate, in metres" :export)
   (y 0d0 t "the thing's y coordinate, in metres" :export)
-  (location nil t "a text that says what the thing is in, as `in hand 0 of ROBBIE', or NIL" :export)
+  (location nil t "a text with the container of the thing, such as `in hand 0 of ROBBIE', or
+NIL" :export)
   (attributes '() t "a list (name value) for each attribute of the thing" :export)
-  (color 0 t "the colour of the display")
+  (color 0 t "the colour in displays")
   (size 0d0 t)
   (obsmove-p nil t)
   (obsview-p nil t)
@@ -34,9 +36,10 @@
   (draw-function nil t))
 
 (define-record robot-image
-  "What a snapshot has of a robot."
+  "The image of a robot: all that pictures show of the robot at one moment."
   (name nil t "the name of the robot, a symbol" :export)
-  (position 0 t "the robot's position among those of its world, which determines its look")
+  (position 0 t "the robot's position in the list of robots of its world, which determines its
+look")
   (x 0d0 t "the robot's x coordinate, in metres" :export)
   (y 0d0 t "the robot's y coordinate, in metres" :export)
   (angle 0d0 t "the robot's heading, in radians" :export)
@@ -51,46 +54,49 @@
   (odometer nil t)
   (trail '() t)
   (planned-way '() t)
-  (notes '() t "what the :note of layers returned, by their names"))
+  (notes '() t "a property list from names of layers to what their :note functions returned"))
 
 (define-record camera-image
-  "What a snapshot has of a camera."
+  "The image of a camera: all that pictures show of the camera at one moment."
   (index 0 t "the number of the camera" :export)
   (angle 0d0 t "the angle of the camera relative to the robot, in radians")
   (field-of-view 1d0 t)
   (view '() t "the camera's last view")
-  (view-age 0 t "how many ticks ago that was taken")
+  (view-age 0 t "the age of the last view, in ticks")
   (track nil t "the image of the designator that the camera tracks, or NIL" :export)
   (location nil t)
   (look nil t))
 
 (define-record hand-image
-  "What a snapshot has of a hand."
+  "The image of a hand: all that pictures show of the hand at one moment."
   (index 0 t "the number of the hand" :export)
   (strength 0d0 t)
   (contents nil t "the image of the thing that the hand holds, or NIL" :export)
-  (location nil t "what the hand is inside of: the image of a thing, a string, or NIL" :export))
+  (location nil t "the container that the hand is in: the image of a thing, a string, or
+NIL" :export))
 
 (define-record bin-image
-  "What a snapshot has of a storage bin."
+  "The image of a storage bin: all that pictures show of the bin at one moment."
   (index 0 t "the number of the storage bin" :export)
   (capacity 0d0 t)
   (closed-p nil t "the storage bin is closed" :export)
   (contents '() t "a list of the images of the things in the storage bin" :export))
 
 (define-record designator-image
-  "What a snapshot has of a designator."
+  "The image of a designator: all that pictures show of the designator at one moment."
   (number 0 t "the number of the designator" :export)
   (type nil t)
   (angle 0d0 t)
   (distance 0d0 t)
   (denotation nil t
-              "the image of the thing that it denotes, or the name of a place type, or NIL" :export)
-  (x nil t "where the denotation is, the x coordinate in metres")
-  (y nil t "where the denotation is, the y coordinate in metres"))
+              "what the designator denotes: the image of a thing, the name of a place type, or
+NIL" :export)
+  (x nil t "the x coordinate in metres of what the designator denotes")
+  (y nil t "the y coordinate in metres of what the designator denotes"))
 
 (define-record odometer-image
-  "What a snapshot has of an odometer: its estimate in coordinates of the map, and the uncertainty."
+  "The image of an odometer: its estimate in coordinates of the map, and the uncertainty of the
+estimate."
   (x 0d0 t)
   (y 0d0 t)
   (heading 0d0 t)
@@ -104,7 +110,8 @@
 (defun moving-p (thing) (and (thing-kickers thing) t))
 
 (defun image-of-thing (thing &optional old)
-  "Return the image of THING: OLD, an earlier one or NIL, if that is still right."
+  "Return the image of THING. OLD is an earlier image of THING or NIL. If OLD is still valid, return
+OLD."
   (let ((attributes (thing-attributes thing)))
     (if (and old
              (eq attributes (thing-image-attributes old))
@@ -123,9 +130,9 @@
 (defun image-serial (image) (thing-serial (thing-image-thing image)))
 
 (defun images-on-floor (world old)
-  "Return a vector of the images of the things on the floor of WORLD by serial number. OLD is such a
-vector of an earlier moment. It is returned if nothing has changed. Both are in order, so that one
-pass finds the old image of each thing."
+  "Return a vector of the images of the things on the floor of WORLD, sorted by serial number. OLD
+is such a vector of an earlier moment. If nothing has changed, return OLD. Both vectors are sorted,
+so that one pass finds the old image of each thing."
   (declare (type simple-vector old))
   (let ((images '()) (position 0) (count 0) (kept 0))
     (declare (type fixnum position count kept))
@@ -148,7 +155,8 @@ pass finds the old image of each thing."
 ;;; Robots.
 
 (defun image-of-location (location)
-  "Return LOCATION, which a part is inside of, as an image or a string; NIL if it is NIL."
+  "Return an image or a string for LOCATION, the container that a part of a robot is in. Return NIL
+if LOCATION is NIL."
   (cond ((null location) nil)
         ((thing-p location) (image-of-thing location))
         (t (location-name location))))
@@ -158,7 +166,8 @@ pass finds the old image of each thing."
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
 (defun place-of-denotation (denotation)
-  "Return the place of DENOTATION, a thing or a place, as a list (x y); NIL if it is NIL."
+  "Return the coordinates of DENOTATION, a thing or a place, as a list (x y). Return NIL if
+DENOTATION is NIL."
   (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
          (let ((cell (place-cell denotation)))
@@ -207,7 +216,7 @@ pass finds the old image of each thing."
          :spread (width angle))))))
 
 (defun notes-of (robot)
-  "Return a property list of the notes of layers for ROBOT."
+  "Return a property list from names of layers to the values of their :note functions for ROBOT."
   (loop for layer in *layers*
         when (%layer-note layer)
           append (list (%layer-name layer) (funcall (%layer-note layer) robot))))
@@ -231,8 +240,8 @@ pass finds the old image of each thing."
 ;;; The whole.
 
 (defun take-snapshot (world &optional previous)
-  "Return a snapshot of WORLD as it is now. Call this between ticks. PREVIOUS, an earlier snapshot
-of WORLD, makes it faster."
+  "Return a snapshot of WORLD. Call this function between ticks. If PREVIOUS, an earlier snapshot of
+WORLD, is given, unchanged images are reused, which is faster."
   (let* ((timeline (world-timeline world))
          (history (and timeline (timeline-run timeline) (history-of (timeline-run timeline)))))
     (make-snapshot :tick (world-tick world)
@@ -245,11 +254,12 @@ of WORLD, makes it faster."
                                    collect (image-of-robot robot position history))))))
 
 (defun snapshot-of (robot)
-  "Return a snapshot of the world of ROBOT. Any thread may call this."
+  "Return a snapshot of the world of ROBOT. Any thread may call this function."
   (asking ((robot-simulation robot)) (take-snapshot (robot-world robot))))
 
 (defun snapshot-robot (snapshot name)
-  "Return the image of the robot called NAME in SNAPSHOT, or if there is none, of its first robot."
+  "Return the image of the robot called NAME in SNAPSHOT. If there is no such robot, return the
+image of the first robot."
   (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
       (first (snapshot-robots snapshot))))
 
@@ -272,12 +282,13 @@ of WORLD, makes it faster."
                      (destructuring-bind (left top right bottom) part
                        (and (< -1 left right (1+ width)) (< -1 top bottom (1+ height))))))
       (reject-argument operator 'part part
-                       (format nil "a list (left top right bottom) of integers within ~D x ~D, or ~
-                                    NIL" width height)))))
+                       (format nil "a list (left top right bottom) of integers within a map of ~D ~
+                                    x ~D cells, or NIL" width height)))))
 
 (defun in-part (snapshot part operator)
-  "Return a snapshot of what SNAPSHOT has in PART of its map, (left top right bottom) in cells, or
-NIL for all. Signals WRONG-ARGUMENT for OPERATOR if PART is not part of that map."
+  "Return a snapshot of PART of the map of SNAPSHOT. PART is a list (left top right bottom) in
+cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is not a part of the
+map."
   (check-part operator part (snapshot-map snapshot))
   (flet ((within-p (x y)
            (destructuring-bind (left top right bottom) part

@@ -13,28 +13,31 @@
   (format nil "Designator ~D" (designator-image-number image)))
 
 (defun angle-text (angle)
-  "Return ANGLE, in radians, as text: in degrees, more than -180 and no more than 180, and in
-radians. Radians are never reduced (reading 50), and so can be several turns."
+  "Return ANGLE, in radians, as a text in degrees and in radians. Degrees are more than -180 and at
+most 180. Radians are never reduced (reading 50), so they can be several turns."
   (let ((degrees (- 180 (mod (- 180 (round (* angle (/ 180 pi)))) 360))))
     (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
             (< (+ pi 0.01d0) (abs angle)))))
 
 (defun plain-text (value)
-  "Return VALUE, of an attribute, as text in lower case, numbers as decimals without exponents."
+  "Return VALUE, the value of an attribute, as a text in lower case. Numbers are decimals without
+exponents."
   (typecase value
     (float (if (within-reason-p value) (number-text value) (princ-to-string value)))
     (cons (format nil "(~{~A~^ ~})" (mapcar #'plain-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 
 (defun denotation-text (image)
-  "Return what the designator of IMAGE denotes, as text: FALSE if it is false (manual B)."
+  "Return a text that names what the designator of IMAGE denotes, or FALSE if it denotes nothing
+(manual B)."
   (let ((denotation (designator-image-denotation image)))
     (cond ((null denotation) "FALSE")
           ((stringp denotation) denotation)
           (t (subject-title denotation)))))
 
 (defgeneric describe-subject (subject stream)
-  (:documentation "Write a description of SUBJECT, an image or a cell, to STREAM, in lines.")
+  (:documentation "Write a description of SUBJECT, an image or a cell, to STREAM, as one or more
+lines.")
   (:method ((image thing-image) stream)
     (format stream "~A ~:[at ~,2F, ~,2F~;~:*~A~]~%" (subject-title image)
             (thing-image-location image) (thing-image-x image) (thing-image-y image))
@@ -50,7 +53,7 @@ radians. Radians are never reduced (reading 50), and so can be several turns."
             (designator-image-type image) (designator-image-distance image)
             (angle-text (designator-image-angle image)) (denotation-text image)))
   (:method ((image camera-image) stream)
-    (format stream "~A looks ~A off the heading~%" (subject-title image)
+    (format stream "~A looks in a direction ~A from the heading~%" (subject-title image)
             (angle-text (camera-image-angle image))))
   (:method ((image hand-image) stream)
     (format stream "~A, of strength ~A, ~:[is empty~;holds ~:*~A~]~%" (subject-title image)
@@ -76,7 +79,8 @@ radians. Radians are never reduced (reading 50), and so can be several turns."
 ;;; themselves.
 
 (defgeneric content (object)
-  (:documentation "Return what is visible of OBJECT, an image or a list of images, for EQUAL.")
+  (:documentation "Return an object that represents what is visible of OBJECT, an image or a list of
+images. It can be compared by EQUAL.")
   (:method (object) object)
   (:method ((list cons)) (cons (content (car list)) (content (cdr list))))
   (:method ((image thing-image))
@@ -85,7 +89,8 @@ radians. Radians are never reduced (reading 50), and so can be several turns."
           (drawing-code (thing-image-draw-function image)))))
 
 (defmacro define-content (image (&rest slots) &rest parts)
-  "Define the CONTENT of an IMAGE as the values of its SLOTS and the contents of its PARTS."
+  "Define the method of CONTENT for the image type IMAGE. It returns the values of SLOTS and the
+contents of PARTS, which are slots with images."
   (flet ((reader (slot) (symbolicate image '- slot)))
     `(defmethod content ((image ,image))
        (list ,@(loop for slot in slots collect `(,(reader slot) image))
@@ -99,12 +104,13 @@ radians. Radians are never reduced (reading 50), and so can be several turns."
 (define-content robot-image (x y angle trail planned-way) cameras odometer designators notes)
 
 (defun snapshot-content (snapshot)
-  "Return an object that is EQUAL for two snapshots whose worlds look the same."
+  "Return an object that represents the looks of the world in SNAPSHOT. The objects for two
+snapshots are EQUAL if their worlds look the same."
   (list (snapshot-map snapshot) (snapshot-things snapshot) (content (snapshot-robots snapshot))))
 
 (defun display-content (display robot)
-  "Return an object that is EQUAL for two images of a ROBOT of which DISPLAY shows the same. DISPLAY
-is one of +DISPLAYS+ except the world."
+  "Return an object that represents what DISPLAY, one of +DISPLAYS+ except the world, shows of
+ROBOT, an image of a robot. The objects for two images are EQUAL if DISPLAY shows the same of both."
   (ecase display
     (:state (list (robot-image-x robot) (robot-image-y robot) (robot-image-angle robot)
                   (robot-image-speed robot) (robot-image-place robot)

@@ -19,7 +19,7 @@
 ;;; Numbers and attributes.
 
 (defvar *numerals* (coerce (loop for n below 4096 collect (princ-to-string n)) 'simple-vector)
-  "The integers that most coordinates are, as strings.")
+  "The integers from 0 to 4095 as strings, because most coordinates are such integers.")
 
 (defun write-natural (integer stream)
   (if (< integer 4096)
@@ -27,7 +27,7 @@
       (printing-plainly () (princ integer stream))))
 
 (defun write-hundredths (hundredths stream)
-  "Write HUNDREDTHS / 100 with as few decimals as possible."
+  "Write the number HUNDREDTHS / 100 to STREAM with as few decimals as possible."
   (when (minusp hundredths) (write-char #\- stream))
   (multiple-value-bind (whole rest) (truncate (abs hundredths) 100)
     (write-natural whole stream)
@@ -38,13 +38,14 @@
         (unless (zerop hundredths) (write-natural hundredths stream))))))
 
 (defun write-number (number stream)
-  "Write NUMBER in decimals, to a hundredth, limited to 10^9 on both sides."
+  "Write NUMBER to STREAM with at most two decimals. Numbers beyond 10^9 or -10^9 are written as
+these limits."
   (if (typep number '(integer 0 4095))
       (write-natural number stream)
       (write-hundredths (round (* 100 (clamp number -1000000000 1000000000))) stream)))
 
 (defun number-text (number)
-  "Return NUMBER in decimals, to a hundredth, as a string."
+  "Return NUMBER as a string with at most two decimals."
   (with-output-to-string (stream) (write-number number stream)))
 
 (defun write-svg (canvas &rest parts)
@@ -55,7 +56,7 @@
       (if (stringp part) (write-string part stream) (write-number part stream)))))
 
 (defun write-color (canvas gcontext attribute)
-  "Write ATTRIBUTE of an element: the foreground of GCONTEXT."
+  "Write ATTRIBUTE of an element, with the foreground colour of GCONTEXT as its value."
   (write-svg canvas " " attribute "=\"#")
   (loop for position from 20 downto 0 by 4
         do (write-char (char "0123456789abcdef"
@@ -77,18 +78,18 @@
 "))
 
 (defun write-paint (canvas gcontext fill-p)
-  "Finish an element: filled if FILL-P, else outlined."
+  "Write the end of an element that is filled if FILL-P, else outlined."
   (cond (fill-p (write-color canvas gcontext "fill")
                 (write-svg canvas "/>
 "))
         (t (write-stroke canvas gcontext))))
 
 (defun write-text (text stream)
-  "Write TEXT with the special characters of SVG escaped."
+  "Write TEXT to STREAM with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-words (canvas gcontext string)
-  "Finish a text element with STRING."
+  "Write the end of a text element with STRING as its text."
   (write-color canvas gcontext "fill")
   (write-svg canvas ">")
   (write-text string (svg-stream canvas))
@@ -105,7 +106,7 @@
                   (max right (third reach)) (max bottom (fourth reach)))))))
 
 (defun pen-reach (gcontext)
-  "Return how far a line reaches beyond its path, in pixels."
+  "Return half the width of lines of GCONTEXT, in pixels: how far a line reaches beyond its path."
   (/ (max 1 (gcontext-line-width gcontext)) 2))
 
 (defmethod paint-rectangles ((canvas svg-canvas) gcontext rectangles fill-p)
@@ -129,7 +130,7 @@
   (write-paint canvas gcontext fill-p))
 
 (defun write-slice (canvas x y width height start extent fill-p)
-  "Begin a path along an arc of less than a full turn."
+  "Write the beginning of a path element for an arc of less than a full turn."
   (let* ((across (/ width 2)) (down (/ height 2))
          (center-x (+ x across)) (center-y (+ y down)))
     (flet ((spot (angle)
@@ -144,7 +145,8 @@
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
 (defun write-ellipse (canvas x y width height pen)
-  "Write the ellipse that just fits into the box, if its line reaches PEN beyond its path."
+  "Write the beginning of an ellipse element that fits into the box with its line, which reaches PEN
+pixels beyond its path."
   (note-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
              "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))
@@ -158,7 +160,7 @@
   (write-paint canvas gcontext fill-p))
 
 (defun write-points (canvas gcontext numbers shift)
-  "Write x y x y ... as x,y x,y ..., moved by SHIFT."
+  "Write NUMBERS, a list x y x y ..., as x,y x,y ... with SHIFT added to each coordinate."
   (loop with pen = (pen-reach gcontext)
         for (x y) on numbers by #'cddr
         do (let ((x (+ x shift)) (y (+ y shift)))
@@ -189,7 +191,8 @@
 ;;; Where.
 
 (defun collect-output (canvas function)
-  "Call FUNCTION; return what it wrote, and the box of that, as two values."
+  "Call FUNCTION. Return two values: the text that FUNCTION has written to CANVAS, and the box (left
+top right bottom) of what it has drawn."
   (let ((stream (svg-stream canvas)) (reach (svg-reach canvas)))
     (setf (svg-reach canvas) (list 1d9 1d9 -1d9 -1d9))
     (unwind-protect
@@ -259,9 +262,9 @@
 
 (defun call-with-svg (function stream &key (color-p t) (font "DejaVu Sans Mono, monospace")
                                         (zoom 1))
-  "Call FUNCTION with a canvas. Then write what it has drawn to STREAM as an SVG document on white,
-with text in the font family FONT. FUNCTION returns the width and height in pixels, as two values;
-the document is ZOOM times as large."
+  "Call FUNCTION with a canvas. Then write the drawing to STREAM as an SVG document on white, with
+text in the font family FONT. FUNCTION must return the width and height of the drawing in pixels, as
+two values. The document is ZOOM times as large."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)
@@ -271,6 +274,6 @@ the document is ZOOM times as large."
     (printing-plainly () (write-document body width height stream font zoom))))
 
 (defmacro with-svg ((canvas stream &rest options) &body body)
-  "Run BODY, which draws on CANVAS and returns its width and height in pixels, as two values. Then
-write it to STREAM as an SVG document. OPTIONS: :color-p, :font, :zoom."
+  "Run BODY, which draws on CANVAS and returns the width and height of the drawing in pixels, as two
+values. Then write the drawing to STREAM as an SVG document. OPTIONS: :color-p, :font, :zoom."
   `(call-with-svg (lambda (,canvas) ,@body) ,stream ,@options))

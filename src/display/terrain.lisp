@@ -8,26 +8,32 @@
 ;;; again. The caller then draws something else. Code that is redefined is a new function and is
 ;;; called.
 
-(defconstant +drawing-seconds+ 2 "The seconds that users' code may take to draw one thing or cell.")
-(defconstant +drawing-calls+ 100000 "How often users' code may draw for one thing or cell.")
+(defconstant +drawing-seconds+ 2
+  "The time limit, in seconds, for users' code that draws one thing or cell.")
+(defconstant +drawing-calls+ 100000
+  "The largest number of calls of drawing functions by users' code for one thing or cell.")
 
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "The functions that have signalled an error, and the names that mean no function.")
+  "A table of the drawing functions that have signalled an error, and of names that name no
+function.")
 
 (defmacro reporting-broken-graphics (&body body)
-  "Run BODY, which draws a file: broken graphics are reported once again, if they were before."
+  "Run BODY, which draws a picture for a file. Broken graphics are reported in BODY even if they
+have been reported before."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun give-up-drawing ()
-  "Signal MISUSE: users' code has drawn for too long. Do nothing if it waits in a debugger."
+  "Signal MISUSE because users' code has drawn for too long. Do nothing while the code waits in a
+debugger."
   (unless (user-calls-waiting-p *user-calls*)
-    (reject-use "It had not ended after ~D seconds. Correct the endless loop."
+    (reject-use "The drawing code had not ended after ~D seconds. Correct its endless loop."
                 +drawing-seconds+)))
 
 (defun draw-by-user (canvas function origin x y width height &rest arguments)
-  "Call FUNCTION with CANVAS and ARGUMENTS, to draw in a box of CANVAS. ORIGIN, an item or a list of
-items, names it in messages (reading 214). Return true if it succeeds. If not, an error message has
-been queued, and the caller must draw over the box."
+  "Call FUNCTION, a user's function, with CANVAS and ARGUMENTS, to draw in the box X, Y, WIDTH,
+HEIGHT. ORIGIN, an item or a list of items, names FUNCTION in messages (reading 214). Return true if
+FUNCTION succeeds. Otherwise an error message has been queued, and the caller must draw over the
+box."
   (flet ((draw ()
            (let ((*calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
              (call-with-limit (lambda () (apply function canvas arguments))
@@ -41,7 +47,7 @@ been queued, and the caller must draw over the box."
     (not (gethash function *broken-graphics*))))
 
 (defun draw-mark (canvas x y width height)
-  "Draw a crossed box, in place of graphics that cannot be drawn."
+  "Draw a crossed-out box in place of graphics that cannot be drawn."
   (with-color (svref red* 9)
     (with-clipping (canvas x y width height)
       (draw-rectangle canvas draw-gcontext* x y (1- width) (1- height))
@@ -58,7 +64,7 @@ been queued, and the caller must draw over the box."
 
 (defstruct (wall-look (:constructor make-wall-look (color &optional (texture :plain)))
                       (:copier nil))
-  "The look of a wall. Walls that look alike have the same object."
+  "The look of walls. All walls of a map that look alike share one object."
   (color 0 :type color :read-only t)
   (texture :plain :type keyword :read-only t))
 
@@ -67,8 +73,8 @@ been queued, and the caller must draw over the box."
              (material-texture material)))
 
 (defun wall-looks (map)
-  "Return a function of the index of a wall cell of MAP that returns its look by its substance and
-parameter: plain black on a display without colours."
+  "Return a function from the index of a wall cell of MAP to the look of the wall. The look depends
+on substance and parameter. On a display without colours it is plain black."
   (let ((materials (materials-of map)) (known (make-hash-table :test #'eql))
         (black (make-wall-look black*)))
     (if in-color*
@@ -81,13 +87,14 @@ parameter: plain black on a display without colours."
         (constantly black))))
 
 (defstruct (wall-run (:constructor make-wall-run (left right top bottom look)) (:copier nil))
-  "A rectangle of wall cells of one look; RIGHT and BOTTOM are outside."
+  "A rectangle of wall cells with the same look. LEFT and TOP are its first column and row; RIGHT
+and BOTTOM are the first ones after it."
   (left 0 :type fixnum) (right 0 :type fixnum) (top 0 :type fixnum) (bottom 0 :type fixnum)
   (look nil :type wall-look))
 
 (defun clip-window (map left top right bottom)
-  "Return the cells of MAP between the given ones as a list (left top right bottom). RIGHT and
-BOTTOM are outside. NIL means the edge."
+  "Return the part of MAP between the given columns and rows as a list (left top right bottom).
+RIGHT and BOTTOM are the first column and row after the part. NIL means the edge of MAP."
   (flet ((within (value limit) (max 0 (min value limit))))
     (let ((width (map-width map)) (height (map-height map)))
       (list (within (or left 0) width) (within (or top 0) height)
@@ -121,16 +128,17 @@ BOTTOM are outside. NIL means the edge."
     runs))
 
 (defconstant +least-tile+ 4
-  "The least width of a tile of a texture that can be made out, in pixels.")
+  "The least width of a tile of a texture, in pixels. Smaller textures could not be recognized.")
 
 (defun tile-width ()
-  "Return the width of tiles of textures, in pixels, a part of a cell; NIL if it would be too
-narrow."
+  "Return the width in pixels of the tiles of textures, a fraction of a cell. Return NIL if tiles
+would be narrower than +LEAST-TILE+."
   (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
     (and (<= +least-tile+ width) width)))
 
 (defun draw-wall-look (canvas look rectangles &optional (tile (tile-width)))
-  "Fill RECTANGLES, a list x y width height ..., with LOOK, in tiles TILE pixels wide."
+  "Fill RECTANGLES, a list x y width height ..., with the wall look LOOK. Tiles of its texture are
+TILE pixels wide; without TILE, leave out the texture."
   (with-color (wall-look-color look)
     (draw-rectangles canvas draw-gcontext* rectangles t))
   (when tile
@@ -138,11 +146,13 @@ narrow."
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)
-  "Return the width of a wall between the cells FROM and TO, in pixels: at least 1, to be visible."
+  "Return the width in pixels of a wall from the column or row FROM to TO. It is at least 1, so that
+the wall is visible."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)
-  "Return lists (look x y width height ...), in pixels, of the rectangles RUNS of walls."
+  "Return lists (look x y width height ...), in pixels: the rectangles in RUNS, wall runs, for each
+look."
   (let ((lists '()))
     (dolist (run runs lists)
       (let ((list (or (assoc (wall-run-look run) lists :test #'eq)
@@ -161,7 +171,7 @@ narrow."
 ;;; Places.
 
 (defun draw-place-at (canvas type x y)
-  "Draw the mark of TYPE in the cell whose upper left corner is at X, Y."
+  "Draw the mark of the place type TYPE in the cell with its upper left corner at X, Y."
   (or (draw-by-user canvas (place-type-graphics type)
                     (list "the :graphics of place type " (place-type-name type))
                     x y graphics-scale* graphics-scale* x y)
@@ -172,7 +182,8 @@ narrow."
   (and type (place-type-graphics type) (not (place-type-invisible-p type))))
 
 (defun draw-places (canvas map window)
-  "Mark the cells of MAP in WINDOW that are places of visible types which have graphics (manual B)."
+  "Draw the marks of all places in the part WINDOW of MAP whose types are visible and have graphics
+(manual B)."
   (let ((types (map-place-types map)) (places (map-places map)) (width (map-width map)))
     (loop for y from (second window) below (fourth window)
           do (loop for x from (first window) below (third window)
@@ -185,18 +196,20 @@ narrow."
 ;;; The grid: on the floor only, so that it lies on white.
 
 (defun round-numbers (limit)
-  "Return 1, 2, 5, 10 and so on up to LIMIT."
+  "Return the list of the numbers 1, 2, 5, 10, 20 and so on up to LIMIT."
   (loop for unit = 1 then (* 10 unit)
         while (<= unit limit)
         append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
 
 (defun steps-apart (pixels)
-  "Return the least of 1, 2, 5, 10 and so on cells that are at least PIXELS wide."
+  "Return the least of the numbers 1, 2, 5, 10, 20 and so on for which that many cells are at least
+PIXELS wide."
   (find-if (lambda (step) (<= pixels (to-pixels step)))
            (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
-  "Return the metres from START to END at which there are marks, at least PIXELS apart."
+  "Return the coordinates from START to END, in metres, to mark on an axis. The marks are at least
+PIXELS apart."
   (loop with step = (steps-apart pixels)
         for metres from (* step (ceiling start step)) to end by step collect metres))
 
@@ -212,10 +225,11 @@ narrow."
                                               append (list left y right y))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
-  "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels to a cell (manual B), and those of
-LAYERS below and on walls, such as :GRID and :PLACES. Walls are black without colours, else grey by
-their parameter, with a tint and a texture by their substance. LEFT, TOP, RIGHT and BOTTOM, columns
-and rows of cells, are the part of MAP, by default all."
+  "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels per cell (manual B), and the layers
+in LAYERS that are drawn below and on walls, such as :GRID and :PLACES. Walls are black on canvases
+without colours. Otherwise they have a grey by their parameter, and a tint and a texture by their
+substance. LEFT, TOP, RIGHT and BOTTOM, columns and rows of cells, are the part of MAP to draw, by
+default the whole map."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)
              (dolist (layer (layers-at depth layers))
@@ -231,7 +245,7 @@ and rows of cells, are the part of MAP, by default all."
 ;;; the mark a dark shade of the same hue: so marks can be read without telling tints apart.
 
 (defun fill-cell (canvas x y color)
-  "Tint the cell, if there are colours."
+  "Fill the cell at X, Y with COLOR, if the display has colours."
   (when in-color*
     (with-color color
       (draw-rectangle canvas draw-gcontext* x y graphics-scale* graphics-scale* t))))

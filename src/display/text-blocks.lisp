@@ -6,8 +6,8 @@
 ;;; map is scaled down to a number of lines, blocks may be twice as high, too.
 
 (defstruct (text-view (:conc-name view-) (:copier nil))
-  "The cells of SNAPSHOT that a text map shows: COLUMNS x ROWS blocks of WIDE x HIGH cells from LEFT
-and TOP."
+  "The part of SNAPSHOT that a text map shows. It begins at the cell LEFT, TOP and has COLUMNS x
+ROWS blocks of WIDE x HIGH cells each."
   (snapshot nil :type snapshot :read-only t)
   (left 0 :type fixnum :read-only t)
   (top 0 :type fixnum :read-only t)
@@ -21,18 +21,19 @@ and TOP."
 ;;; Regions.
 
 (defun clip-range (least low high most)
-  "Return LOW and HIGH, rounded outward to integers, between LEAST and MOST and at least 1 apart."
+  "Return LOW, rounded down, and HIGH, rounded up, as two integers between LEAST and MOST that
+differ by at least 1."
   (let ((low (max least (min (floor low) (1- most)))))
     (values low (max (1+ low) (min (ceiling high) most)))))
 
 (defun region-near (robot radius)
-  "Return the region, a list (left top right bottom), of at most RADIUS cells around ROBOT."
+  "Return the region up to RADIUS cells around ROBOT, as a list (left top right bottom) in metres."
   (let ((x (floor (robot-x robot))) (y (floor (robot-y robot))))
     (list (- x radius) (- y radius) (+ x radius 1) (+ y radius 1))))
 
 (defun least-block (width height columns rows)
-  "Return the least width and height of blocks, in cells, with which WIDTH x HEIGHT cells are at
-most COLUMNS x ROWS blocks. ROWS may be NIL for any number."
+  "Return the least width and height of blocks, in cells, for which at most COLUMNS x ROWS blocks
+cover WIDTH x HEIGHT cells. If ROWS is NIL, the number of rows is unlimited."
   (flet ((fits-p (wide high)
            (and (<= (ceiling width wide) columns)
                 (or (null rows) (<= (ceiling height high) rows)))))
@@ -41,8 +42,9 @@ most COLUMNS x ROWS blocks. ROWS may be NIL for any number."
                    ((fits-p wide (* 2 wide)) (return (values wide (* 2 wide))))))))
 
 (defun view-of (snapshot region columns rows)
-  "Return a view of REGION, a list (left top right bottom) in metres, or NIL for all of SNAPSHOT, in
-at most COLUMNS characters of a line and ROWS lines, NIL for any number."
+  "Return a text view of REGION, a list (left top right bottom) in metres, or of the whole SNAPSHOT
+if REGION is NIL. The view has at most ROWS lines of COLUMNS characters. If ROWS is NIL, the number
+of lines is unlimited."
   (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
       (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
@@ -63,14 +65,15 @@ at most COLUMNS characters of a line and ROWS lines, NIL for any number."
                        when (map-index map x y) collect it))))
 
 (defun block-at (view x y)
-  "Return the number of the block of VIEW with the point X, Y, counted row by row, or NIL."
+  "Return the number of the block of VIEW that contains the point X, Y, or NIL. Blocks are numbered
+row by row."
   (let ((column (floor (- x (view-left view)) (view-wide view)))
         (row (floor (- y (view-top view)) (view-high view))))
     (when (and (< -1 column (view-columns view)) (< -1 row (view-rows view)))
       (+ column (* row (view-columns view))))))
 
 (defun block-of-index (view index)
-  "Return the number of the block of VIEW with the cell INDEX, or NIL."
+  "Return the number of the block of VIEW that contains the cell INDEX, or NIL."
   (multiple-value-bind (y x) (floor index (map-width (view-map view)))
     (block-at view x y)))
 
@@ -80,31 +83,33 @@ at most COLUMNS characters of a line and ROWS lines, NIL for any number."
 ;;; maps of its world, until a kind is added or removed.
 
 (defstruct (glyph (:constructor make-glyph (kind char text &optional ink)) (:copier nil))
-  "A character CHAR for something of KIND called TEXT. :ROBOT is also the kind of believed
-positions. INK is the name of its colour, or NIL for that of text."
+  "A character of a text map: CHAR stands for an object of KIND that is called TEXT in the legend.
+Believed positions have the kind :ROBOT, too. INK is the name of the colour of CHAR, or NIL for the
+colour of normal text."
   (kind :thing :type (member :wall :robot :layer :several :place :thing) :read-only t)
   (char #\Space :type character :read-only t)
   (text "" :type string :read-only t)
   (ink nil :type (or symbol string) :read-only t))
 
-(define-constant +several+ #\* :documentation "The character for things of several kinds.")
-(define-constant +other+ #\& :documentation "The character for things without a letter.")
+(define-constant +several+ #\* :documentation "The character for a block with things of several
+kinds.")
+(define-constant +other+ #\& :documentation "The character for things whose name has no letter.")
 
 ;;; Letters.
 
 (define-constant +letters+ "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ" :test #'equal
-  :documentation "The letters for kinds of things.")
+  :documentation "The letters that can stand for kinds of things.")
 
 (defun letters-for (name)
-  "Return strings of possible letters for things called NAME, the best first."
+  "Return a list of strings of possible letters for things called NAME, the best letters first."
   (list (string-downcase (char name 0))
         (string-upcase (char name 0))
         (concatenate 'string (string-downcase name) (string-upcase name))
         +letters+))
 
 (defun kinds-of (world)
-  "Return the names of the things of WORLD, strings: those of the largest things first, then by
-name."
+  "Return the names of the things in WORLD, strings, sorted by the size of the largest thing with
+the name, the largest first, and then by name."
   (let ((sizes (make-hash-table :test #'equal)))
     (do-things (thing world)
       (let ((name (symbol-name (thing-name thing))))
@@ -116,8 +121,9 @@ name."
               (if (= size-a size-b) (name-before-p a b) (> size-a size-b)))))))
 
 (defun letters-of (world)
-  "Return a hash table from the names of the things of WORLD, strings, to their letters. Large
-things get their initials first. There may be more kinds than letters."
+  "Return a hash table from the names of the things in WORLD, strings, to their letters. Large
+things choose first among the letters. If WORLD has more names than letters, some names are
+missing."
   (let ((letters (make-hash-table :test #'equal)) (names (kinds-of world))
         (free (remove #\v (coerce +letters+ 'list))))   ; v is a robot
     (dotimes (rank 4 letters)
@@ -136,7 +142,8 @@ things get their initials first. There may be more kinds than letters."
                 (and (typep color '(or symbol string)) color))))
 
 (defun things-glyphs (images letters)
-  "Return the glyphs of the kinds of the things; for several kinds, first the glyph for several."
+  "Return the glyphs for the kinds of the things in IMAGES. If the things are of several kinds, the
+first glyph is the glyph for several things."
   (let ((glyphs (remove-duplicates (mapcar (lambda (image) (thing-glyph image letters)) images)
                                    :key #'glyph-text :test #'string= :from-end t)))
     (if (rest glyphs)
@@ -146,8 +153,8 @@ things get their initials first. There may be more kinds than letters."
 ;;; Walls, by their substance.
 
 (defun wall-glyphs (map indices colored-p)
-  "Return a list of the glyph of the first wall of MAP in the cells INDICES, if any. If COLORED-P,
-it shows the substance."
+  "Return a list with the glyph of the first wall of MAP in the cells INDICES, or NIL. If COLORED-P,
+the glyph shows the substance by its colour."
   (let ((index (find-if (lambda (index) (logtest +wall+ (aref (map-flags map) index))) indices)))
     (when index
       (let ((name (and colored-p
@@ -158,10 +165,11 @@ it shows the substance."
 ;;; Places.
 
 (define-constant +place-glyphs+ "=:.;,'~\"|-/\\_" :test #'equal
-  :documentation "The characters of place types, by rank; further ranks have the last.")
+  :documentation "The characters of place types, by their rank. All further ranks have the last
+character.")
 
 (defun place-glyphs (map indices)
-  "Return a list of the glyph of the first place of MAP in the cells INDICES, if any."
+  "Return a list with the glyph of the first place of MAP in the cells INDICES, or NIL."
   (let ((index (find-if (lambda (index) (plusp (aref (map-places map) index))) indices)))
     (when index
       (let* ((type (svref (map-place-types map) (aref (map-places map) index)))
@@ -172,11 +180,12 @@ it shows the substance."
 ;;; Robots.
 
 (defun arrow-glyph (angle)
-  "Return the arrow that points most nearly in the direction ANGLE, in radians."
+  "Return the arrow character whose direction is nearest to ANGLE, in radians."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun robot-glyph (robot things)
-  "Return the glyph of ROBOT, which is on THINGS; all are images."
+  "Return the glyph of ROBOT, the image of a robot. THINGS are images of the things in the same
+block."
   (make-glyph :robot (arrow-glyph (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (hundredths (robot-image-x robot)) (hundredths (robot-image-y robot))

@@ -29,7 +29,8 @@
 (defun text-item (text) (cons (length text) text))
 
 (defun glyph-item (glyph paint &optional (width 1000))
-  "Return the item of GLYPH, in its colour by PAINT, of at most WIDTH characters."
+  "Return the legend item of GLYPH, cut to WIDTH characters. PAINT is a function that colours a
+string."
   (let ((text (glyph-text glyph)))
     (setf text (subseq text 0 (min (length text) (- width 2))))
     (cons (+ 2 (length text))
@@ -39,7 +40,8 @@
   (mapcar (lambda (glyph) (glyph-item glyph paint)) glyphs))
 
 (defun fill-lines (items columns)
-  "Return ITEMS as lines, lists, of at most COLUMNS characters; a longer item is a line."
+  "Return the list ITEMS divided into lines, lists of items, of at most COLUMNS characters. An item
+longer than COLUMNS has its own line."
   (loop with lines = '() and used = 0
         for item in items
         do (cond ((and lines (<= (+ used 3 (car item)) columns))
@@ -54,7 +56,7 @@
     (format stream "~{~A~^   ~}~%" (mapcar #'cdr line))))
 
 (defun head-items (sheet paint)
-  "Return the items of the legend of SHEET that are always below the map."
+  "Return the legend items of SHEET that are always below the map."
   (let ((view (sheet-view sheet)))
     (append (when (< 1 (max (view-wide view) (view-high view)))
               (list (text-item (format nil "Each character is ~D x ~D cells."
@@ -62,20 +64,21 @@
             (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
 
 (defun movable-glyphs (sheet)
-  "Return the glyphs of SHEET whose items are wherever there is room."
+  "Return the glyphs of SHEET whose legend items may be beside the map or below it."
   (remove-if #'in-head-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
-  "Return the complete legend of SHEET, as lines of at most COLUMNS characters."
+  "Return the complete legend of SHEET, as lists of items that make lines of at most COLUMNS
+characters."
   (fill-lines (append (head-items sheet paint) (glyph-items (movable-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
 
-(defconstant +least-side+ 12 "The least characters for a legend beside a map.")
+(defconstant +least-side+ 12 "The least width of a legend beside a map, in characters.")
 
 (defun side-legend (glyphs room rows paint)
-  "Return a vector of lists of items, padded, to write in ROOM characters beside each of ROWS lines
-of a map; and those of GLYPHS for which there is no room."
+  "Return two values: a vector with a list of padded legend items for each of ROWS lines of a map,
+to write beside the map in ROOM characters, and the rest of GLYPHS, for which there is no room."
   (let* ((longest (loop for glyph in glyphs maximize (length (glyph-text glyph))))
          (width (min room (+ 2 longest)))
          (columns (if (<= +least-side+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
@@ -91,8 +94,9 @@ of a map; and those of GLYPHS for which there is no room."
 ;;; Below it.
 
 (defun lines-with-count (head items columns rows)
-  "Return HEAD and ITEMS as at most ROWS lines of COLUMNS characters. Items without room are counted
-in the last line, if there is room for that. ROWS may be NIL for any number."
+  "Return the legend items HEAD and ITEMS as at most ROWS lines of COLUMNS characters. The last line
+counts the items for which there is no room, if the count itself fits. If ROWS is NIL, the number of
+lines is unlimited."
   (flet ((kept (count &rest more)
            (fill-lines (append head (subseq items 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
@@ -116,7 +120,8 @@ in the last line, if there is room for that. ROWS may be NIL for any number."
   text)
 
 (defun write-row (sheet row paint stream)
-  "Write ROW of SHEET, in colours by PAINT; return the number of characters."
+  "Write row number ROW of SHEET to STREAM. PAINT is a function that colours a string. Return the
+number of glyphs."
   (let ((glyphs (row-glyphs sheet row)) (view (sheet-view sheet)))
     (format stream "~4D " (+ (view-top view) (* row (view-high view))))
     (loop with rest = glyphs
@@ -135,14 +140,15 @@ in the last line, if there is room for that. ROWS may be NIL for any number."
     (length glyphs)))
 
 (defun write-ruler (view stream)
-  "Write the x coordinate of every tenth column."
+  "Write a line with the x coordinate of every tenth column of VIEW."
   (let ((marks (loop for column from 0 below (view-columns view) by 10
                      collect (+ (view-left view) (* column (view-wide view))))))
     (format stream "~VA~A~%" +margin-columns+ ""
             (string-right-trim " " (format nil "~{~10A~}" marks)))))
 
 (defun write-rows (sheet side paint stream)
-  "Write the rows of SHEET, and beside them the lists of items in the vector SIDE."
+  "Write the rows of SHEET to STREAM, and beside them the legend items in SIDE, a vector with a list
+for each row."
   (let ((view (sheet-view sheet)))
     (write-ruler view stream)
     (dotimes (row (view-rows view))
@@ -153,8 +159,8 @@ in the last line, if there is room for that. ROWS may be NIL for any number."
       (terpri stream))))
 
 (defun write-sheet (sheet columns rows paint stream)
-  "Write SHEET with its legend in lines of at most COLUMNS characters, at most ROWS if possible.
-ROWS may be NIL for any number."
+  "Write SHEET with its legend to STREAM, in lines of at most COLUMNS characters, and in at most
+ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
   (let* ((view (sheet-view sheet))
          (all (whole-legend sheet columns paint))
          (left (and rows (- rows 1 (view-rows view))))
@@ -168,9 +174,9 @@ ROWS may be NIL for any number."
                    stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
-  "Return a sheet of REGION for ROBOT that fits, with the head of its legend, into ROWS lines of
-COLUMNS characters, if possible. Kinds keep their letters while none of their things is on the
-floor."
+  "Return a sheet of REGION for ROBOT that fits into ROWS lines of COLUMNS characters with the fixed
+part of its legend, if possible. A kind of thing keeps its letter even while none of its things is
+on the floor."
   (let* ((world (robot-world robot)) (snapshot (take-snapshot world)) (letters (letters-of world))
          (image (snapshot-robot snapshot (robot-name robot))))
     (loop for lines from 1
@@ -182,7 +188,7 @@ floor."
             return sheet)))
 
 (defun check-region (region map)
-  "Signal WRONG-ARGUMENT unless REGION is NIL or a region that overlaps MAP."
+  "Signal WRONG-ARGUMENT unless REGION is NIL or a list (left top right bottom) that overlaps MAP."
   (check-argument text-map region (or (null region) (region-p region))
                   (format nil "a list (left top right bottom) in metres, left less than right and ~
                                top less than bottom, or NIL"))
@@ -190,8 +196,8 @@ floor."
     (destructuring-bind (left top right bottom) region
       (check-argument text-map region (and (< left (map-width map)) (< top (map-height map))
                                            (< 0 right) (< 0 bottom))
-                      (format nil "a list (left top right bottom) of which some is on the map, ~
-                                   that is from 0 to ~D and from 0 to ~D"
+                      (format nil "a list (left top right bottom) that overlaps the map, whose x ~
+                                   is from 0 to ~D and whose y is from 0 to ~D"
                               (map-width map) (map-height map))))))
 
 (defun region-p (object)
@@ -203,12 +209,12 @@ floor."
 (define-with-keywords text-map
     (robot &key (columns 80) rows radius region layers paint only-legend)
   "Return a string that shows the world of ROBOT in lines of at most COLUMNS characters: walls,
-places, things as letters, robots as arrows, and a legend. With ROWS, it fits into that many lines
-if possible. REGION, a list (left top right bottom) in metres, limits it to that region; RADIUS, a
-number of cells, to the surroundings of ROBOT. LAYERS is a list of names such as :WAY and :BELIEF,
-which *PICTURE-LAYERS* documents. PAINT is a function of a string and of the name of a colour, or
-NIL; it returns the string in that colour. ONLY-LEGEND leaves out the map. Call this between ticks.
-Signals WRONG-ARGUMENT."
+places, things as letters, robots as arrows, and a legend. With ROWS, the string has at most ROWS
+lines if possible. REGION, a list (left top right bottom) in metres, is the part of the map to show.
+RADIUS, a number of cells, limits the part to the surroundings of ROBOT. LAYERS is a list of names
+such as :WAY and :BELIEF, which *PICTURE-LAYERS* documents. PAINT is NIL or a function of a string
+and of the name of a colour or NIL that returns the string in this colour. If ONLY-LEGEND, return
+the legend without the map. Call this function between ticks. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
   (check-argument text-map rows (or (null rows) (whole-p rows 5 100000))

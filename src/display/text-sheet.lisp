@@ -6,14 +6,15 @@
 ;;; a block and the glyph to show there.
 
 (defun mark-at (view x y glyph)
-  "Return a list of a pair of the block of VIEW at X, Y and GLYPH, or NIL if X, Y is outside."
+  "Return a list with one pair: the number of the block of VIEW at X, Y, and GLYPH. Return NIL if X,
+Y is outside VIEW."
   (let ((number (block-at view x y)))
     (and number (list (cons number glyph)))))
 
 ;;; Cones.
 
 (defconstant +ray-spacing+ 0.01d0
-  "The angle between rays that find what is in a field of view, in radians.")
+  "The angle between the rays that find the cells in a field of view, in radians.")
 
 (defun visible-cells (map opaque-p x y angle)
   "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."
@@ -26,7 +27,7 @@
     indices))
 
 (defun cone-blocks (view robot camera)
-  "Return the numbers of the blocks of VIEW that are, at least in part, in view of CAMERA of ROBOT."
+  "Return the numbers of the blocks of VIEW that CAMERA of ROBOT sees, at least in part."
   (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-spacing+)))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
@@ -52,10 +53,10 @@
           append (mark-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0
-  "The distance between points of a planned way that are shown, in metres.")
+  "The distance between the points of a planned way that are marked on text maps, in metres.")
 
 (defun points-between (from to)
-  "Return points, lists (x y), on the line from FROM to TO, with both ends."
+  "Return points on the line from FROM to TO, including both ends. All points are lists (x y)."
   (destructuring-bind ((x y) (dx dy)) (list from (mapcar #'- to from))
     (let ((count (max 1 (ceiling (sqrt (+ (* dx dx) (* dy dy))) +way-spacing+))))
       (loop for i to count
@@ -95,8 +96,8 @@
 ;;; cameras see.
 
 (defstruct (sheet (:copier nil))
-  "A VIEW with GLYPHS, the visible glyph of each block, row by row, or NIL; and LEGEND, a list of
-all glyphs used."
+  "A text map before it is written. GLYPHS is a vector with the visible glyph, or NIL, of each block
+of VIEW, row by row. LEGEND is a list of all glyphs used."
   (view nil :type text-view :read-only t)
   (letters nil :type hash-table :read-only t)
   ;; True if walls are told apart by colour.
@@ -108,7 +109,7 @@ all glyphs used."
   (legend '() :type list))
 
 (defun add-to-legend (sheet glyphs)
-  "Add GLYPHS to the legend of SHEET. Return the first of them."
+  "Add GLYPHS to the legend of SHEET. Return the first of GLYPHS."
   (dolist (glyph glyphs (first glyphs))
     (pushnew glyph (sheet-legend sheet)
              :test (lambda (a b)
@@ -122,7 +123,8 @@ all glyphs used."
     (push (cons (%layer-text-depth layer) table) (sheet-marks sheet))))
 
 (defun layer-glyphs-at (sheet depth number)
-  "Return a list of the glyph of the last layer at DEPTH that has one in the block NUMBER of SHEET."
+  "Return a list with the glyph that the last layer at DEPTH has in the block NUMBER of SHEET, or
+NIL if no layer at DEPTH has a glyph in this block."
   (loop for (its-depth . table) in (sheet-marks sheet)
         for glyphs = (and (eq depth its-depth) (gethash number table))
         when glyphs return (list (first glyphs))))
@@ -134,7 +136,8 @@ all glyphs used."
                  (snapshot-robots (view-snapshot view))))
 
 (defun things-by-cell (view)
-  "Return a hash table from indices of cells to lists of images of things in VIEW, in their order."
+  "Return a hash table from indices of cells to lists of the images of things in these cells. The
+lists keep the order of the snapshot of VIEW."
   (let ((table (make-hash-table)))
     (loop for image across (reverse (snapshot-things (view-snapshot view)))
           do (push image (gethash (map-index (view-map view) (thing-image-x image)
@@ -143,8 +146,8 @@ all glyphs used."
     table))
 
 (defun glyphs-of-block (sheet number indices)
-  "Return the glyphs of what matters most in the block NUMBER of SHEET, with the cells INDICES:
-first the visible one."
+  "Return the glyphs for the most important objects in the block NUMBER of SHEET, the visible glyph
+first. INDICES are the cells of the block."
   (let* ((view (sheet-view sheet))
          (map (view-map view))
          (things (loop for index in indices append (gethash index (sheet-things sheet)))))
@@ -157,8 +160,8 @@ first the visible one."
         (layer-glyphs-at sheet :floor number))))
 
 (defun sheet-of (robot view layers letters colored-p)
-  "Return a sheet of VIEW with LAYERS, some of (TEXT-LAYERS), for ROBOT, an image. LETTERS is a
-value of LETTERS-OF."
+  "Return a sheet of VIEW for ROBOT, the image of a robot. LAYERS are names of layers in text maps.
+LETTERS is a value of LETTERS-OF. If COLORED-P, walls are told apart by colours."
   (let ((sheet (make-sheet :view view :colored-p colored-p :things (things-by-cell view)
                            :letters letters)))
     (dolist (layer *layers*)
@@ -176,7 +179,8 @@ value of LETTERS-OF."
     sheet))
 
 (defun row-glyphs (sheet row)
-  "Return the glyphs of ROW of SHEET up to the last one, NIL for empty blocks."
+  "Return a list of the glyphs in row number ROW of SHEET, up to the last glyph. Empty blocks are
+NIL."
   (let* ((columns (view-columns (sheet-view sheet)))
          (start (* row columns))
          (last (position nil (sheet-glyphs sheet) :from-end t :test-not #'eq

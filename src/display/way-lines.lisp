@@ -9,13 +9,13 @@
 ;;; place. They are drawn together: all halos, then all lines, then arrowheads, then the marks of
 ;;; their ends, around each other on one spot. So no way hides another.
 
-(defconstant +arrows-apart+ 90 "About how far arrowheads on a way are apart, in pixels.")
+(defconstant +arrows-apart+ 90 "The approximate distance between arrowheads on a way, in pixels.")
 (defconstant +least-arrowed+ 24 "The length of the shortest way with an arrowhead, in pixels.")
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun segments-along (points)
-  "Return lists (length x y dx dy) of the segments of the way through POINTS, x y ..., except those
-of length 0."
+  "Return lists (length x y dx dy) for the segments of the way through POINTS, x y ..., without
+segments of length 0."
   (loop for (x y next-x next-y) on points by #'cddr
         for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
         for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
@@ -23,7 +23,7 @@ of length 0."
         when (plusp length) collect (list length x y dx dy)))
 
 (defun point-along (pieces distance)
-  "Return the point (x y) at DISTANCE along the way of PIECES (see SEGMENTS-ALONG)."
+  "Return the point (x y) at DISTANCE along the way of PIECES, a value of SEGMENTS-ALONG."
   (loop for ((length x y dx dy) . more) on pieces
         when (or (<= distance length) (null more))
           return (let ((share (min 1 (/ distance length))))
@@ -31,15 +31,16 @@ of length 0."
         do (decf distance length)))
 
 (defun arrow-along (pieces distance)
-  "Return an arrowhead, a list (x y angle), at DISTANCE along the way of PIECES."
+  "Return an arrowhead, a list (x y angle), at DISTANCE along the way of PIECES, a value of
+SEGMENTS-ALONG."
   (destructuring-bind ((x y) (to-x to-y))
       (list (point-along pieces (- distance (/ +arrow-length+ 2)))
             (point-along pieces (+ distance (/ +arrow-length+ 2))))
     (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (arctangent (- to-y y) (- to-x x)))))
 
 (defun free-arrow (pieces distance arrows)
-  "Return an arrowhead at about DISTANCE along the way of PIECES that overlaps none of ARROWS, which
-it may where a way leads back; or NIL."
+  "Return an arrowhead near DISTANCE along the way of PIECES that overlaps none of ARROWS, or NIL if
+there is no room. Overlaps can occur where a way leads back."
   (loop with room = (* 3/2 +arrow-length+)
         for aside in (list 0 room (- room) (* 2 room) (* -2 room))
         for (x y angle) = (arrow-along pieces (max 0 (+ distance aside)))
@@ -48,8 +49,8 @@ it may where a way leads back; or NIL."
           return (list x y angle)))
 
 (defun arrows-along (points &optional others)
-  "Return the arrowheads (x y angle) of the way through POINTS, x y ... in pixels: few, none on a
-very short way, and none that overlaps OTHERS."
+  "Return arrowheads (x y angle) for the way through POINTS, x y ... in pixels. They are far apart
+and do not overlap OTHERS. A very short way has none."
   (let* ((pieces (segments-along points)) (whole (reduce #'+ pieces :key #'first))
          (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
          (arrows '()))
@@ -58,7 +59,7 @@ very short way, and none that overlaps OTHERS."
         (when arrow (push arrow arrows))))))
 
 (defun draw-way-arrow (canvas x y angle color hollow-p)
-  "Draw an arrowhead with a halo around X, Y in direction ANGLE."
+  "Draw an arrowhead with a halo around X, Y in direction ANGLE, hollow if HOLLOW-P."
   (flet ((head (color more)
            (let ((reach (+ more (* 1/2 +arrow-length+))))
              (with-gcontext (draw-gcontext* :foreground color)
@@ -74,25 +75,25 @@ very short way, and none that overlaps OTHERS."
 
 (define-constant +lanes+ '((0 0) (5/4 5/2) (5/2 -5/4) (-5/4 -5/2) (-5/2 5/4))
   :test #'cl:equal
-  :documentation "How far several ways are drawn beside their places, by position: lists (x y) in
-widths of the line. Like queens on a chessboard, no two share a row, a column or a diagonal, where
-they would overlap.")
+  :documentation "The offsets at which several ways are drawn beside their real positions, by the
+number of the lane: lists (x y) in widths of the line. No two lanes share a row, a column or a
+diagonal, where ways would overlap.")
 
 (define-record (way-line (:constructor make-way-line
                              (position pieces &key (color (nth-ink position))
                                                    (dashes (nth-dashes position)) (width 2)
                                                    (arrows-p t) (lane position))))
-  "A way, at POSITION among several, as a line of PIECES."
+  "A way drawn as a line of PIECES. POSITION is its position in a list of several ways."
   (position 0 integer)
-  (lane 0 integer "the number of the lane that it is drawn in")
-  (pieces '() list "lists x y ... in pixels; between two of them it was put elsewhere")
+  (lane 0 integer "the number of the lane in which the way is drawn")
+  (pieces '() list "lists x y ... in pixels; between two pieces the robot was put elsewhere")
   (color 0 integer)
   (dashes '() list)
   (width 2 real)
-  (arrows-p t t "it has arrowheads"))
+  (arrows-p t t "the way has arrowheads"))
 
 (defun pieces-in-lane (line)
-  "Return those pieces of the way LINE that have several points, moved into its lane."
+  "Return the pieces of the way LINE that have several points, moved into the lane of LINE."
   (destructuring-bind (aside down) (nth-cyclic (way-line-lane line) +lanes+)
     (let ((dx (* aside (way-line-width line))) (dy (* down (way-line-width line))))
       (loop for piece in (way-line-pieces line)
@@ -104,8 +105,8 @@ they would overlap.")
 
 (define-constant +jump-dashes+ '(1 6)
   :test #'cl:equal
-  :documentation "The dots and gaps of jumps, in pixels.")
-(defconstant +jump-width+ 3/2 "The width of these dots, in pixels.")
+  :documentation "The lengths of the dots and gaps that show jumps, in pixels.")
+(defconstant +jump-width+ 3/2 "The width of the dots that show jumps, in pixels.")
 
 (defun draw-jump-dots (canvas jumps color)
   "Draw JUMPS, lists x y to-x to-y in pixels, as dots in COLOR."
@@ -114,7 +115,8 @@ they would overlap.")
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
 (defun jumps-of (pieces)
-  "Return the jumps between PIECES, lists x y ... in pixels, as lists x y to-x to-y."
+  "Return the jumps between the pieces of a way, as lists x y to-x to-y. PIECES are lists x y ... in
+pixels."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
@@ -138,7 +140,7 @@ they would overlap.")
                                  (hollow-head-p (way-line-position line))))))))
 
 (defun draw-way-lines (canvas lines)
-  "Draw the ways LINES and their jumps, so that none hides another."
+  "Draw the ways LINES and their jumps, so that no way hides another."
   (draw-halos canvas lines)
   (dolist (line lines)
     (draw-jump-dots canvas (jumps-of (way-line-pieces line)) (way-line-color line)))
@@ -149,15 +151,16 @@ they would overlap.")
   (draw-arrows canvas lines))
 
 (defun draw-way-sample (canvas points color position)
-  "Draw a sample of the way at POSITION of several, in COLOR, along POINTS, x y ... in pixels."
+  "Draw a sample of a way in COLOR along POINTS, x y ... in pixels. POSITION is its position in a
+list of several ways."
   (draw-way-lines canvas (list (make-way-line position (list points) :color color :lane 0))))
 
 ;;; Visible jumps and ways.
 
-(defconstant +tile+ 4 "The side of the boxes that cover a line, in pixels.")
+(defconstant +tile+ 4 "The side of the square tiles that cover a line, in pixels.")
 
 (defun points-along (x y to-x to-y step)
-  "Return points (x y) from X, Y to TO-X, TO-Y, about STEP pixels apart."
+  "Return points (x y) on the line from X, Y to TO-X, TO-Y, about STEP pixels apart."
   (loop with count = (max 1 (ceiling (max (abs (- to-x x)) (abs (- to-y y))) step))
         for share from 0 to 1 by (/ count)
         collect (list (+ x (* share (- to-x x))) (+ y (* share (- to-y y))))))
@@ -166,7 +169,8 @@ they would overlap.")
   (cons (floor x +tile+) (floor y +tile+)))
 
 (defun tiles-along (pieces)
-  "Return a hash table of the tiles that the lines PIECES cross or touch."
+  "Return a hash table whose keys are the tiles that the lines of PIECES, lists x y ... in pixels,
+cross or touch."
   (let ((tiles (make-hash-table :test #'equal)))
     (dolist (piece pieces tiles)
       (loop for (x y next-x next-y) on piece by #'cddr
@@ -176,8 +180,8 @@ they would overlap.")
                               do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))))))
 
 (defun jumps-seen-p (ways box)
-  "True if a jump of WAYS, lists of pieces, is visible within BOX: if a part of it is not covered by
-a way."
+  "True if a part of a jump in WAYS is visible: within BOX and not covered by a way. Each of WAYS is
+a list of pieces."
   (loop with jumps = (mapcan #'jumps-of ways)
         with tiles = (and jumps (tiles-along (apply #'append ways)))
         for (x y to-x to-y) in jumps
@@ -210,7 +214,8 @@ a way."
   (with-color color (draw-circle canvas x y radius t)))
 
 (defun draw-way-marks (canvas marks)
-  "Draw MARKS, lists (function x y color) for the ends of ways, around each other on one spot."
+  "Draw MARKS, lists (function x y color), at the ends of ways. Marks on the same spot are drawn
+around each other."
   (flet ((near-p (one other)
            (and (< (abs (- (second one) (second other))) +mark-radius+)
                 (< (abs (- (third one) (third other))) +mark-radius+))))
@@ -222,7 +227,7 @@ a way."
 ;;; Trails.
 
 (defun pieces-of-trail (points)
-  "Return the pieces, lists x y ... in pixels, of the trail POINTS, newest first."
+  "Return the pieces, lists x y ... in pixels, of a trail with POINTS, the newest point first."
   (let ((pieces '()) (before nil))
     (do-trail (points x y nil placements)
       do (unless (eql placements before) (push '() pieces))
@@ -245,16 +250,16 @@ a way."
 ;;; Planned ways.
 
 (defun robots-with-plans (snapshot)
-  "Return the images of those robots in SNAPSHOT that have a planned way."
+  "Return the images of the robots in SNAPSHOT that have a planned way."
   (remove-if-not (lambda (robot) (rest (robot-image-planned-way robot)))
                  (snapshot-robots snapshot)))
 
 (defun end-of-planned-way (robot)
-  "Return the end of the planned way of ROBOT, in pixels."
+  "Return the end of the planned way of ROBOT, a point (x y) in pixels."
   (pixels-of (first (last (robot-image-planned-way robot)))))
 
 (defun ends-of-planned-ways (robots)
-  "Return the boxes of the rings at the ends of the planned ways of ROBOTS."
+  "Return the boxes, in pixels, of the rings at the ends of the planned ways of ROBOTS."
   (loop for robot in robots
         collect (destructuring-bind (x y) (end-of-planned-way robot)
                   (box-around x y (+ 2 +mark-radius+)))))

@@ -12,8 +12,8 @@
 (defconstant +bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
 
 (defun view-edges (map layers)
-  "Return a list of the widths, in pixels, of the strips for LAYERS at the left, top and bottom of a
-view of MAP."
+  "Return a list of the widths, in pixels, of the strips for coordinates and scale bar at the left,
+top and bottom of a view of MAP. The width is 0 if LAYERS do not show the strip."
   (let ((numbers-p (member :coordinates layers)))
     (list (if numbers-p (+ 11 (words-width (princ-to-string (map-height map)))) 0)
           (if numbers-p +strip-height+ 0)
@@ -28,7 +28,7 @@ view of MAP."
     (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
 
 (defun draw-columns-strip (canvas map left top start end)
-  "Draw numbers of metres from the left of MAP, between the pixels START and END, in a strip that
+  "Draw the strip of x coordinates, in metres, for the pixels from START to END of MAP. The strip
 begins at LEFT, TOP."
   (draw-strip canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
@@ -39,8 +39,8 @@ begins at LEFT, TOP."
                  text))))
 
 (defun draw-rows-strip (canvas map left top width end)
-  "Draw numbers of metres from the top of MAP, between the pixels TOP and END, in a strip at LEFT
-that is WIDTH pixels wide."
+  "Draw the strip of y coordinates, in metres, for the pixels from TOP to END of MAP. The strip
+begins at LEFT and is WIDTH pixels wide."
   (draw-strip canvas left top width (- end top))
   (dolist (metres (marks-between (/ (max 0 top) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-height map)) 60))
@@ -49,9 +49,9 @@ that is WIDTH pixels wide."
       (draw-text canvas (- right 8 (words-width text)) (min (+ y 4) (- end 2)) text))))
 
 (defun draw-view-margins (canvas map layers left top width height)
-  "Draw those of :COORDINATES and :SCALE-BAR that LAYERS list at the edges of a view of MAP, WIDTH
-by HEIGHT pixels, that begins LEFT and TOP pixels from the corner of MAP. Call this within
-WITH-CANVAS, with the origin in that corner."
+  "Draw coordinates and scale bar, as far as LAYERS have :COORDINATES and :SCALE-BAR, at the edges
+of a view of MAP. The view is WIDTH by HEIGHT pixels large and begins LEFT and TOP pixels from the
+corner of MAP. Call this within WITH-CANVAS, with the origin in the corner of MAP."
   (destructuring-bind (left-edge top-edge bottom-edge) (view-edges map layers)
     (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
       (when (member :coordinates layers)
@@ -66,33 +66,35 @@ WITH-CANVAS, with the origin in that corner."
 ;;;; Opening windows
 
 (defvar *display-opener* nil
-  "A function of a robot that opens its display in a window, or NIL without ars-magna/clim.")
+  "A function of a robot that opens a window with its displays, or NIL if ars-magna/clim is not
+loaded.")
 
 (defvar *displays-waiter* nil
-  "A function that waits until all windows are closed, or NIL without ars-magna/clim.")
+  "A function that waits until all windows are closed, or NIL if ars-magna/clim is not loaded.")
 
 (addition open-display)
 (defun open-display (robot)
   "Show ROBOT and its world in a window that follows the run (manual B). Return ROBOT. A robot has
-one window: if it is open, it comes to the front, and shows the run of ROBOT, which can be a fork or
-a trial. Signals MISUSE if no window can be opened: see ars-magna/clim."
+one window. If this window is already open, it comes to the front and shows the run of ROBOT, which
+can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-magna/clim."
   (check-argument open-display robot (robot-p robot) "a robot")
   (unless *display-opener*
-    (reject-use "No display: it needs McCLIM, and the system ars-magna/clim to be loaded. The line ~
-                 WINDOW at the prompt does that. See also PICTURE and MAP."))
+    (reject-use "No display: windows need McCLIM and the system ars-magna/clim. The line ~
+                 WINDOW at the prompt loads both. See also PICTURE and MAP."))
   (funcall *display-opener* robot)
   robot)
 
 (defvar *told-reasons* '()
-  "The reasons, texts, that the user has been told why no display could be opened.")
+  "The messages already printed about displays that could not be opened, each printed only once.")
 
 (defun announce-display (robot options)
-  "Open the display of ROBOT, which SIMULATOR has started; if that fails, print a line, once, that
-says why and what to do. With the option :DISPLAY NIL of SIMULATOR, do nothing."
+  "Open the window of ROBOT, which SIMULATOR has started. If no window can be opened, print once a
+line with the reason and the remedy. Do nothing if OPTIONS, the options of SIMULATOR, have :DISPLAY
+NIL."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)
-        (let ((text (format nil "Note: the run goes on without a window. ~A"
+        (let ((text (format nil "Note: the run continues without a window. ~A"
                             (one-line (text-of-condition condition)))))
           (unless (member text *told-reasons* :test #'string=)
             (push text *told-reasons*)
