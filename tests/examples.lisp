@@ -9,8 +9,8 @@
 (defparameter *pages-run-elsewhere*
   (append *plan-pages*
           '("README.md" "worlds/how-to/extend/README.md" "src/experiment/README.md"
-            "src/ways/README.md" "src/floors/README.md" "worlds/tutorial/README.md"
-            "cli/README.md"))
+            "src/experiment/table/README.md" "src/ways/README.md" "src/floors/README.md"
+            "worlds/tutorial/README.md" "cli/README.md"))
   "The pages whose Lisp other suites run.")
 
 (defun all-readmes ()

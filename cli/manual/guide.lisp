@@ -44,6 +44,8 @@ HTML of its Markdown, its headings with anchors."
     ("rpl/language/README.md" "plan-text.html" "The text of plans" :guide)
     ("rpl/projecting/README.md" "projection-examples.html" "Looking ahead" :guide)
     ("src/experiment/README.md" "experiments.html" "Experiments" :guide)
+    ("src/experiment/trial/README.md" "trials.html" "Trials of an experiment" :guide)
+    ("src/experiment/table/README.md" "tables.html" "Tables of experiments" :guide)
     ("src/ways/README.md" "ways.html" "Ways through a map" :guide)
     ("src/floors/README.md" "floors.html" "Floors from elsewhere" :guide)
     ("worlds/how-to/extend/README.md" "extending.html" "How to extend the simulator" :guide)
