@@ -14,8 +14,8 @@
     (remove-duplicates (list* "success" "ticks" measures) :test #'string= :from-end t)))
 
 (defun compared-names (operator results measure)
-  "Return the names of the measures to compare in all of RESULTS: MEASURE, an argument of OPERATOR,
-or if that is NIL all that they have in common."
+  "Return the names of the measures that OPERATOR compares in RESULTS, a list of results: those in
+MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
   (let ((known (common-measures results)))
     (flet ((known-name (name)
              (unless (typep name '(or symbol string))
@@ -30,8 +30,8 @@ or if that is NIL all that they have in common."
 ;;; that factor, all else equal.
 
 (defun contrast-of-conditions (results first second place)
-  "Return an empty contrast of the samples FIRST and SECOND of RESULTS. Equal factors are its WHERE;
-the others make the names."
+  "Return a contrast, still without differences, of the samples FIRST and SECOND of RESULTS. Factors
+with equal values make the contrast's WHERE; the other factors make the names of the two sides."
   (loop for other in (if place (cons place (factors-else results place)) (naming-factors results))
         for factor = (nth other (results-factors results))
         for a = (text-at other first)
@@ -45,7 +45,8 @@ the others make the names."
                                        (level-names factors seconds)))))
 
 (defun pairs-by-levels (results pairs place)
-  "Return lists (level base pair...) of PAIRS that compare the same two levels of the factor PLACE."
+  "Group PAIRS by the two levels of the factor PLACE that they compare. Return lists (level base
+pair...)."
   (loop with factor = (nth place (results-factors results))
         for group in (grouped pairs (lambda (pair)
                                       (mapcar (lambda (sample) (text-at place sample)) pair)))
@@ -54,7 +55,8 @@ the others make the names."
                         group)))
 
 (defun overall-contrasts (results pairs place names)
-  "Return a contrast for each two levels that several PAIRS with common seeds compare."
+  "Return contrasts over several conditions: one for each two levels that several PAIRS with common
+seeds compare."
   (loop for (level base . group) in (pairs-by-levels
                                      results
                                      (remove-if-not (lambda (pair) (apply #'common-trials pair))
@@ -64,8 +66,8 @@ the others make the names."
           collect (overall-contrast level base group names results)))
 
 (defun sides-words (contrasts kind)
-  "Return a text on what CONTRASTS compare with what, if one side is the same in all; else NIL. KIND
-is the noun for a side that differs."
+  "Return a text that names the two sides of CONTRASTS if one side is the same in all of them; else
+NIL. KIND is the noun for the side that differs."
   (flet ((names (reader) (remove-duplicates (mapcar reader contrasts) :test #'string= :from-end t)))
     (let ((firsts (names #'contrast-first)) (seconds (names #'contrast-second)))
       (cond ((and (null (rest firsts)) (null (rest seconds)))
@@ -74,8 +76,8 @@ is the noun for a side that differs."
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
 (defun finish-comparison (comparison stream control &rest arguments)
-  "Correct the tests of COMPARISON, print it to STREAM, if any, and return it. Signals MISUSE with
-the text of CONTROL and ARGUMENTS if no contrast has trials."
+  "Correct the p values of COMPARISON, print COMPARISON to STREAM unless that is NIL, and return
+COMPARISON. Signals MISUSE with the text of CONTROL and ARGUMENTS if no contrast has trials."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
                (comparison-contrasts comparison))
     (reject-use "~?" control arguments))
@@ -87,7 +89,8 @@ the text of CONTROL and ARGUMENTS if no contrast has trials."
   comparison)
 
 (defun comparison-of-conditions (results pairs place names stream)
-  "Return the comparison of PAIRS, of RESULTS, in the measures NAMES; print it to STREAM, if any."
+  "Return the comparison, in the measures NAMES, of PAIRS of samples of RESULTS. Print the
+comparison to STREAM unless that is NIL."
   (let ((contrasts (loop for (first second) in pairs
                          for contrast = (contrast-of-conditions results first second place)
                          collect (compare-samples contrast results first results second names))))
@@ -108,17 +111,17 @@ the text of CONTROL and ARGUMENTS if no contrast has trials."
 (addition compare-conditions)
 (defun compare-conditions (results first second &key measure (stream *standard-output*))
   "Compare the conditions FIRST and SECOND of RESULTS (see RUN-EXPERIMENT, READ-RESULTS) seed by
-seed. Return a comparison, and write it to STREAM, if any, as PRINT-COMPARISON does.
+seed. Return a comparison. Unless STREAM is NIL, print the comparison as PRINT-COMPARISON does.
 
-Compared are success, the ticks of trials that succeed in both, and all measures that are numbers or
-true or false; with MEASURE, a name or list of names, only these. Only seeds that both have count. A
-trial that ended in an error or at its limit did not succeed.
+The comparison covers success, the ticks of trials that succeed under both conditions, and all
+measures that are numbers or booleans; or only MEASURE, a name or list of names. Only seeds that
+both conditions have count. A trial that ended in an error or at its limit did not succeed.
 
-A condition is a number from 1, its name, or an unambiguous part of its name, such as one value of a
-factor. :ALL as SECOND compares FIRST with each other condition. If FIRST and SECOND are values of
-one factor that several conditions have, each of these is compared with the one that is otherwise
-equal, and all together, as by COMPARE-LEVELS. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a
-word is ambiguous or nothing can be compared."
+Give a condition by its number, from 1, by its name, or by an unambiguous part of its name, such as
+one value of a factor. :ALL as SECOND compares FIRST with each other condition. If FIRST and SECOND
+are values of one factor that several conditions have, each condition with FIRST is compared with
+the otherwise equal condition with SECOND, and all together, as by COMPARE-LEVELS. Signals
+UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-stream 'compare-conditions stream)
@@ -128,11 +131,12 @@ word is ambiguous or nothing can be compared."
 
 (addition compare-levels)
 (defun compare-levels (results factor &key against measure (stream *standard-output*))
-  "Compare each value of FACTOR with the value AGAINST, all else equal. FACTOR is the name of what
-varies in RESULTS, or CASE for named conditions; AGAINST is the first in the table by default. If
-that makes several comparisons of the same two values, compare these over all, too: each seed counts
-once, by its mean over the conditions. MEASURE, STREAM, the value and the errors are those of
-COMPARE-CONDITIONS. p is corrected for all tests together, separately for those over all."
+  "Compare each value of FACTOR with the value AGAINST, with all other factors equal. FACTOR is the
+name of a factor of RESULTS, or CASE for named conditions. AGAINST is by default the first value in
+the table. If several pairs of conditions have the same two values, compare these values also over
+all pairs; each seed then counts once, by its mean over the conditions. MEASURE, STREAM, the
+returned value and the errors are those of COMPARE-CONDITIONS. p is corrected for all tests
+together; tests over all pairs are corrected separately."
   (check-argument compare-levels results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-stream 'compare-levels stream)
@@ -153,8 +157,9 @@ COMPARE-CONDITIONS. p is corrected for all tests together, separately for those 
 ;;; a sample of the newer table and one of the older.
 
 (defun changes-of-pair (pair after before)
-  "Return names of the parts that differ between the conditions of PAIR, by experiment.txt in the
-directories AFTER and BEFORE; :UNKNOWN if they are not there."
+  "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
+experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if the parts are not listed
+there."
   (let ((now (parts-described (sample-condition (first pair)) after))
         (then (parts-described (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
@@ -184,7 +189,7 @@ directories AFTER and BEFORE; :UNKNOWN if they are not there."
                          (list "the parameters, robots or values of conditions"))))))
 
 (defun unexplained-difference-lines (pairs)
-  "Return a list with a warning if trials of PAIRS, with equal fingerprints, have different rows."
+  "Return a list with a warning if trials of PAIRS have equal fingerprints but different rows."
   (let ((count (loop for (sample other) in pairs
                      sum (loop for (i . j) in (common-trials sample other)
                                count (not (same-row-p sample i other j))))))
@@ -194,8 +199,8 @@ directories AFTER and BEFORE; :UNKNOWN if they are not there."
                          file, or rows have been changed. Do not rely on either table." count)))))
 
 (defun changes-between (pairs after before)
-  "Return sentences on what affects the trials of PAIRS in one table but not in the other, by
-experiment.txt in the directories AFTER and BEFORE, which may be NIL."
+  "Return sentences on the code and data that affect the trials of PAIRS in only one of two tables,
+read from experiment.txt in the directories AFTER and BEFORE, which may be NIL."
   (let* ((changed (remove-if (lambda (pair)
                                (apply #'string= (mapcar #'sample-fingerprint pair)))
                              pairs))
@@ -218,7 +223,8 @@ experiment.txt in the directories AFTER and BEFORE, which may be NIL."
 ;;;; Comparing versions
 
 (defun results-and-name (operator name value)
-  "Return the results for VALUE, the argument NAME of OPERATOR, and their name."
+  "Return two values: the results that VALUE, the argument NAME of OPERATOR, designates, and the
+name of these results."
   (cond ((results-p value)
          (values value (if (results-directory value)
                            (native-name (results-directory value))
@@ -228,7 +234,7 @@ experiment.txt in the directories AFTER and BEFORE, which may be NIL."
         (t (reject-argument operator name value "the name of a directory, or results"))))
 
 (defun short-names (first second)
-  "Return the last parts of the names FIRST and SECOND if these tell them apart, else the names."
+  "FIRST and SECOND are paths. Return their last components if these differ, else the whole paths."
   (flet ((last-part (name)
            (let ((name (string-right-trim "/" name)))
              (subseq name (1+ (or (position #\/ name :from-end t) -1))))))
@@ -237,8 +243,8 @@ experiment.txt in the directories AFTER and BEFORE, which may be NIL."
         (values (last-part first) (last-part second)))))
 
 (defun condition-pairs (first second)
-  "Return lists of two samples of equal conditions, of the results FIRST and SECOND; and the names
-of conditions that only one of them has."
+  "Return two values: pairs of samples with equal conditions, from the results FIRST and SECOND; and
+the names of conditions that only FIRST or only SECOND has."
   (flet ((counterpart (sample results)
            (find (sample-condition sample) (results-samples results)
                  :key #'sample-condition :test #'string=)))
@@ -287,14 +293,13 @@ of conditions that only one of them has."
 (defun compare-results (before after &key measure (stream *standard-output*))
   "Compare two tables that two versions of the code have made of one experiment. BEFORE and AFTER
 are directories or results. Trials of equal condition and seed are compared, per condition and over
-all conditions, where each seed counts once. Differences are AFTER less BEFORE.
+all conditions, where each seed counts once. Differences are AFTER minus BEFORE.
 
-The comparison tells:
-  which conditions got better or worse;
-  how many trials are identical: rows with equal digest, outcome and measures;
-  what has changed, by the texts beside the tables, with a warning if it is the experiment itself.
-MEASURE, STREAM, the value and the errors are those of COMPARE-CONDITIONS. Signals DAMAGED-TABLE and
-MISUSE, too, as READ-RESULTS does, and if the tables are of different experiments."
+The comparison tells: which conditions got better or worse; how many trials are identical: rows with
+  equal digest, outcome and measures; what has changed, by the texts beside the tables, with a
+  warning if it is the experiment itself. MEASURE, STREAM, the returned value and the errors are
+  those of COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE, too, as READ-RESULTS does, and
+  MISUSE if the tables are of different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)

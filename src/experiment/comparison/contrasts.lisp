@@ -5,15 +5,16 @@
 (addition contrast-p)
 
 (define-record (contrast (:constructor make-contrast (where first second)))
-  "The comparison of two conditions or versions."
-  (where nil (or null string) "what both have in common, a string, or NIL" :addition)
-  (first "" string "the name of the first, a string" :addition)
-  (second "" string "the name of the second, a string" :addition)
+  "The comparison of two sides, which are conditions or versions."
+  (where nil (or null string) "what both sides have in common, a string, or NIL" :addition)
+  (first "" string "the name of the first side, a string" :addition)
+  (second "" string "the name of the second side, a string" :addition)
   (trials 0 integer "how many pairs of trials with equal seeds there are" :writable :addition)
-  (unpaired-first 0 integer "how many trials of the first have no counterpart" :writable)
-  (unpaired-second 0 integer "how many trials of the second have no counterpart" :writable)
-  (errors-first 0 integer "how many paired trials of the first ended with an error" :writable)
-  (errors-second 0 integer "how many paired trials of the second ended with an error" :writable)
+  (unpaired-first 0 integer "how many trials of the first side have no counterpart" :writable)
+  (unpaired-second 0 integer "how many trials of the second side have no counterpart" :writable)
+  (errors-first 0 integer "how many paired trials of the first side ended with an error" :writable)
+  (errors-second 0 integer "how many paired trials of the second side ended with an error"
+  :writable)
   (same 0 integer "the number of pairs in which both trials are the same run to the last bit, with
 equal rows" :writable :addition)
   (differences '() list "a list of the differences in success, ticks and measures; none if all pairs
@@ -22,8 +23,8 @@ are the same runs" :writable :addition))
 (addition comparison-p)
 (define-record (comparison (:constructor make-comparison
                                (experiment sides kind contrasts &key overall changes notes)))
-  "A comparison of conditions of an experiment, or of two versions of it, as COMPARE-CONDITIONS,
-COMPARE-LEVELS and COMPARE-RESULTS return it."
+  "A comparison of conditions of an experiment, or of two versions of an experiment.
+COMPARE-CONDITIONS, COMPARE-LEVELS and COMPARE-RESULTS return comparisons."
   (experiment "" string)
   (sides nil (or null string) "a text on what is compared with what, or NIL")
   (kind :conditions keyword ":CONDITIONS or :VERSIONS")
@@ -57,7 +58,8 @@ other, by the texts beside the tables; NIL of conditions" :addition)
     (nreverse pairs)))
 
 (defun pairs-for (name first second &optional (pairs (common-trials first second)))
-  "Return the PAIRS of trials of FIRST and SECOND in which NAME can be compared."
+  "Return those PAIRS of trials of the samples FIRST and SECOND in which the measure NAME can be
+compared."
   (if (string-equal name "ticks")
       (remove-if-not (lambda (pair)
                        (and (success-p (aref (sample-outcomes first) (car pair)))
@@ -71,7 +73,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
       (sample-measure results sample name)))
 
 (defun filter-both (test firsts seconds)
-  "Return lists of the elements of the lists FIRSTS and SECONDS at places where both pass TEST."
+  "Return two lists: the elements of FIRSTS and of SECONDS at the positions where both pass TEST."
   (loop for a in firsts
         for b in seconds
         when (and (funcall test a) (funcall test b))
@@ -82,7 +84,8 @@ other, by the texts beside the tables; NIL of conditions" :addition)
 ;;; Texts are not compared.
 
 (defun difference-of-values (name firsts seconds)
-  "Return the difference in NAME between FIRSTS and SECONDS, lists of values; NIL of texts."
+  "Return the difference in the measure NAME between FIRSTS and SECONDS, lists of values. Return NIL
+for texts."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
@@ -91,7 +94,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
           (t nil))))
 
 (defun set-left-out (difference pairs)
-  "Set the number of PAIRS, an integer, that DIFFERENCE, or NIL, leaves out. Return DIFFERENCE."
+  "Set how many of PAIRS, an integer, DIFFERENCE leaves out. Return DIFFERENCE, which may be NIL."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
   difference)
@@ -115,7 +118,8 @@ other, by the texts beside the tables; NIL of conditions" :addition)
 ;;; Contrasts.
 
 (defun same-row-p (first i second j)
-  "True if the trials at I of FIRST and at J of SECOND have equal rows, except for fingerprints."
+  "True if the trial at index I of the sample FIRST and the trial at index J of SECOND have equal
+rows, except for fingerprints."
   (flet ((same (reader)
            (equal (aref (funcall reader first) i) (aref (funcall reader second) j))))
     (and (same #'sample-digests) (same #'sample-outcomes) (same #'sample-reasons)
@@ -133,8 +137,8 @@ other, by the texts beside the tables; NIL of conditions" :addition)
        (= (contrast-same contrast) (contrast-trials contrast))))
 
 (defun compare-samples (contrast results first other-results second names)
-  "Set CONTRAST to the comparison of the samples FIRST, of RESULTS, and SECOND, of OTHER-RESULTS, in
-the measures NAMES. Return CONTRAST."
+  "Compare the samples FIRST of RESULTS and SECOND of OTHER-RESULTS in the measures NAMES, and store
+the comparison in CONTRAST. Return CONTRAST."
   (let* ((pairs (common-trials first second)) (count (length pairs)))
     (setf (contrast-trials contrast) count
           (contrast-unpaired-first contrast) (- (length (sample-trials first)) count)
@@ -169,7 +173,7 @@ the measures NAMES. Return CONTRAST."
 ;;; have them under all conditions. PAIRS are lists of two samples.
 
 (defun complete-seeds (pairs)
-  "Return a table of the seeds that both samples of all PAIRS have."
+  "Return a hash table whose keys are the seeds that both samples of each of PAIRS have."
   (let ((counts (make-hash-table)))
     (loop for (first second) in pairs
           do (loop for (i . nil) in (common-trials first second)
@@ -179,8 +183,8 @@ the measures NAMES. Return CONTRAST."
     counts))
 
 (defun values-by-seed (name results other-results pairs seeds)
-  "Return lists (seed a b) of the values of the measure NAME in trials of SEEDS. PAIRS are of
-samples of RESULTS and OTHER-RESULTS."
+  "Return lists (seed a b) of the values of the measure NAME in trials of SEEDS. Each of PAIRS is a
+sample of RESULTS and a sample of OTHER-RESULTS."
   (loop for (first second) in pairs
         for column = (column-of results first name)
         for other = (column-of other-results second name)
@@ -192,8 +196,8 @@ samples of RESULTS and OTHER-RESULTS."
                        collect (list seed a b))))
 
 (defun means-by-seed (values)
-  "Return a list of the means of A, and one of those of B, for each seed in VALUES, lists (seed a b)
-of numbers."
+  "VALUES are lists (seed a b) of numbers. Return two lists: for each seed the mean of A, and for
+each seed the mean of B."
   (let ((sums (make-hash-table)) (seeds '()))
     (loop for (seed a b) in values
           for entry = (or (gethash seed sums)
@@ -208,7 +212,8 @@ of numbers."
           finally (return (values firsts seconds)))))
 
 (defun overall-difference (name values)
-  "Return the difference in NAME by VALUES, lists (seed a b); NIL of texts."
+  "Return the difference in the measure NAME, computed from VALUES, lists (seed a b). Return NIL for
+texts."
   (flet ((all (test) (loop for (nil a b) in values always (and (funcall test a) (funcall test b))))
          (difference (kind values)
            (multiple-value-bind (firsts seconds) (means-by-seed values)

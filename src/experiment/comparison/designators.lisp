@@ -8,36 +8,39 @@
 (defun text-at (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
-  "Return the levels of the factor PLACE in RESULTS, texts, in order."
+  "Return the levels in RESULTS of the factor with index PLACE: a list of texts, in the table's
+order."
   (remove-duplicates (mapcar (lambda (sample) (text-at place sample)) (results-samples results))
                      :test #'string= :from-end t))
 
 (defun case-decides-p (place samples)
-  "True if the first factor, named cases, determines the factor PLACE in SAMPLES."
+  "True if the first factor of SAMPLES, the named cases, determines the factor with index PLACE."
   (loop for sample in samples
         always (loop for other in samples
                      always (or (string/= (text-at 0 sample) (text-at 0 other))
                                 (string= (text-at place sample) (text-at place other))))))
 
 (defun naming-factors (results)
-  "Return the places of factors in names of conditions of RESULTS: those that no case determines."
+  "Return the indices of the factors that names of conditions of RESULTS mention: the factors that
+no named case determines."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
         unless (and case-p (plusp place) (case-decides-p place (results-samples results)))
           collect place))
 
 (defun free-factors (results)
-  "Return the places of those NAMING-FACTORS of RESULTS that have several levels."
+  "Return the indices of those NAMING-FACTORS of RESULTS that have several levels."
   (remove-if-not (lambda (place) (rest (levels results place))) (naming-factors results)))
 
 (defun factor-place (results factor)
-  "Return the place of the factor of RESULTS with the name FACTOR. Signals UNKNOWN-NAME."
+  "Return the index of the factor of RESULTS that is named FACTOR. Signals UNKNOWN-NAME."
   (or (and (typep factor '(or symbol string))
            (position (string factor) (results-factors results) :test #'string-equal))
       (reject-name "column of what varies" (princ-to-string factor) (results-factors results))))
 
 (defun level-called (levels value)
-  "Return the one of LEVELS that is VALUE, or the first if VALUE is NIL. Signals UNKNOWN-NAME."
+  "Return the level in LEVELS that is VALUE, or the first level if VALUE is NIL. Signals
+UNKNOWN-NAME."
   (if (null value)
       (first levels)
       (let ((text (if (stringp value) value (value-text value))))
@@ -49,7 +52,7 @@
 (defun full-level-name (factor text) (format nil "~A=~A" factor text))
 
 (defun level-name (factor text)
-  "Return the name of the level TEXT of FACTOR: the text itself if it is a word."
+  "Return the name of the level TEXT of FACTOR: TEXT itself if it is a word, else FACTOR=TEXT."
   (if (or (number-in text) (member text '("TRUE" "FALSE" "") :test #'string=))
       (full-level-name factor text)
       text))
@@ -60,7 +63,8 @@
 ;;; Pairs.
 
 (defun factors-else (results place)
-  "Return the places of the factors that are equal in conditions that differ in the factor PLACE."
+  "Return the indices of the factors that must be equal in conditions that are compared in the
+factor with index PLACE."
   (let ((naming (naming-factors results)))
     (remove place (if (member place naming)
                       naming
@@ -68,8 +72,8 @@
                             collect other)))))
 
 (defun pairs-differing-at (results place level base)
-  "Return lists of two samples of RESULTS that differ only in the factor PLACE. The second has the
-level BASE, the first LEVEL, or any other if that is NIL."
+  "Return pairs of samples of RESULTS that differ only in the factor with index PLACE. The second
+sample of a pair has the level BASE; the first has LEVEL, or any other level if LEVEL is NIL."
   (let ((else (factors-else results place)))
     (flet ((counterpart (sample)
              (find-if (lambda (other)
@@ -100,7 +104,8 @@ level BASE, the first LEVEL, or any other if that is NIL."
   (full-level-name (nth (first level) (results-factors results)) (second level)))
 
 (defun numbered-sample (results designator)
-  "Return DESIGNATOR if it is a sample of RESULTS; or the sample with that number, from 1; or NIL."
+  "Return DESIGNATOR if it is a sample of RESULTS; the sample with that number, from 1, if
+DESIGNATOR is an integer; else NIL."
   (let ((samples (results-samples results)))
     (cond ((integerp designator)
            (and (<= 1 designator (length samples)) (nth (1- designator) samples)))
@@ -122,8 +127,8 @@ sample."
        (lambda (level) (search word (level-title results level) :test #'char-equal))))))
 
 (defun samples-called (results word)
-  "Return the samples of RESULTS whose condition has the name WORD; else that have the level WORD;
-else whose name contains WORD."
+  "Return the samples of RESULTS whose condition is named WORD. If there are none, return the
+samples that have the level WORD, or else the samples whose name contains WORD."
   (let ((samples (results-samples results)))
     (or (remove word samples :key #'sample-condition :test-not #'string-equal)
         (exact-or-partial samples
@@ -134,8 +139,8 @@ else whose name contains WORD."
                             (search word (sample-condition sample) :test #'char-equal))))))
 
 (defun designated-samples (results designator)
-  "Return the samples of RESULTS that DESIGNATOR can mean: a sample, the number of a condition, from
-1, its name, or a part of that. Signals UNKNOWN-NAME if there is none."
+  "Return the samples of RESULTS that DESIGNATOR can mean. DESIGNATOR is a sample, or a condition's
+number, from 1, or its name, or a part of the name. Signals UNKNOWN-NAME if no sample fits."
   (let ((samples (results-samples results)) (one (numbered-sample results designator))
         (word (designator-text designator)))
     (cond (one (list one))
@@ -153,7 +158,8 @@ else whose name contains WORD."
                   meanings)))
 
 (defun designated-sample (results designator)
-  "Return the one sample that DESIGNATOR means. Signals MISUSE if it could be several."
+  "Return the sample that DESIGNATOR means. Signals MISUSE if DESIGNATOR could mean several
+samples."
   (let ((samples (designated-samples results designator)))
     (when (rest samples)
       (reject-ambiguous (designator-text designator) (mapcar #'sample-condition samples)))
@@ -162,8 +168,8 @@ else whose name contains WORD."
 ;;; Pairs.
 
 (defun candidate-level-pairs (results first second)
-  "Return lists (place level base): the factors of which FIRST and SECOND can be levels. BASE is NIL
-if SECOND is :ALL."
+  "Return lists (place level base), one for each factor of which FIRST and SECOND can be levels.
+BASE is NIL if SECOND is :ALL."
   (loop for (place level) in (designated-levels results first)
         append (if (eq :all second)
                    (list (list place level nil))
@@ -177,14 +183,16 @@ if SECOND is :ALL."
             (and base (level-title results (list place base))))))
 
 (defun level-pair-samples (results level-pair)
-  "Return pairs of samples with the two levels of LEVEL-PAIR, all else equal."
+  "Return pairs of samples that have the two levels of LEVEL-PAIR and are equal in all other
+factors."
   (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
           append (pairs-differing-at results place level other))))
 
 (defun pairs-of-levels (results first second)
-  "Return pairs of samples, all else equal, that have the levels FIRST and SECOND of one factor, and
-the place of that; NIL if they are no levels. Signals MISUSE if several factors have them."
+  "Return two values: pairs of samples that have the levels FIRST and SECOND of one factor and are
+equal in all other factors, and the index of the factor. Return NIL if FIRST and SECOND are no
+levels. Signals MISUSE if several factors have these levels."
   (let ((level-pairs (candidate-level-pairs results first second)))
     (when (rest level-pairs)
       (reject-ambiguous (if (eq :all second)
@@ -218,25 +226,27 @@ values of one factor; else NIL."
               return (list place level base)))))
 
 (defun same-samples-p (results first second level-pair)
-  "True if LEVEL-PAIR compares just the conditions number FIRST and SECOND."
+  "True if LEVEL-PAIR compares exactly the conditions with the numbers FIRST and SECOND."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
          (level-pair-samples results level-pair)))
 
 (defun resolve-numbers (results first second)
-  "Return FIRST and SECOND; as texts if they are levels of one factor and not numbers of conditions.
-Signals MISUSE if they are both."
+  "Return FIRST and SECOND. Return them as texts if they are levels of one factor and not numbers of
+conditions. Signals MISUSE if they could be levels as well as numbers of conditions."
   (let ((level-pair (level-pair-of-integers results first second)))
     (cond ((or (null level-pair) (same-samples-p results first second level-pair))
            (values first second))
           ((and (numbered-sample results first) (numbered-sample results second))
            (reject-ambiguous (format nil "~D against ~D" first second)
-                             (list (format nil "the conditions number ~D and ~D" first second)
+                             (list (format nil "the conditions with the numbers ~D and ~D" first
+                             second)
                                    (level-pair-title results level-pair))))
           (t (values (designator-text first) (designator-text second))))))
 
 (defun designated-pairs (results first second)
-  "Return the pairs of samples of RESULTS for the designators FIRST and SECOND, which may be :ALL;
-and the place of the factor, if they are levels that several conditions have."
+  "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND, which
+may be :ALL; and the index of the factor, if the designators are levels that several conditions
+have."
   (multiple-value-bind (first second) (resolve-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))

@@ -16,14 +16,19 @@
            "what is compared: success, ticks or the name of a measure, a string" :addition)
   (kind :mean (member :rate :mean) "the kind of the numbers, :RATE or :MEAN")
   (trials 0 integer "how many pairs of trials are counted" :addition)
-  (first nil t "the rate, from 0 to 1, or mean of the first; NIL of no trials" :addition)
-  (second nil t "the rate, from 0 to 1, or mean of the second; NIL of no trials" :addition)
+  (first nil t "the rate, from 0 to 1, or mean of the first side; NIL if there are no trials"
+  :addition)
+  (second nil t "the rate, from 0 to 1, or mean of the second side; NIL if there are no trials"
+  :addition)
   (low nil t
-       "the lower end of the 95 % interval of the difference; NIL of too few trials" :addition)
+       "the lower end of the 95 % interval of the difference; NIL if there are too few trials"
+:addition)
   (high nil t
-        "the upper end of the 95 % interval of the difference; NIL of too few trials" :addition)
+        "the upper end of the 95 % interval of the difference; NIL if there are too few trials"
+:addition)
   (p nil t
-     "the probability of as large a difference, or larger, if there is none; or NIL" :addition)
+     "the probability of at least so large a difference if the two sides do not differ; or NIL"
+:addition)
   (table '() list "the numbers of pairs in which both, only the first, only the second, and neither
 are true, a list of four; NIL of a mean, or over several conditions" :addition)
   (rounding nil (or null real) "the largest difference in any pair, if rounding explains all; 0 if
@@ -34,13 +39,13 @@ all pairs are equal; or NIL")
 
 (addition paired-estimate)
 (defun paired-estimate (difference)
-  "Return the first rate or mean of DIFFERENCE less the second, or NIL."
+  "Return the first rate or mean of DIFFERENCE minus the second, or NIL if there are no trials."
   (and (paired-first difference)
        (number-less (paired-first difference) (paired-second difference))))
 
 (setf (documentation 'paired-adjusted-p 'function)
       "Return PAIRED-P corrected for all tests of the comparison (Holm), or NIL. Tests over several
-conditions are corrected separately from those of single ones.")
+conditions are corrected separately from tests of single conditions.")
 
 (defmethod print-object ((difference paired-difference) stream)
   (print-unreadable-object (difference stream)
@@ -50,8 +55,8 @@ conditions are corrected separately from those of single ones.")
 ;;; Rates.
 
 (defun pair-table (firsts seconds)
-  "Return how often both, only the first, only the second and neither of FIRSTS and SECONDS, lists
-of booleans, are true."
+  "FIRSTS and SECONDS are lists of booleans. Return a list of four counts: the pairs in which both,
+only the first, only the second, and neither are true."
   (let ((both 0) (first 0) (second 0) (neither 0))
     (loop for a in firsts
           for b in seconds
@@ -75,7 +80,7 @@ of booleans, are true."
 ;; The same floats added in another order differ in the last digits. Such a difference is reported
 ;; as rounding and not tested. Whole numbers have no rounding.
 (defconstant +grain+ (* 4 double-float-epsilon)
-  "The largest relative difference of two floats that may be rounding.")
+  "The largest relative difference of two floats that rounding can explain.")
 
 (defun equal-but-for-rounding-p (a b)
   (or (= a b)
@@ -84,19 +89,19 @@ of booleans, are true."
                (* (rational +grain+) (max (abs (rational a)) (abs (rational b))))))))
 
 (defun rounding-of (firsts seconds)
-  "Return the largest difference between FIRSTS and SECONDS if all may be rounding; else NIL."
+  "Return the largest difference between FIRSTS and SECONDS if rounding can explain all; else NIL."
   (cond ((every #'= firsts seconds) 0)
         ((every #'equal-but-for-rounding-p firsts seconds)
          (reduce #'max (mapcar (lambda (a b) (abs (number-less a b))) firsts seconds)))))
 
 (defun exact-mean (numbers)
-  "Return the mean of NUMBERS: a float if one of them is, else a rational."
+  "Return the mean of NUMBERS: a float if one of NUMBERS is a float, else a rational."
   (let ((mean (/ (reduce #'+ numbers :key #'rational) (length numbers))))
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
 (defun p-of-mean (numbers)
-  "Return the p value of the mean of NUMBERS, differences. Many numbers have fewer draws; the
-smallest possible p does not depend on the draws."
+  "Return the p value of the mean of NUMBERS, which are differences. The test makes fewer draws for
+many numbers; the smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
     (values (permutation-test numbers :resamples draws :rare-too t))))
 
@@ -132,7 +137,8 @@ smallest possible p does not depend on the draws."
           do (setf (paired-adjusted-p difference) adjusted))))
 
 (defun smallest-p (seeds)
-  "Return the smallest p of a test over SEEDS seeds: all differences on one side."
+  "Return the smallest possible p of a test over SEEDS seeds, for differences that all have the same
+sign."
   (expt 2 (- 1 (max 1 seeds))))
 
 (defun significant-p (difference)

@@ -7,11 +7,12 @@
 ;;; difference.
 
 (defun last-decimal (size)
-  "Return the number of the decimal that is the second digit of SIZE."
+  "Return the position after the decimal point of the second significant digit of SIZE."
   (- 1 (power-of-ten (rational size))))
 
 (defun last-useful-decimal (difference)
-  "Return the number of the decimal to which the numbers of DIFFERENCE, of means, are rounded."
+  "Return the number of decimals to which the numbers of DIFFERENCE, a difference of means, are
+rounded."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (number-less high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
@@ -40,7 +41,7 @@
           (t (scientific-text number decimals)))))
 
 (defun number-writer (difference)
-  "Return a function that writes the numbers of DIFFERENCE, without units."
+  "Return a function that takes a number of DIFFERENCE and returns its text, without a unit."
   (cond ((eq :rate (paired-kind difference))
          (lambda (value) (percent-text value (paired-trials difference))))
         ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
@@ -56,7 +57,8 @@
   (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
 
 (defun p-text (p)
-  "Return the text of the probability P to follow the letter p: = .032, < .001."
+  "Return the text of the probability P that follows the letter p in a sentence, such as = .032 or <
+.001."
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
@@ -66,7 +68,7 @@
   (string-left-trim "= " (p-text p)))
 
 (defun amount-words (difference value)
-  "Return the text of VALUE, a number of DIFFERENCE; of a rate with the unit points."
+  "Return the text of VALUE, a number of DIFFERENCE. Rates have the unit points."
   (let ((text (funcall (number-writer difference) value)))
     (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
             (member text '("1" "-1") :test #'string=))))
@@ -78,7 +80,8 @@
             (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
 (defun p-words (difference)
-  "Return a text on p of DIFFERENCE: corrected for the number of tests, and alone."
+  "Return a text with p of DIFFERENCE, corrected for the number of tests, and with the uncorrected
+p."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
@@ -123,12 +126,13 @@
                      measure more first second)))))
 
 (defun seeds-needed (tests)
-  "Return the number of seeds over which the smallest p, corrected for TESTS tests, is at most .05."
+  "Return the least number of seeds for which p, corrected for TESTS tests, can be at most .05."
   (loop for seeds from 1
         when (<= (* tests (smallest-p seeds)) 1/20) return seeds))
 
 (defun few-seeds-words (difference)
-  "Return a text if there are too few seeds for a significant p of DIFFERENCE; else NIL."
+  "Return a text with the number of seeds needed if there are too few for a significant p of
+DIFFERENCE; else NIL."
   (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
@@ -136,15 +140,16 @@
               seeds (probability-text (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
 
 (defun not-significant-words (difference)
-  "Return why DIFFERENCE is not significant although its interval leaves out 0."
+  "Return a text on why DIFFERENCE is not significant although its interval leaves out 0."
   (let ((tests (paired-tests difference)))
     (if (< 1 tests)
-        (format nil "the interval is of this difference alone: where ~D are tested, one that ~
-                     leaves out 0 is no proof" tests)
+        (format nil "the interval is for this difference alone: if ~D differences are tested, an ~
+                     interval that leaves out 0 proves nothing" tests)
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
 (defun no-difference-words (difference)
-  "Return how large DIFFERENCE can be, or why it is not significant in spite of its interval."
+  "Return a text on how large DIFFERENCE can be, or on why it is not significant in spite of its
+interval."
   (let ((low (paired-low difference)) (high (paired-high difference)))
     (if (<= low 0 high)
         (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
@@ -176,8 +181,8 @@
                              (figures-words difference) (no-difference-words difference)))))))
 
 (defun success-verdict (contrast)
-  "Return :BETTER or :WORSE if the first of CONTRAST succeeds significantly more or less often,
-:SAME if both are the same runs, else NIL."
+  "Return :BETTER or :WORSE if the first side of CONTRAST succeeds significantly more or less often,
+:SAME if both sides are the same runs, else NIL."
   (let ((difference (difference-called "success" contrast)))
     (cond ((same-runs-p contrast) :same)
           ((null difference) nil)
@@ -208,15 +213,15 @@
 
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
-  "Return the result of COMPARISON as a list of sentences. For two versions they begin with how many
-conditions got better or worse, and how many trials are identical. Then follow, over all if there
-are several conditions, and for each pair of conditions: which succeeds more often, takes more ticks
-and so on, with p, both rates or means, and the difference with its 95 % interval.
-
-A difference is reported if p, corrected for all tests of COMPARISON (Holm), is at most .05.
-Otherwise the sentence says how large it can be, with the confidence of the interval. If the
-interval leaves out 0, it says why p decides, and how many seeds so many tests need. Tests over all
-are corrected separately. Each interval is for one difference alone."
+  "Return the result of COMPARISON as a list of sentences. For two versions, the first sentence says
+how many conditions got better or worse, and how many trials are identical. The next sentences, over
+all conditions if there are several and for each pair of conditions, say which side succeeds more
+often, takes more ticks and so on, with p, both rates or means, and the difference with its 95 %
+interval. A difference is reported if p, corrected for all tests of COMPARISON (Holm), is at most
+.05. Otherwise the sentence says how large the difference can be, with the confidence of the
+interval. If the interval leaves out 0, the sentence says why p decides, and how many seeds that
+many tests need. Tests over all conditions are corrected separately. Each interval is for one
+difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))
@@ -229,7 +234,8 @@ are corrected separately. Each interval is for one difference alone."
 ;;; What was left out.
 
 (defun counts-words (contrast first second)
-  "Return a text on FIRST and SECOND, counts of trials of the two of CONTRAST; NIL if both are 0."
+  "Return a text with FIRST and SECOND, counts of trials of the two sides of CONTRAST; NIL if both
+are 0."
   (let ((words (loop for count in (list first second)
                      for name in (list (contrast-first contrast) (contrast-second contrast))
                      when (plusp count) collect (format nil "~D of ~A" count name))))
