@@ -8,9 +8,9 @@
 (defconstant +most-series+ 6 "The most series in a picture.")
 
 (defstruct (panel (:constructor make-panel (where title series)) (:copier nil))
-  "The conditions of a picture. WHERE says what these have in common, or is NIL; SERIES are lists
-(name sample...), with NIL as the name of a single one. TITLE is the factor of which their names are
-values, if it is only one."
+  "The conditions that one picture shows. WHERE is a text on what the conditions have in common, or
+NIL. SERIES are lists (name sample...); a single series has the name NIL. TITLE is the factor whose
+values are the names of series, if there is only one such factor."
   (where nil :type (or null string) :read-only t)
   (title nil :type (or null string) :read-only t)
   (series '() :type list :read-only t))
@@ -30,7 +30,8 @@ values, if it is only one."
 ;;; Series and panels.
 
 (defun common-name (sample places factors)
-  "Return the name of SAMPLE by the factors at PLACES, or NIL if there are none."
+  "Return the name of SAMPLE made from the factors with the indices PLACES, or NIL if there are
+none."
   (and places
        (level-names (loop for place in places collect (nth place factors))
                     (loop for place in places collect (text-at place sample)))))
@@ -39,7 +40,8 @@ values, if it is only one."
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
-  "Return the name of the series of SAMPLE: below a title only the value."
+  "Return the name of the series that SAMPLE belongs to. If the series have a title, the name is
+only the factor's value."
   (let ((text (and (series-title places factors) (text-at (first places) sample))))
     (if (and text (string/= "" text))
         text
@@ -63,8 +65,8 @@ values, if it is only one."
                             title chunk)))
 
 (defun panels (samples places factors &optional where)
-  "Return panels for SAMPLES, as few as can hold all series. The factors at PLACES of FACTORS make
-the series."
+  "Return panels for SAMPLES, as few as can hold all series. The factors with the indices PLACES in
+FACTORS make the series."
   (let ((series (group-series samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (chunk-panels series where title))
@@ -98,7 +100,8 @@ the series."
         (format nil " ~D trial~:P broke off with an error, and did not succeed." count))))
 
 (defun intervals-words (kind summaries)
-  "Return a sentence on the intervals of SUMMARIES, of a KIND of estimates, and the ERRORS-WORDS."
+  "Return a sentence on the intervals of the estimates of KIND in SUMMARIES, followed by the
+ERRORS-WORDS."
   (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
                ~A.~A"
           (statistic-option kind :interval)
@@ -198,7 +201,8 @@ the series."
 ;;; censored earlier.
 
 (defun tick-limit (results)
-  "Return the limit of ticks of the experiment of RESULTS; the most ticks of a trial if unknown."
+  "Return the limit of ticks of the experiment of RESULTS. If the experiment is unknown, return the
+most ticks of any trial."
   (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
         (experiment-limit experiment)
@@ -255,8 +259,9 @@ the series."
 ;;; Differences.
 
 (defun pairs-by (results place)
-  "Return lists of two samples of RESULTS that differ in the factor PLACE, all else equal, the
-second with the first level; and true. If there are none, pair all with the first sample."
+  "Return pairs of samples of RESULTS that differ only in the factor with index PLACE, and true. The
+second sample of a pair has the factor's first level. If there are no such pairs, return pairs of
+each other sample with the first one, and NIL."
   (let ((pairs (pairs-differing-at results place nil (first (levels results place)))))
     (if pairs
         (values pairs t)

@@ -45,11 +45,11 @@ WHICH is a list of some of these:
   :TICKS        the ticks of trials that succeed: medians, with 95 % intervals
   :MEASURES     measures: rates, or means and all numbers
   :SURVIVAL     the share of trials not yet done after so many ticks
-  :DIFFERENCES  in success and ticks, between the values of a factor, seed by seed
-The first factor whose values are numbers is the x axis. The others make series, and if these are
-more than six, several pictures. What has no data is left out. The title is what the experiment
-asks, if it is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing or the
-directory cannot be made."
+  :DIFFERENCES in success and ticks, between the values of a factor, seed by seed The first factor
+whose values are numbers is the x axis. The others make series, and if these are more than six,
+several pictures. Pictures without data are left out. The title is the experiment's question, if the
+experiment is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing or the directory
+cannot be made."
   (check-argument save-result-pictures results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-argument save-result-pictures directory (typep directory '(or string pathname))
@@ -69,7 +69,7 @@ directory cannot be made."
 ;;;; The paths of robots in trials
 
 (defun ways-of-trial (experiment condition trial)
-  "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the paths of its robots."
+  "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the paths of the trial's robots."
   (let ((trails '()) (watched-p nil))
     (flet ((look (simulation)
              (setf trails (note-places simulation trails))))
@@ -94,7 +94,7 @@ directory cannot be made."
                   (or (whole-p trials 1 10000)
                       (and (consp trials) (proper-list-p trials)
                            (every (lambda (trial) (whole-p trial 1)) trials)))
-                  "how many trials, from 1 to 10000, or a list of their numbers, from 1")
+                  "a number of trials, from 1 to 10000, or a list of trial numbers, from 1")
   (if (consp trials)
       trials
       (loop for trial from 1 to trials collect trial)))
@@ -111,12 +111,14 @@ directory cannot be made."
 (addition save-ways-picture)
 (define-with-keywords save-ways-picture
     (experiment condition file &rest options &key (trials 50) part title layers in-color scale)
-  "Save in FILE, replacing it, a map of the world of CONDITION of EXPERIMENT with the paths of its
-robots in TRIALS: the first so many, or a list of their numbers. Colours show the outcome of each
-trial, a marker where it ended. This runs the trials again. CONDITION is as for FIND-CONDITION. PART
-(left top right bottom), in cells, is the part of the map, by default all. TITLE replaces what the
-experiment asks. FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename.
-Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG needs."
+  "Save in FILE a map of the world of CONDITION of EXPERIMENT with the paths of the robots in
+TRIALS: a number of first trials, or a list of trial numbers. An existing FILE is replaced. Colours
+show the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION
+is as for FIND-CONDITION. PART
+(left top right bottom), in cells, is the part of the map, by default all. TITLE replaces the
+experiment's question. FILE and the other arguments are those of SAVE-PICTURE. Return the file's
+truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if FILE is a PNG file and rsvg-convert is
+missing."
   (declare (ignore part title layers in-color scale))
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
@@ -142,7 +144,7 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
 ;;;; Comparisons: differences from zero
 
 (defun same-sides-p (comparison)
-  "True if all contrasts of COMPARISON compare the same two."
+  "True if all contrasts of COMPARISON compare the same two sides."
   (loop with one = (first (comparison-contrasts comparison))
         for contrast in (comparison-contrasts comparison)
         always (and (string= (contrast-first one) (contrast-first contrast))
@@ -202,8 +204,8 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE without the program that PNG ne
           (tests-words (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
-  "Return the chart of differences in MEASURE in COMPARISON, or these CONTRASTS of it, an SVG
-document. The title is the experiment's question."
+  "Return the chart, an SVG document, of differences in MEASURE in COMPARISON, or only in its
+CONTRASTS. The title is the experiment's question."
   (let ((experiment (comparison-experiment comparison)))
     (difference-chart (remove nil (mapcar (lambda (contrast)
                                             (picture-row contrast measure comparison))
@@ -218,12 +220,12 @@ document. The title is the experiment's question."
 (addition save-comparison-picture)
 (define-with-keywords save-comparison-picture
     (comparison file &key (measure "success"))
-  "Save a picture of COMPARISON in FILE, replacing it: SVG or, if the program rsvg-convert is
-installed, PNG, by the ending of its name. It shows the difference in MEASURE for each pair of
-conditions: first less second (rates in points), with the 95 % interval and p corrected for all
-tests of COMPARISON, as in its verdicts; the heading says how many tests these are. Return the
-file's truename. Signals UNKNOWN-NAME if MEASURE was not compared, WRONG-ARGUMENT, and MISUSE
-without that program."
+  "Save a picture of COMPARISON in FILE, which is replaced if it exists. The ending of the name
+chooses SVG or, if the program rsvg-convert is installed, PNG. The picture shows the difference in
+MEASURE for each pair of conditions: first minus second (rates in points), with the 95 % interval
+and p corrected for all tests of COMPARISON, as in its verdicts; the heading says how many tests
+these are. Return the file's truename. Signals UNKNOWN-NAME if MEASURE was not compared,
+WRONG-ARGUMENT, and MISUSE if FILE is a PNG file and rsvg-convert is missing."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")
   (check-argument save-comparison-picture measure (typep measure '(or symbol string))
                   "the name of a measure")

@@ -28,7 +28,7 @@
 (defun check-bounds (definition range low high)
   (let* ((scale (fourth range))
          (expected (cond ((not (and (quantity-p low) (quantity-p high) (< low high)))
-                          "two numbers, from -1e15 to 1e15, the lower one first")
+                          "two numbers, from -1e15 to 1e15, the lower number first")
                          ((and (eq :integer scale) (notevery #'integerp (list low high)))
                           "two integers")
                          ((and (eq :log scale) (not (plusp low))) "two numbers above 0"))))
@@ -41,7 +41,7 @@
     (float (* step (round (rational value) step)) 1d0)))
 
 (defun value-between (low high scale share)
-  "Return the number a SHARE, from 0 to below 1, of the way from LOW to HIGH, on SCALE."
+  "Return the number that is the SHARE, from 0 to below 1, of the way from LOW to HIGH on SCALE."
   (ecase scale
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
@@ -53,7 +53,7 @@
 
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
-(low high). Equal points, as a few integers give, count once."
+(low high). Equal points, which ranges of a few integers give, count once."
   (let ((ranges (design-ranges part)))
     (loop for range in ranges
           for (low high) in bounds
@@ -113,13 +113,13 @@
           do (reject-clause definition clause (format nil "one clause ~(~S~) only" key))))
 
 (defun clause-arguments (key clauses)
-  "Return the rest of the clause KEY, and whether there is one."
+  "Return two values: the rest of the clause KEY, and whether CLAUSES has such a clause."
   (let ((clause (find key clauses :key #'first)))
     (values (rest clause) (and clause t))))
 
 (defun check-each (definition clause test &optional (expected (clause-usage (first clause))))
   "Signal MALFORMED-DEFINITION for the first element after the key of CLAUSE that fails TEST, or for
-CLAUSE if it has none."
+CLAUSE if there are no elements."
   (unless (rest clause) (reject-by-usage definition clause))
   (dolist (element (rest clause))
     (unless (funcall test element) (reject-clause definition element expected))))
@@ -230,8 +230,8 @@ CLAUSE if it has none."
 ;;; Checking all clauses.
 
 (defun check-columns (definition taken clauses key)
-  "Signal MALFORMED-DEFINITION if two columns of a table would have one name: those TAKEN, the
-factors in CLAUSES, and the names in the clause KEY."
+  "Signal MALFORMED-DEFINITION if two columns of a table would have the same name. The columns are
+those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
   (flet ((check (name clause)
            (check-visible-name definition clause name)
            (when (member name taken :test #'string-equal)

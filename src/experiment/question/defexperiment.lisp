@@ -7,24 +7,26 @@
 ;;; Expanding.
 
 (defun value-form (name form)
-  "Return the form for the value FORM of the factor NAME. A thinking mode that is a list needs no
-quote."
+  "Return the form that evaluates FORM, a value of the factor NAME. A thinking mode that is a list
+needs no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
-  "Return the form for the list of values in PART of :vary; for a design, of bounds of ranges."
+  "Return a form that makes the list of the values in PART of :vary; for a design, the list of the
+bounds of its ranges."
   (cond ((design-part-p part)
          `(list ,@(loop for (nil low high) in (design-ranges part) collect `(list ,low ,high))))
         ((eq :in (second part)) (third part))
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun parts-form (parts value-of)
-  "Return the form for lists (part value) of PARTS. VALUE-OF returns the form for a part's value."
+  "Return a form that makes lists (part value) of PARTS. The function VALUE-OF returns the form for
+a part's value."
   `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)
-  "Return the form for a function that evaluates FORMS, with the variables that CLAUSES vary as
-parameters; NIL without FORMS."
+  "Return a form that makes a function. The function evaluates FORMS; its parameters are the
+variables that CLAUSES vary. Return NIL if there are no FORMS."
   (let ((variables (varied-variables clauses)))
     (and forms
          `(lambda ,variables
@@ -244,7 +246,7 @@ of other slots of an experiment."
     experiment))
 
 (defun define-experiment (name &rest options)
-  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM. DEFEXPERIMENT
-expands to a call of this."
+  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM. A DEFEXPERIMENT form
+expands to a call of DEFINE-EXPERIMENT."
   (register *experiments* name
             (apply #'experiment-from name (title "defexperiment" name) options)))

@@ -55,7 +55,7 @@
 ;;; Tests.
 
 (defun doubt-truth-of-plan (form)
-  "Warn if FORM, the last one of :run, tests the first value of a plan, which is true on failure."
+  "Warn if FORM, the last form of :run, tests the first value of a plan, which is true on failure."
   (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
              (same-name-p 'if (first form))
              (same-name-p 'run-plan (first (second form))))
@@ -96,7 +96,8 @@
     nil))
 
 (defun check-test (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE has one form; warn if that is always true or false."
+  "Signal MALFORMED-DEFINITION unless CLAUSE has one form. Warn if the form is always true or always
+false."
   (unless (= 2 (length clause)) (reject-by-usage definition clause))
   (let* ((test (second clause))
          (doubt (or (test-doubt test)

@@ -13,7 +13,7 @@
 ;;; list (names choices): names of factors that vary together, and lists of settings (name value).
 
 (define-record (trial-condition (:conc-name condition-) (:constructor %make-condition))
-  "What the trials of one condition have in common."
+  "The data that all trials of one condition have in common."
   (name "" string "the name of the condition, a string" :writable :export)
   (texts '() list "the texts of its values in a table" :writable)
   (settings '() list "lists (factor-name value)" :writable)
@@ -22,7 +22,8 @@
   (parameters #() simple-vector "the values of all parameters" :writable)
   (arguments '() list "the values of the variables of the experiment's forms, in order" :writable)
   (fingerprint nil (or null string)
-               "the number that identifies its code and configuration, once computed" :writable)
+               "the number that identifies the condition's code and configuration, or NIL before it
+is computed" :writable)
   (variables '() list "lists (symbol value): users' special variables that its trials can reach, and
 their values" :writable)
   (weak-parts (make-hash-table :test 'equal) hash-table "fingerprint parts for objects that these
@@ -41,7 +42,7 @@ variables hold weakly: the keys of a table" :writable))
             append (loop for others in rest collect (append choice others)))))
 
 (defun make-condition-name (case-name settings)
-  "Return the name of the condition of CASE-NAME, or NIL, with the other SETTINGS."
+  "Return the name of the condition with the case CASE-NAME, or NIL, and the other SETTINGS."
   (let ((words (append (and case-name (list (string-downcase case-name)))
                        (loop for (name value) in settings
                              collect (format nil "~(~A~)=~A" name (value-text value))))))
@@ -55,8 +56,8 @@ variables hold weakly: the keys of a table" :writable))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
 (defun parameters-with (settings clean)
-  "Return a vector of the values of all parameters: from SETTINGS, lists (name value), where a later
-one wins; else without noise if CLEAN is true; else the manual's."
+  "Return a vector with a value for each parameter: the last one in SETTINGS, lists (name value);
+else the value without noise if CLEAN is true; else the manual's value."
   (cl:map 'simple-vector
           (lambda (parameter)
             (let ((setting (find (parameter-symbol parameter) settings
@@ -104,8 +105,8 @@ one wins; else without noise if CLEAN is true; else the manual's."
 ;;; Conditions.
 
 (defun condition-from (experiment settings case-name others clean parameters)
-  "Return the condition of EXPERIMENT with SETTINGS: those of CASE-NAME and OTHERS. PARAMETERS are
-lists (name value) for all conditions."
+  "Return the condition of EXPERIMENT with SETTINGS: the settings of the case CASE-NAME, and OTHERS.
+PARAMETERS are lists (name value) for all conditions."
   (let ((robots (second (assoc :robots settings))))
     (%make-condition
      :name (make-condition-name case-name others)
@@ -142,8 +143,9 @@ whose name contains TEXT."
 
 (addition find-condition)
 (defun find-condition (experiment designator)
-  "Return the condition of EXPERIMENT, or of the experiment with that name, for DESIGNATOR: a
-condition, its number, from 1, its name, or an unambiguous part of that. Signals UNKNOWN-NAME."
+  "Return the condition that DESIGNATOR means in EXPERIMENT, an experiment or its name. DESIGNATOR
+is a condition, its number, from 1, its name, or an unambiguous part of its name. Signals
+UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
          (named (and (string/= text "") (find-by-name text conditions #'condition-name))))
@@ -200,7 +202,8 @@ condition, its number, from 1, its name, or an unambiguous part of that. Signals
     (if (and end (plusp end)) (subseq line 0 end) line)))
 
 (defun question-of (name)
-  "Return the question of the experiment called NAME in a table, or NIL if it is unknown."
+  "Return the question of the experiment named NAME in a table, or NIL if the experiment is
+unknown."
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

@@ -10,7 +10,8 @@
 ;;; Reader and printer.
 
 (defun call-plainly (function &optional (package *package*))
-  "Call FUNCTION with the reader and printer variables as in each trial, in PACKAGE."
+  "Call FUNCTION with the reader and printer variables that every trial has, and PACKAGE as the
+current package."
   (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
     (call-printing-plainly function)))
 
@@ -69,7 +70,7 @@ that it is the same in each run."
     (cons (and (proper-list-p value) (every #'plain-part-p value)))))
 
 (defun value-p (value)
-  "True if a table may have VALUE: a number, symbol, string, character, or a list of these."
+  "True if VALUE may be in a table: a number, symbol, string, character, or a list of these."
   (and (tree-p value) (plain-part-p value)))
 
 (defun integer-text (integer)
@@ -102,7 +103,8 @@ that it is the same in each run."
 
 ;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
-  "Return the text for VALUE in a table, whatever the reader and the printer are set to."
+  "Return the text for VALUE in a table. It does not depend on variables of the reader and the
+printer."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")

@@ -36,8 +36,8 @@ error, the largest first."
 ;;; Designators of results.
 
 (defun designated-results (designator)
-  "Return the results for DESIGNATOR: results, the name of a directory with some, an experiment that
-was run in this Lisp, or its name. Signals MISUSE and DAMAGED-TABLE."
+  "Return the results that DESIGNATOR means: results, the name of a directory with results, an
+experiment that was run in this Lisp, or the experiment's name. Signals MISUSE and DAMAGED-TABLE."
   (let ((experiment (and (typep designator '(or symbol string experiment))
                          (find-experiment designator nil)))
         (directory-p (typep designator '(or string pathname))))
@@ -54,8 +54,8 @@ was run in this Lisp, or its name. Signals MISUSE and DAMAGED-TABLE."
                               "results, an experiment, or the name of a directory")))))
 
 (defun samples-matching (results condition)
-  "Return the samples of RESULTS whose condition is named CONDITION, or else has that in its name;
-all if it is NIL. Signals UNKNOWN-NAME."
+  "Return the samples of RESULTS whose condition is named CONDITION, or else has CONDITION in its
+name; all samples if CONDITION is NIL. Signals UNKNOWN-NAME."
   (let ((samples (results-samples results)))
     (cond ((null condition) samples)
           ((find-by-name (string condition) samples #'sample-condition))
@@ -64,12 +64,12 @@ all if it is NIL. Signals UNKNOWN-NAME."
 
 (addition trial-failures)
 (defun trial-failures (results &optional condition)
-  "Return what went wrong in RESULTS: results, an experiment that was run here, or the name of a
-directory. CONDITION, a string or symbol, limits it to conditions with that in their names. The
-value is a list of plists :condition :outcome :reason :error :count :share (of the condition's
-trials) :trials (their numbers), ordered by condition, then by count. Errors that did not end their
-trials count, too. REPLAY-TRIAL opens a trial. Signals MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT,
-DAMAGED-TABLE."
+  "Return a list of what went wrong in RESULTS: results, an experiment that was run in this Lisp, or
+the name of a directory. CONDITION, a string or symbol, limits the list to conditions with CONDITION
+in their names. The value is a list of plists :condition :outcome :reason :error :count :share (of
+the condition's trials) :trials (their numbers), ordered by condition, then by count. Errors that
+did not end their trials count, too. REPLAY-TRIAL runs a trial again. Signals MISUSE, UNKNOWN-NAME,
+WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
   (loop for sample in (samples-matching (designated-results results) condition)
@@ -101,7 +101,7 @@ DAMAGED-TABLE."
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))
   "Write to STREAM what TRIAL-FAILURES returns: for each condition how many trials failed in which
-way, and a line for the prompt that opens one of them. Return nothing."
+way, and a line for the prompt that opens one of these trials. Return nothing."
   (dolist (sample (samples-matching (designated-results results) condition) (values))
     (print-failure-groups sample stream)))
 
@@ -127,8 +127,8 @@ way, and a line for the prompt that opens one of them. Return nothing."
                   (sample-condition sample))))
 
 (defun block-of-trial (index sample place)
-  "Return the block in INDEX of the trial at PLACE of SAMPLE; NIL if it has no lines. Signals MISUSE
-if lines are missing."
+  "Return the block in INDEX of the trial at index PLACE of SAMPLE; NIL if the trial has no lines.
+Signals MISUSE if lines are missing."
   (when (aref (sample-digests sample) place)
     (or (complete-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
                                    (aref (sample-trials sample) place))
@@ -153,9 +153,9 @@ if lines are missing."
   "Return the values that :each-tick recorded in TRIAL, a number, of CONDITION in RESULTS: a list of
 lists (tick value...), the values in the order of the clause. Values are numbers, T, NIL, strings,
 and :NONE for no value. Return () if the trial timed out. RESULTS are results kept in a directory,
-an experiment that was run with one, or the directory's name. CONDITION is its number, from 1, its
-name, or a part of that. Each call reads all of series.csv. Signals MISUSE (no directory, no such
-file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
+an experiment that was run with a directory, or the directory's name. CONDITION is the number of a
+condition, from 1, its name, or a part of its name. Each call reads all of series.csv. Signals
+MISUSE (no directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
                   "the number of a trial; they count from 1")
   (let* ((results (designated-results results))

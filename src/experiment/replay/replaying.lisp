@@ -25,8 +25,9 @@
 (defvar *outside* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-aside (function)
-  "Call FUNCTION, which inspects the trial that this thread runs again, with the values of
-*SURROUNDINGS* from outside; keep what it sets. Its errors are not errors of the trial."
+  "Call FUNCTION, which inspects the trial that this thread runs again. The variables *SURROUNDINGS*
+have their values from outside of the trial; keep the values that FUNCTION sets. Errors of FUNCTION
+are not errors of the trial."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
       (let ((*aside-p* t))
@@ -61,7 +62,8 @@ debugger without a user is an error of the trial."
 
 (defun run-again (experiment condition trial &key gate (then #'identity) journal)
   "Run TRIAL of CONDITION of EXPERIMENT as RUN-TRIAL does, but in this thread and with output. When
-it has ended, call THEN with the result while its simulation still exists. Return the result."
+the trial has ended, call THEN with the result while the trial's simulation still exists. Return the
+result."
   (let ((result (make-result condition trial (trial-seed experiment trial)))
         (begun-p nil))
     (flet ((run ()
@@ -95,7 +97,8 @@ it has ended, call THEN with the result while its simulation still exists. Retur
         do (wait-a-while never (min left 0.02))))
 
 (defun paced-gate (rate)
-  "Return a gate that lets RATE ticks a second pass. It opens a display first, if there is one."
+  "Return a gate that lets RATE ticks a second pass. The gate opens a display first, if there is
+one."
   (let ((due nil))
     (lambda (simulation)
       (unless due
@@ -109,7 +112,7 @@ it has ended, call THEN with the result while its simulation still exists. Retur
       1)))
 
 (defun asked-to-stop-p (step simulation)
-  "Call STEP with SIMULATION, or ask the user if STEP is T. True if the trial is to stop."
+  "Call STEP with SIMULATION, or ask the user if STEP is T. Return true if the trial must stop."
   (call-aside (lambda ()
                 (if (functionp step)
                     (eq :stop (funcall step simulation))
@@ -117,7 +120,8 @@ it has ended, call THEN with the result while its simulation still exists. Retur
                                    (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
-  "Return a gate for these arguments of REPLAY-TRIAL. STOP is a function that leaves the trial."
+  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. STOP is a function that
+leaves the trial."
   (let ((pace (and rate (paced-gate rate))))
     (lambda (simulation)
       (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))
@@ -130,7 +134,7 @@ it has ended, call THEN with the result while its simulation still exists. Retur
 
 (defun row-of-trial (experiment condition trial directory)
   "Return the texts of the row of TRIAL of CONDITION of EXPERIMENT in DIRECTORY. Signals MISUSE if
-there is none."
+there is no such row."
   (let ((file (rows-file (existing-table directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (value-text trial)))
@@ -143,7 +147,7 @@ there is none."
                 (native-name (directory-called directory)))))
 
 (defun row-differences (experiment result parts row directory)
-  "Return a list of texts on how RESULT of EXPERIMENT differs from ROW, which is in DIRECTORY."
+  "Return a list of texts on how RESULT of EXPERIMENT differs from ROW, a row in DIRECTORY."
   (loop for column in (columns experiment)
         for now in (result-texts experiment result)
         for then in row
@@ -159,13 +163,14 @@ there is none."
 ;;; Running the trial.
 
 (defun keep-journal (journal)
-  "Return the journal of the current simulation if JOURNAL is true; save it if that is a name."
+  "Return the journal of the current simulation if JOURNAL is true. If JOURNAL is the name of a
+file, also save the journal there."
   (when journal
     (when (typep journal '(or string pathname)) (save-journal journal))
     (journal-up-to-now (current-simulation))))
 
 (defvar *trial-replayed* nil
-  "The TRIAL-WORDS of the trial that REPLAY-TRIAL runs in this thread, or NIL.")
+  "The prompt line for the trial that REPLAY-TRIAL runs in this thread, or NIL.")
 
 (defun trial-words (experiment condition trial)
   "Return the prompt line that opens TRIAL of CONDITION of EXPERIMENT."
@@ -196,7 +201,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         (values result stopped-p kept)))))
 
 (defun measure-values (experiment result)
-  "Return lists (name value) of the measures in RESULT, of EXPERIMENT."
+  "Return lists (name value) of the measures in RESULT, a result of EXPERIMENT."
   (loop with shared = (make-hash-table :test 'equal)
         for (name) in (experiment-measures experiment)
         for text in (result-measures result)

@@ -6,11 +6,12 @@
 ;;; by it. Numbers some 1e250 times smaller than the largest count as 0.
 
 (defun nearest-float (number)
-  "Return the double-float nearest to NUMBER, or NUMBER itself if it is too large for one."
+  "Return the double-float nearest to NUMBER, or NUMBER itself if it is too large for a
+double-float."
   (if (finite-p number) (double number) number))
 
 (defun number-less (a b)
-  "Return A less B: a float if one of them is, unless it is too large for one."
+  "Return A minus B: a float if A or B is a float, unless the difference is too large for a float."
   (if (and (rationalp a) (rationalp b))
       (- a b)
       (nearest-float (- (rational a) (rational b)))))
@@ -23,14 +24,14 @@
         (expt 2 (- 48 (integer-length (ceiling (rational largest))))))))
 
 (defun scale-number (number scale)
-  "Return NUMBER times SCALE; 0 if that is too small for a float."
+  "Return NUMBER times SCALE; 0 if the product is too small for a float."
   (if (= 1 scale)
       number
       (let ((product (* (rational number) scale)))
         (if (< (abs product) #.(expt 2 -900)) 0 (double product)))))
 
 (defun unscale-number (number scale)
-  "Return NUMBER divided by SCALE; NIL of NIL."
+  "Return NUMBER divided by SCALE; NIL if NUMBER is NIL."
   (if (or (null number) (= 1 scale))
       number
       (nearest-float (/ (rational number) scale))))
@@ -50,7 +51,8 @@
 of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addition)
   (count 0 integer "the number of trials with a value; of ticks, of successes" :addition)
   (value nil (or null real)
-         "the rate, from 0 to 1, the mean or the median; NIL of no values or of texts" :addition)
+         "the rate, from 0 to 1, the mean or the median; NIL for texts, or if there are no values"
+:addition)
   (low nil (or null real)
        "the low bound of the interval; NIL if there are too few values" :addition)
   (high nil (or null real)
@@ -183,7 +185,8 @@ Return KIND."
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun interim-look-number (trials)
-  "Return the number of the look after TRIALS trials of each condition, or NIL."
+  "Return the number of the interim look after TRIALS trials of each condition; NIL if there is no
+look."
   (loop for look from 1
         for count = (count-at-look look)
         while (<= count trials)

@@ -5,8 +5,8 @@
 ;;; Reasons and errors.
 
 (defstruct (occurrence (:constructor make-occurrence (text sample trial)) (:copier nil))
-  "A reason or error of COUNT trials, first in TRIAL of SAMPLE. WHERE is an alist from the names of
-conditions to counts."
+  "A reason or error that COUNT trials have, the first of them TRIAL of SAMPLE. WHERE is an alist
+from the names of conditions to counts."
   (text "" :type string :read-only t)
   (sample nil :type sample :read-only t)
   (trial 0 :type integer :read-only t)
@@ -111,7 +111,8 @@ a form that replays an example."
             (kind-p :mean))))
 
 (defun looks-text (width summaries)
-  "Return sentences on the confidence of intervals of SUMMARIES, which were to be WIDTH wide."
+  "Return sentences on the confidence of intervals of SUMMARIES, if trials were added until the
+intervals were WIDTH wide."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
     (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
                  after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~
@@ -142,8 +143,8 @@ a form that replays an example."
 ;;; Numbers. Those of a column have the same number of decimals, and are aligned.
 
 (defun decimals-for (numbers)
-  "Return the number of decimals for NUMBERS, so that the largest has four digits; NIL if they are
-too large or too small for that."
+  "Return the number of decimals for NUMBERS, so that the largest has four digits; NIL if NUMBERS
+are too large or too small for four digits."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
     (cond ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
           ((not (< 1/1000 largest 1e9)) nil)
@@ -200,7 +201,7 @@ too large or too small for that."
                              :whole-p t))))))
 
 (defun estimates-columns (estimates trials &optional (name (estimate-name (first estimates))))
-  "Return the column of ESTIMATES, called NAME, and those of the estimates beside them."
+  "Return the column of ESTIMATES, named NAME, and the columns of the estimates beside ESTIMATES."
   (cons (estimates-column estimates trials name)
         ;; The first column has the counts.
         (apply #'mapcan (lambda (&rest beside)
@@ -215,8 +216,8 @@ too large or too small for that."
 ;;; The table.
 
 (defun key-columns (factors summaries)
-  "Return columns that identify the condition of a row: the values of FACTORS if these fit, else its
-name."
+  "Return columns that identify the condition of a row: the values of FACTORS if these fit on the
+page, else the condition's name."
   (let ((columns (loop for name in factors
                        for place from 0
                        for texts = (loop for summary in summaries
@@ -260,8 +261,8 @@ name."
     (when question (write-wrapped question stream))))
 
 (defun former-summaries (results summaries)
-  "Return the SUMMARIES, of RESULTS, whose conditions the experiment no longer has; NIL if these are
-all."
+  "Return those SUMMARIES of RESULTS whose conditions the experiment no longer has; NIL if all
+SUMMARIES are of this sort."
   (let ((former (remove-if (lambda (summary)
                              (member (summary-condition summary) (results-conditions results)
                                      :test #'string=))
@@ -284,11 +285,11 @@ all."
 
 (addition print-results)
 (defun print-results (results &optional (stream *standard-output*))
-  "Write RESULTS to STREAM, in lines of at most 100 characters, and return them. For each condition:
-how often it succeeded, how often it reached the limit of ticks or had an error (if it did), the
-ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below: why trials failed and which
-errors there were, with an example of each, and which intervals these are. Conditions that the
-experiment no longer has, if known, are in a separate table."
+  "Write RESULTS to STREAM, in lines of at most 100 characters, and return RESULTS. A table shows
+for each condition how often it succeeded, how often it reached the limit of ticks or had an error
+(if it did), the ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below the table are
+the reasons of failures and the errors, with an example of each, and the kinds of intervals.
+Conditions that the experiment no longer has, if known, are in a separate table."
   (check-argument print-results results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))

@@ -10,7 +10,8 @@
 (defvar *page-width* +page-width+ "The most characters of a line now, as in a narrower window.")
 
 (defun call-on-page (function &optional (width +page-width+))
-  "Call FUNCTION, which writes tables, for a page of WIDTH characters, from 60 to +PAGE-WIDTH+."
+  "Call FUNCTION, which writes tables, with pages WIDTH characters wide, but at least 60 and at most
++PAGE-WIDTH+."
   (let ((*page-width* (max 60 (min width +page-width+))))
     (funcall function)))
 
@@ -21,8 +22,8 @@
   (substitute #\No-break_space #\Space (coerce text '(simple-array character (*)))))
 
 (defun write-wrapped (text stream &key (first ""))
-  "Write TEXT to STREAM in lines that fit the page. The first begins with FIRST, the others with as
-many spaces."
+  "Write TEXT to STREAM in lines that fit the page. The first line begins with the text FIRST, the
+other lines with as many spaces."
   (loop with indent = (length first)
         for line in (wrapped-text text (- *page-width* indent))
         for start = first then (make-string indent :initial-element #\Space)
@@ -32,7 +33,8 @@ many spaces."
 
 (defstruct (text-column (:constructor %make-text-column (heading cells anchor width))
                         (:copier nil))
-  "HEADING and CELLS, lists of lines, in WIDTH characters, aligned at their :START or :END."
+  "A column of a text table. HEADING and CELLS are lists of lines, WIDTH characters wide, aligned at
+their :START or :END."
   (heading '() :type list :read-only t)
   (cells '() :type list :read-only t)
   (anchor :start :type (member :start :end) :read-only t)

@@ -50,7 +50,8 @@ TEXTS-WITH-CHECKSUM."
                   (start-again-advice)))))
 
 (defparameter *seconds-for-checks* 10
-  "For how long trials that have rows are run again before an experiment is resumed.")
+  "The seconds for which trials that have rows are run again, as a check, before an experiment is
+resumed.")
 
 (defun check-rows-repeatable (experiment rows seconds)
   "Signal MISUSE if a trial of ROWS, of different conditions of EXPERIMENT, gives another row now.
@@ -67,8 +68,8 @@ Check at least one, and more until SECONDS have passed."
   (subseq name (1+ (or (position #\: name) -1))))
 
 (defun sharing-advice (changed condition)
-  "Return what to do if CHANGED, the parts that trials of CONDITION changed, has a variable or else
-a function; or NIL."
+  "Return advice if CHANGED, the fingerprint parts that trials of CONDITION have changed, contains a
+variable or a function; else NIL."
   (flet ((name (kind) (second (find kind changed :key #'first))))
     (let ((variable (name :variable)) (function (name :function)))
       (cond (variable
@@ -106,7 +107,7 @@ a function; or NIL."
               (start-again-advice)))
 
 (defun call-noting-refusal (function directory)
-  "Call FUNCTION. If it signals MISUSE, record in DIRECTORY that its rows were refused."
+  "Call FUNCTION. If FUNCTION signals MISUSE, record in DIRECTORY that the rows there were refused."
   (handler-bind ((misuse (lambda (condition)
                            (note-refusal directory (princ-to-string condition)))))
     (funcall function)))

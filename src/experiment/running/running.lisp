@@ -9,16 +9,17 @@
 ;;; Rows that exist already.
 
 (defun rows-to-check (conditions &rest tables)
-  "Return the values in TABLES for CONDITIONS, each once, those of the first table first."
+  "Return the values of CONDITIONS in TABLES, which are hash tables: each value once, the values of
+the first table first."
   (remove nil (remove-duplicates
                (loop for table in tables
                      append (loop for condition in conditions collect (gethash condition table)))
                :test #'eq :from-end t)))
 
 (defun find-existing-rows (experiment parts directory)
-  "Return the presence of rows of EXPERIMENT in DIRECTORY, and a list of the texts of the last row
-of each condition, then of the first. PARTS are those of the fingerprints of its conditions. Signals
-MISUSE for rows with other fingerprints."
+  "Return two values: a table of the rows of EXPERIMENT present in DIRECTORY, and a list of rows to
+check. That list has the texts of the last row of each condition, then those of the first rows.
+PARTS are the fingerprint parts of all conditions. Signals MISUSE for rows with other fingerprints."
   (let ((firsts (make-hash-table :test 'eq)) (lasts (make-hash-table :test 'eq))
         (columns (columns experiment)))
     (multiple-value-bind (presence series)
@@ -46,11 +47,12 @@ MISUSE for rows with other fingerprints."
 (defconstant +first-look+ 50 "The number of trials at the first look at intervals.")
 
 (defun count-at-look (look)
-  "Return the number of trials of each condition at the LOOK-th look, from 1."
+  "Return the number of trials of each condition at the LOOK-th look at intervals, from 1."
   (* +first-look+ (expt 2 (1- look))))
 
 (defun confidence-at-look (look)
-  "Return the confidence of intervals at the LOOK-th look, for .95 over all looks."
+  "Return the confidence of intervals at the LOOK-th look, chosen so that the confidence of all
+looks together is .95."
   (- 1d0 (sequential-level look :level .05d0)))
 
 (defun count-successes (experiment trials directory)
@@ -143,7 +145,7 @@ MISUSE for rows with other fingerprints."
   (check-argument run-experiment directory (typep directory '(or null string pathname))
                   "the name of a directory, or NIL")
   (check-argument run-experiment until (or (null until) (and (realp until) (< 0 until 1)))
-                  "how wide intervals may be, a number between 0 and 1")
+                  "the largest width of intervals, a number between 0 and 1")
   (check-argument run-experiment time-limit (or (null time-limit) (seconds-p time-limit))
                   "a number of seconds from .001 to 1e9, or NIL")
   (check-argument run-experiment shard (shard-p shard)
@@ -165,26 +167,30 @@ MISUSE for rows with other fingerprints."
 (define-with-keywords run-experiment (name &key trials (workers (processors)) directory until shard
                                            (time-limit nil time-limit-p)
                                            (stream *standard-output*))
-  "Run TRIALS trials of each condition of the experiment NAME, by default as many as it says, in
-WORKERS threads. Return the results, for PRINT-RESULTS, SAVE-RESULT-PICTURES, COMPARE-CONDITIONS.
+  "Run TRIALS trials of each condition of the experiment NAME, by default as many as the experiment
+says, in WORKERS threads. Return the results, for PRINT-RESULTS, SAVE-RESULT-PICTURES,
+COMPARE-CONDITIONS.
 
 DIRECTORY, created if necessary, keeps the table: rows.csv, a row for each trial; machine.csv, what
-differs from run to run; experiment.txt, how to repeat it; series.csv, what :each-tick records, a
-line for each tick of each trial, see TRIAL-SERIES. Trials that have a row there are not run again.
-So call it again to continue a stopped run or to add trials. Rows of other code or another
-configuration signal MISUSE. Without DIRECTORY nothing is kept except the value.
+differs from run to run; experiment.txt, how to repeat the experiment; series.csv, what :each-tick
+records, a line for each tick of each trial, see TRIAL-SERIES. Trials that have a row in DIRECTORY
+are not run again. So call RUN-EXPERIMENT again to continue a stopped run or to add trials. Rows of
+other code or another configuration signal MISUSE. Without DIRECTORY nothing is kept except the
+returned results.
 
-UNTIL, a width, adds trials until the interval of each condition's success is at most that wide. It
-looks after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index . count) runs only
-the trials whose numbers divided by COUNT leave INDEX; MERGE-RESULTS puts shards together. STREAM,
-or NIL, receives the progress, and names a trial that takes much longer than others.
+UNTIL, a width, adds trials until the interval of each condition's success is at most UNTIL wide.
+The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index
+. count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
+MERGE-RESULTS merges shards. The progress is printed to STREAM unless that is NIL. It names a trial
+that takes much longer than others.
 
 TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
-says; NIL for no limit. A trial that takes longer is ended. Its outcome is timeout, which is no
-success, and it is not run again. Machines differ, so allow far more time than trials need. A trial
-that ends its own thread is an error of that trial.
+says; NIL for no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,
+which is no success, and is not run again. Machines differ, so allow far more time than trials need.
+A trial that ends its own thread is an error of that trial.
 
-An error in a trial is a row. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and DAMAGED-TABLE."
+A trial with an error has a row, too. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and
+DAMAGED-TABLE."
   (let* ((experiment (find-experiment name))
          (trials (or trials (if until *most-trials* (experiment-trials experiment))))
          (time-limit (if time-limit-p time-limit (experiment-time-limit experiment))))

@@ -12,15 +12,16 @@
     (max 1 (or (and text (parse-integer text :junk-allowed t)) 1))))
 
 (defun await-result (channel left)
-  "Wait a moment for a result from CHANNEL. Return how many are LEFT then, and the result or NIL."
+  "Wait a moment for one of the LEFT results that CHANNEL still has to deliver. Return how many
+results are then left, and the result or NIL."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
     (values (if there-p (1- left) left) trouble)))
 
 (defconstant +patience+ 10
-  "For how many fifths of a second threads are waited for before they are ended.")
+  "The time to wait for threads before they are ended, in fifths of a second.")
 
 (defun end-workers (channel left)
-  "Wait a moment for the LEFT threads that CHANNEL has no result of, then end them."
+  "Wait a moment for the LEFT threads whose results CHANNEL still lacks, then end these threads."
   (loop repeat +patience+
         while (plusp left)
         do (setf left (await-result channel left)))
@@ -30,8 +31,9 @@
 
 (defun call-by-workers (function count &key (pulse (constantly nil)) (stop (constantly nil)))
   "Call FUNCTION in each of COUNT threads with the thread's number, from 1, and wait until all have
-returned. Call the function PULSE now and then meanwhile. At the end, also after a THROW, call STOP,
-which should let them return; those that do not are ended. Errors of FUNCTION are signalled here."
+returned. Call the function PULSE now and then meanwhile. At the end, also after a THROW, call the
+function STOP, which should make the threads return; threads that do not return are ended. Errors of
+FUNCTION are signalled here."
   (let* ((lparallel:*kernel* (lparallel:make-kernel
                               count :name "trials"
                               ;; Threads that are ended would print a message.
@@ -112,8 +114,8 @@ which should let them return; those that do not are ended. Errors of FUNCTION ar
            (progress-done progress)))))
 
 (defun longest-under-way (progress)
-  "Return a text on the trial of PROGRESS that has been running longest, if that is long, and much
-longer than others took; else NIL."
+  "Return a text on the trial of PROGRESS that has run longest, if it has run for a long time, and
+much longer than other trials took; else NIL."
   (let ((oldest (first (trials-under-way progress))))
     (when oldest
       (destructuring-bind (condition trial moment &optional seed) oldest
@@ -125,12 +127,12 @@ longer than others took; else NIL."
 (defvar *progress* nil "The progress of the experiment that runs in this thread, or NIL.")
 
 (defun trial-under-way ()
-  "Return a text on the trial, of the experiment that runs in this thread, that has been running
-longest, if that is long; else NIL."
+  "Return a text on the trial that has run longest in the experiment that runs in this thread, if
+the trial has run for a long time; else NIL."
   (and *progress* (longest-under-way *progress*)))
 
 (defun report-progress (progress &optional last)
-  "Print PROGRESS if the last time is long enough ago, or this is the LAST time."
+  "Print PROGRESS if the previous report is long enough ago, or if LAST is true."
   (let ((stream (progress-stream progress)))
     (when (and stream
                (or last
@@ -150,8 +152,8 @@ longest, if that is long; else NIL."
 ;;; run is stopped or this Lisp exits. The last two are not intercepted.
 
 (defun call-catching-thread-end (function stopping-p)
-  "Call FUNCTION in a worker. If it ends this thread, keep the thread and return true, unless the
-function STOPPING-P returns true."
+  "Call FUNCTION in a worker's thread. If FUNCTION ends the thread, keep the thread and return true,
+unless the function STOPPING-P returns true."
   (let ((returned-p nil))
     (block call
       (unwind-protect (progn (funcall function)
@@ -161,7 +163,8 @@ function STOPPING-P returns true."
           (return-from call t))))))
 
 (defun call-within (function seconds)
-  "Call FUNCTION. After SECONDS, or never if NIL, leave it and return true."
+  "Call FUNCTION. If FUNCTION takes longer than SECONDS, leave it and return true. There is no limit
+if SECONDS is NIL."
   (block call
     (let ((open-p t))
       (flet ((leave () (when open-p (return-from call t))))
@@ -172,8 +175,9 @@ function STOPPING-P returns true."
     nil))
 
 (defun run-guarded (experiment condition trial stopping-p &optional seconds)
-  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS, or NIL. Return
-its result, even if the trial ends the thread, unless the function STOPPING-P returns true."
+  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS, without a limit
+if that is NIL. Return the trial's result, even if the trial ends the thread, unless the function
+STOPPING-P returns true."
   (let* ((seed (trial-seed experiment trial)) (late-p nil)
          (result (make-result condition trial seed)))
     (if (call-catching-thread-end
@@ -271,8 +275,8 @@ its result, even if the trial ends the thread, unless the function STOPPING-P re
        (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
 
 (defun run-queue (experiment queue store progress workers)
-  "Run the trials of QUEUE in WORKERS threads. If this is left, no more trials are started, and
-running ones have a moment to end."
+  "Run the trials of QUEUE in WORKERS threads. After a non-local exit no more trials are started,
+and running trials have a moment to end."
   (call-by-workers (lambda (worker) (run-queued-trials experiment queue store progress worker))
                    workers
                    :pulse (lambda () (report-progress progress))

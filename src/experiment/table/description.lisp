@@ -117,9 +117,9 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
   (let ((file (description-file directory)))
     (unless (or (not (existing-path file))
                 (intact-description-p (description-text directory)))
-      (warn "~A is damaged or has been changed: its last line is no check sum of the others. The ~
-             rows beside it are read all the same. If you run the experiment again with that ~
-             directory, the file is written anew."
+      (warn "~A is damaged or has been changed: its last line is not the check sum of its other ~
+             lines. The rows beside it are read all the same. If you run the experiment again with ~
+             that directory, the file is written anew."
             (native-name file)))))
 
 (defun description-lines (directory)
@@ -191,7 +191,7 @@ NIL if there are none."
         unless (string= "" line) collect (string-trim " " line)))
 
 (defun changed-parts (before now)
-  "Return a list of names of the parts in only one of BEFORE and NOW, lists of lines."
+  "Return the names of the parts that only BEFORE or only NOW has. Both are lists of lines."
   (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
     (remove-duplicates (mapcar #'without-number
                                (append (set-difference before now :test #'string=)
