@@ -52,7 +52,7 @@ only the factor's value."
         collect (cons (series-name (first group) places factors) group)))
 
 (defun split-evenly (list most)
-  "Return LIST in parts of about equal length, at most MOST."
+  "Split LIST into lists of about equal length, each of at most MOST elements."
   (let* ((count (length list)) (size (ceiling count (max 1 (ceiling count most)))))
     (loop while list
           collect (loop repeat size while list collect (pop list)))))

@@ -226,7 +226,7 @@ tells what is kept."
                         &rest options
                         &key robots parameters clean (thinking :free) factors cases
                         &allow-other-keys)
-  "Return an experiment called NAME. Errors name DEFINITION. OPTIONS may also be the initial values
+  "Return an experiment named NAME. Errors name DEFINITION. OPTIONS may also be the initial values
 of other slots of an experiment."
   (check-robots definition (list* :robots robots) robots)
   (check-value definition (list :thinking thinking) thinking)

@@ -10,7 +10,7 @@
 ;;; writes there: it holds the lock of the file `.lock'.
 
 (defstruct (store (:constructor make-store (path experiment)) (:copier nil))
-  "The directory PATH, while rows of EXPERIMENT are written to it."
+  "The directory PATH, to which rows of EXPERIMENT are being written."
   (path nil :type pathname :read-only t)
   (experiment nil :type experiment :read-only t)
   (lock (make-lock "rows") :read-only t)
@@ -65,8 +65,8 @@
 
 (defun remove-incomplete-line (file columns)
   "Remove an incomplete last line, as a killed process leaves it, from FILE, a table with COLUMNS.
-True if any lines are left. If FILE is not such a table, leaves it unchanged and signals
-DAMAGED-TABLE."
+Return true if FILE has lines left. If FILE is not a table with COLUMNS, leave FILE unchanged and
+signal DAMAGED-TABLE."
   (when (existing-path file)
     (check-beginning file columns)
     (let ((end (map-lines (constantly nil) file)))
@@ -75,7 +75,7 @@ DAMAGED-TABLE."
       (plusp end))))
 
 (defun open-table (file columns)
-  "Return a stream that appends to the table FILE. If that has no lines, COLUMNS are written first."
+  "Return a stream that appends to the table FILE. If FILE has no lines, COLUMNS are written first."
   (let ((new (not (remove-incomplete-line file columns)))
         (stream (call-writing
                  (lambda ()
@@ -124,8 +124,8 @@ DAMAGED-TABLE."
 
 ;; The series is written first, so that a trial with a row has all of its series.
 (defun keep-row (store result milliseconds worker)
-  "Append the row and the series of RESULT, which took MILLISECONDS of WORKER, to STORE, and finish
-output."
+  "Append the row and the series of RESULT to STORE, and finish output. The trial took MILLISECONDS
+in the worker numbered WORKER."
   (let* ((experiment (store-experiment store))
          (texts (result-texts experiment result))
          (line (csv-line texts))
@@ -175,7 +175,7 @@ output."
 
 (defun check-row (experiment condition texts file number)
   "Signal DAMAGED-TABLE unless TEXTS, line NUMBER of FILE, can be a row of CONDITION of EXPERIMENT,
-or of a former condition if that is NIL."
+or of a former condition if CONDITION is NIL."
   (let* ((seed (seed-column (columns experiment)))
          (trial (parse-integer (nth (1+ seed) texts))))
     (unless (string= (first texts) (string-downcase (experiment-name experiment)))
@@ -191,10 +191,10 @@ or of a former condition if that is NIL."
                   (trial-seed experiment trial) (nth seed texts)))))
 
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
-  "Return the presence of rows of EXPERIMENT in DIRECTORY that have all of their series, and the
-index of the series. Call FOREIGN with the condition and the texts of each row with another
-fingerprint, and SAMPLE with those of each present row. Remove an incomplete last line. Signals
-DAMAGED-TABLE."
+  "Return two values: a table of the rows of EXPERIMENT present in DIRECTORY, without those whose
+series are incomplete, and the index of the series. Call FOREIGN with the condition and the texts of
+each row with another fingerprint, and SAMPLE with the condition and the texts of each present row.
+Remove an incomplete last line. Signals DAMAGED-TABLE."
   (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
         (series (index-existing-series experiment directory))
         (place (1+ (seed-column (columns experiment)))))

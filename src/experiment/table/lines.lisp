@@ -8,7 +8,7 @@
 
 (defun map-lines (function path)
   "Call FUNCTION with each complete line of the file PATH, as octets, its position, and its number
-from 1. Return the position after the last one."
+from 1. Return the position after the last complete line."
   (with-open-file (in path :external-format :latin-1)
     (loop with start = 0
           for number from 1
@@ -64,8 +64,8 @@ line. Signals DAMAGED-TABLE."
 ;;; Order: by condition, and within that by trial.
 
 (defstruct (row-group (:conc-name group-) (:constructor make-group (key)) (:copier nil))
-  "The rows of a condition. KEY is the list of their texts before the seed. RANK is their position
-among the groups."
+  "The rows of one condition in a table. KEY is the list of the texts of these rows before the seed.
+RANK is the position of this group among all groups."
   (key '() :type list :read-only t)
   (rank 0 :type fixnum))
 
@@ -150,8 +150,9 @@ value of each factor."
 ;;; Writing them in order.
 
 (defun call-replacing-table (function file &optional (check #'identity))
-  "Call FUNCTION with a stream to a new file, then CHECK with its path; then replace the table FILE
-by it. If it cannot be written signals DAMAGED-TABLE and leaves FILE unchanged."
+  "Call FUNCTION with a stream to a new file, then CHECK with the path of the new file; then replace
+the table FILE by the new file. If the new file cannot be written, signal DAMAGED-TABLE and leave
+FILE unchanged."
   (call-writing (lambda () (call-replacing-file function file :check check))
                 file "it cannot be replaced (~A). It is unchanged."))
 
@@ -179,13 +180,14 @@ line there."
                 (indexed-number other) (native-name (indexed-file other))))
 
 (defun sorted-rows-p (rows)
-  "True if ROWS, a vector, are sorted, and no two are of one trial."
+  "True if ROWS, a vector, are sorted, and no two rows are of the same trial."
   (loop for index from 1 below (length rows)
         always (row-before-p (aref rows (1- index)) (aref rows index))))
 
 (defun write-rows (rows line-of out)
-  "Write the lines of ROWS, which are sorted, to OUT, one for each trial, and return their number.
-LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two of one trial differ."
+  "Write the lines of ROWS, which are sorted, to OUT, one line for each trial. Return the number of
+lines. LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two rows of the same trial
+differ."
   (loop with last = nil and last-line = nil and count = 0
         for row across rows
         for line = (funcall line-of (indexed-file row) (indexed-start row))
@@ -197,9 +199,10 @@ LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two of one tria
         finally (return count)))
 
 (defun write-sorted-rows (files file order &optional (check #'identity))
-  "Write the rows of FILES, tables, to FILE, sorted and each once; FILE may be one of them. Return
-the number of rows. ORDER is a list of names of conditions. CHECK is called with the path of the new
-table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE, and leaves FILE unchanged then."
+  "Write the rows of the tables FILES to FILE, sorted, each row once. FILE may be one of FILES.
+Return the number of rows. ORDER is a list of names of conditions. CHECK is called with the path of
+the new table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE; after an error FILE is
+unchanged."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)

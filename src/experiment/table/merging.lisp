@@ -16,7 +16,7 @@
     (when files (write-sorted-series files rows (series-file target)))))
 
 (defun join-machine-tables (directories target)
-  "Concatenate the files machine.csv of DIRECTORIES in TARGET."
+  "Write the concatenation of the files machine.csv in DIRECTORIES to machine.csv in TARGET."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
     (when files
       (call-replacing-table
@@ -31,10 +31,10 @@
 
 (addition merge-results)
 (defun merge-results (directories &key (to (first directories)))
-  "Merge the tables in DIRECTORIES, of one experiment, in the directory TO, sorted and each trial
-once. Return the results. Signals DAMAGED-TABLE if two rows of one trial differ, or its series do or
-are missing, and MISUSE if fingerprints differ; TO is unchanged then. If none of the directories has
-series of a condition, TO has none of it."
+  "Merge the tables of one experiment in DIRECTORIES into a table in the directory TO, sorted, with
+each trial once. Return the results. Signals DAMAGED-TABLE if two rows or series of the same trial
+differ, or if the series of a trial is missing, and MISUSE if fingerprints differ; after an error TO
+is unchanged. If no directory has series of a condition, TO has no series of that condition."
   (check-argument merge-results directories
                   (and (consp directories) (proper-list-p directories)
                        (every (lambda (name) (typep name '(or string pathname))) directories))
@@ -69,7 +69,8 @@ series of a condition, TO has none of it."
                         (format nil "shard-~D-of-~D/" index count))))
 
 (defun directories-with-rows (directory)
-  "Return the names of those of DIRECTORY and the directories of shards below it that have rows."
+  "Return the names of directories that have rows: DIRECTORY, and the directories of shards below
+it."
   (let* ((path (directory-called directory))
          (shards (remove-if-not (lambda (path)
                                   (starts-with-subseq "shard-"
@@ -117,8 +118,8 @@ series is complete. Tables with other columns are skipped."
                          (second texts) name (series-complete-p series texts))))))))))
 
 (defun missing-shards (experiment trials count directory)
-  "Return the sorted indices, from 0, of those of COUNT shards that lack rows of the first TRIALS
-trials of each condition of EXPERIMENT in DIRECTORY and the shards below it."
+  "Return the sorted indices, from 0, of the shards that lack rows, if COUNT shards run the first
+TRIALS trials of each condition of EXPERIMENT. Rows in DIRECTORY and in the shards below it count."
   (prepare-experiment experiment)
   (let ((presence (make-hash-table :test 'eq)) (missing (make-array count :element-type 'bit)))
     (map-existing-rows (lambda (condition trial fingerprint directory complete-p)

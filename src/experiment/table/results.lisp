@@ -14,7 +14,8 @@
   (texts '() list "the values of the factors, strings as in the table" :addition)
   (seeds (column) t)
   (trials (column) t
-          "a vector of the numbers of the trials; the other vectors are in its order" :addition)
+          "a vector of the numbers of the trials; the other vectors are in the same order"
+:addition)
   (outcomes (column) t
             "a vector of \"success\", \"failure\", \"limit\", \"error\" and \"timeout\"" :addition)
   (reasons (column) t "a vector of strings that say why trials failed" :addition)
@@ -125,7 +126,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 
 ;; A table is sorted unless the run that writes it continues, or was killed.
 (defun results-if-sorted (file)
-  "Return the results in the table FILE; NIL if it is not sorted."
+  "Return the results in the table FILE; NIL if FILE is not sorted."
   (let* ((columns (header-of file))
          (results (%make-results columns))
          (seed (seed-column columns))
@@ -159,7 +160,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                                 the directory that it is in"))
 
 (defun existing-table (directory)
-  "Return the path of DIRECTORY. Signals MISUSE unless it has a table."
+  "Return the path of DIRECTORY. Signals MISUSE unless DIRECTORY has a table."
   (let ((path (directory-called directory)))
     (check-files-plain path)
     (unless (existing-path (rows-file path))
@@ -176,7 +177,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 (addition read-results)
 (defun read-results (directory)
   "Return the results in DIRECTORY, as kept by RUN-EXPERIMENT or MERGE-RESULTS. Signals MISUSE if
-there are none, and DAMAGED-TABLE."
+DIRECTORY has no results, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
   (let ((path (existing-table directory)))

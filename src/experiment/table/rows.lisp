@@ -39,8 +39,8 @@
                (write-string (csv-line (cons (integer-text tick) texts)) out)))))
 
 (defun texts-with-checksum (texts experiment series)
-  "Return TEXTS, of a row of EXPERIMENT. If EXPERIMENT records series, add the checksum of SERIES,
-the trial's lines, at the end."
+  "Return TEXTS, the cells of a row of EXPERIMENT. If EXPERIMENT records series, add the checksum of
+SERIES, the trial's lines, at the end."
   (if (experiment-series experiment)
       (append texts (list (format nil "~8,'0X" (text-checksum series))))
       texts))
@@ -68,8 +68,8 @@ the trial's lines, at the end."
 (defun call-writing (function file
                      &optional (trouble "it cannot be written (~A). Is it, or its directory, ~
                                          read-only?"))
-  "Call FUNCTION, which opens or changes FILE. If the system refuses, signal DAMAGED-TABLE with
-TROUBLE and the reason."
+  "Call FUNCTION, which opens or changes FILE. If the operating system refuses, signal DAMAGED-TABLE
+with the text TROUBLE and the reason."
   (handler-case (funcall function)
     (ars-magna-error (condition) (error condition))
     (error (condition) (reject-table file nil trouble (unwritten-reason condition)))))
@@ -77,9 +77,9 @@ TROUBLE and the reason."
 ;;; The header.
 
 (defparameter *rows-layout* (list *columns-between* *columns-after*)
-  "The columns of a table of rows from the seed on, before and after the measures.")
+  "Two lists of columns of a table of rows: from the seed to the measures, and after the measures.")
 (defparameter *series-layout* (list *series-columns* '())
-  "The same for a table of series.")
+  "Two lists of columns of a table of series: from the seed to the values, and after the values.")
 
 (defun table-columns-p (columns layout)
   "True if COLUMNS can be those of an experiment's table with LAYOUT."
@@ -122,7 +122,7 @@ TROUBLE and the reason."
        (ignore-errors (parse-integer text))))
 
 (defun check-cells (cells columns file number)
-  "Signal DAMAGED-TABLE unless CELLS, those from the seed on in line NUMBER of FILE, are valid."
+  "Signal DAMAGED-TABLE unless CELLS, the cells from the seed on in line NUMBER of FILE, are valid."
   (flet ((check (test column)
            (unless test
              (reject-row file number "~A cannot be the ~A of a trial."
@@ -145,15 +145,15 @@ TROUBLE and the reason."
         (check (or (string= "" digest) (hexadecimal-p digest)) "digest")))))
 
 (defun line-text (line)
-  "Return the text of LINE, whose characters are octets."
+  "Return the text of LINE, a string whose characters stand for octets."
   (declare #.*hot* (type (simple-array character (*)) line))
   (if (every (lambda (char) (< (char-code char) 128)) line)
       line
       (decoded line)))
 
 (defun cells-of-line (line columns file number)
-  "Return the cells of LINE, of octets, the line NUMBER of FILE, a table of rows or series with
-COLUMNS. Signals DAMAGED-TABLE."
+  "Return the cells of LINE, the octets of line NUMBER of FILE. FILE is a table of rows or series
+with COLUMNS. Signals DAMAGED-TABLE."
   (let ((texts (handler-case (csv-texts (line-text line))
                  (broken-line () '()))))
     (unless (= (length texts) (length columns))

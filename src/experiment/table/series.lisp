@@ -29,7 +29,7 @@ start and end, and the number of the first line."
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
 (defun blocks-of (index key seed trial)
-  "Return the blocks in INDEX of TRIAL with SEED, of the rows that have KEY before the seed."
+  "Return the blocks in INDEX of TRIAL with SEED whose rows have the texts KEY before the seed."
   (let ((group (gethash key (series-index-groups index))))
     (and group
          (remove seed (gethash trial group) :key #'block-seed :test-not #'=))))
@@ -139,8 +139,9 @@ start and end, and the number of the first line."
 ;;; are dropped when the table is sorted.
 
 (defun count-expected (texts seed)
-  "Return the number of lines of the trial with the row TEXTS, with SEED the column of the seed. It
-is 0 if the row has no digest, as after a timeout or the end of the thread."
+  "Return the number of lines that the trial with the row TEXTS must have. SEED is the index of the
+seed's column. The number is 0 if the row has no digest, as after a timeout or the end of the
+thread."
   (if (string= "" (first (last texts 2)))
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))
@@ -154,14 +155,15 @@ is 0 if the row has no digest, as after a timeout or the end of the thread."
                   (count-expected texts (seed-column (series-index-columns index)))))
 
 (defun index-existing-series (experiment directory)
-  "Return the index of the series of EXPERIMENT in DIRECTORY; NIL if it records none. Signals
-DAMAGED-TABLE."
+  "Return the index of the series of EXPERIMENT in DIRECTORY; NIL if EXPERIMENT records no series.
+Signals DAMAGED-TABLE."
   (and (experiment-series experiment)
        (index-series (remove-if-not #'existing-path (list (series-file directory)))
                      (series-columns experiment))))
 
 (defun series-complete-p (index texts)
-  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL: there are no series."
+  "True if INDEX has all lines of the trial with the row TEXTS, or if INDEX is NIL because there are
+no series."
   (or (null index)
       (zerop (count-expected texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))
@@ -197,7 +199,8 @@ DAMAGED-TABLE."
                 (block-number whole) (native-name (block-file whole))))
 
 (defun check-same-lines (block whole line-of)
-  "Signal DAMAGED-TABLE unless the lines of BLOCK are among those of WHOLE, of the same trial."
+  "Signal DAMAGED-TABLE unless the lines of BLOCK are among the lines of WHOLE, a block of the same
+trial."
   (let ((lines (nthcdr (block-first block) (block-lines whole line-of)))
         (others (block-lines block line-of)))
     (unless (and (<= (length others) (length lines)) (every #'string= others lines))
@@ -218,8 +221,8 @@ DAMAGED-TABLE."
 
 ;; Conditions may have rows without series, from before the clause :each-tick was added.
 (defun select-blocks (rows index line-of)
-  "Return a vector of the blocks in INDEX of the trials in the table ROWS, in its order. Signals
-MISUSE if a trial has none, but others of its condition have."
+  "Return a vector of the blocks in INDEX of the trials in the table ROWS, in the order of ROWS.
+Signals MISUSE if a trial has no block but other trials of its condition have blocks."
   (let ((blocks (make-array 1000 :adjustable t :fill-pointer 0))
         (seed (seed-column (series-index-columns index))))
     (do-rows (texts rows)
@@ -246,9 +249,9 @@ MISUSE if a trial has none, but others of its condition have."
                         file))
 
 (defun write-sorted-series (files rows file)
-  "Write the lines in FILES, tables of series, of trials in the table ROWS to FILE, in the order of
-ROWS and each once; FILE may be one of them. Signals DAMAGED-TABLE and MISUSE, and leaves FILE
-unchanged then."
+  "FILES are tables of series. Write their lines for the trials in the table ROWS to FILE, in the
+order of ROWS, each line once. FILE may be one of FILES. Signals DAMAGED-TABLE and MISUSE; after an
+error FILE is unchanged."
   (let* ((columns (header-of (first files) *series-layout*))
          (index (index-series files columns)))
     (call-with-line-reader

@@ -12,7 +12,8 @@
 (defconstant +most-elements+ 20000000 "The most elements of arrays in data.")
 
 (defun plain-structure-p (value)
-  "True if VALUE is of a user's DEFSTRUCT or DEFINE-CONDITION, and not a fluent, thing or the like."
+  "True if VALUE is an instance of a user's DEFSTRUCT or DEFINE-CONDITION, and not a fluent, thing
+or other object of the simulator."
   (and (typep value '(or structure-object condition))
        (null (kind-of value))
        (users-symbol-p (type-of value))))
@@ -32,8 +33,9 @@
 ;;; Walking.
 
 (defstruct (walk (:constructor make-walk (digest atom)) (:copier nil))
-  "A walk through data: each part is added to DIGEST, and ATOM is called with parts that have no
-parts. PATH maps the compounds around the current part to their depths."
+  "The state of a walk through data. Each part is added to DIGEST. The function ATOM is called with
+each part that has no parts itself. PATH maps the compounds around the current part to their
+depths."
   (digest nil :type digest :read-only t)
   (atom nil :type function :read-only t)
   (path (make-hash-table :test 'eq) :read-only t)
@@ -122,15 +124,15 @@ parts. PATH maps the compounds around the current part to their depths."
 ;;; Digests.
 
 (defun call-walking (value atom)
-  "Call ATOM with each part of VALUE that has no parts. Return a digest of VALUE; NIL if it is too
-large."
+  "Call ATOM with each part of VALUE that has no parts itself. Return a digest of VALUE; NIL if
+VALUE is too large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
       (call-plainly (lambda () (walk-value value 0 walk)) (find-package :keyword))
       (digest-value (walk-digest walk)))))
 
 (defun data-number (value)
-  "Return a digest of VALUE, including the packages of symbols; NIL if it is too large."
+  "Return a digest of VALUE, including the packages of symbols; NIL if VALUE is too large."
   (call-walking value #'identity))
 
 ;;; Weakly held objects can disappear at any time, so they are not data. But a trial can find what
@@ -161,8 +163,8 @@ CALL-WALKING."
                         (find-package :keyword))))))
 
 (defun no-data-p (value)
-  "True if VALUE is not data, or is NIL or an empty hash table, which often stand where data are
-kept later."
+  "True if VALUE is not data, or is NIL or an empty hash table. A variable that holds data later
+often has one of these values first."
   (or (null value)
       (and (hash-table-p value) (zerop (hash-table-count value)))
       (not (typep value '(or plain-atom compound)))))

@@ -30,7 +30,7 @@
 (defparameter *simulator-version*
   (macrolet ((version () (asdf:component-version (asdf:find-system "ars-magna"))))
     (version))
-  "The version in the system definition.")
+  "The version of the simulator, from the system definition.")
 
 ;;;; Which users' code a function can reach
 
@@ -40,8 +40,9 @@
 ;;; looked up in other ways is missed: by a computed name, or as a function in a table or structure.
 
 (defstruct (reach (:constructor make-reach ()) (:copier nil))
-  "What has been reached. PARTS are lists (kind name number), FILES the files they are from,
-VARIABLES special variables. WEAK-PARTS are such lists for what variables hold weakly."
+  "The definitions that a trial can reach. PARTS are lists (kind name number). FILES are the files
+that contain the parts. VARIABLES are special variables. WEAK-PARTS has lists (kind name number) for
+objects that variables hold weakly."
   (seen (make-hash-table :test 'eq) :read-only t)
   (parts '() :type list)
   (files '() :type list)
@@ -52,7 +53,8 @@ VARIABLES special variables. WEAK-PARTS are such lists for what variables hold w
   (pushnew (list kind name number) (reach-parts reach) :test #'equal))
 
 (defun note-file (file written reach)
-  "Note that something reached is from FILE, loaded when its write date was WRITTEN, or NIL."
+  "Note in REACH that FILE has a definition that a trial can reach. WRITTEN is the write date of
+FILE when it was loaded, or NIL."
   (let ((known (find file (reach-files reach) :key #'first :test #'string=)))
     (cond ((null known) (push (list file written) (reach-files reach)))
           (written (setf (second known) written)))))
@@ -69,7 +71,7 @@ VARIABLES special variables. WEAK-PARTS are such lists for what variables hold w
   (not (shiftf (gethash object (reach-seen reach)) t)))
 
 (defun visit-function (function name reach)
-  "Visit FUNCTION. NAME is its name, or NIL if it is part of another function."
+  "Visit FUNCTION. NAME is the function's name, or NIL if it is part of another function."
   (when (first-visit-p function reach)
     (cond ((typep function 'generic-function)
            (dolist (method (code-references function)) (visit-function method name reach)))
@@ -86,8 +88,8 @@ VARIABLES special variables. WEAK-PARTS are such lists for what variables hold w
                    reach))))
 
 (defun note-function (function name reach)
-  "Note FUNCTION, the definition of NAME, if its file does not determine it: it was set in another
-way, as by a trial, or it is a closure."
+  "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. This is so for
+closures, and for functions that were set in another way, as by a trial."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
@@ -95,15 +97,15 @@ way, as by a trial, or it is a closure."
       (note-part :function (qualified-symbol-name name) (data-number values) reach))))
 
 (defun note-weak (object symbol reach)
-  "Note what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
+  "Note in REACH what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
   (when (and (weak-p object) (first-visit-p object reach))
     (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
       (setf (gethash (list :variable (qualified-symbol-name symbol) number)
                      (reach-weak-parts reach)) t))))
 
 (defun visit-variable (symbol reach)
-  "Visit the variable SYMBOL and its value, which is a part if it is data. NIL and an empty table
-are not, since they often stand where a table or structure is filled later."
+  "Visit the variable SYMBOL and its value. A value that is data is noted as a part in REACH. NIL
+and an empty table are not noted, because a variable that holds data later often has them first."
   (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
   (let ((value (global-value symbol)))
     (flet ((visit-atom (atom)
@@ -135,7 +137,7 @@ are not, since they often stand where a table or structure is filled later."
             ((consp value) (visit-functions-in-list value reach))))))
 
 (defun visit-functions-in-list (list reach)
-  "Visit the functions in LIST and in slots of structures in it, such as methods."
+  "Visit the functions in LIST, such as methods, and those in slots of structures in LIST."
   (when (proper-list-p list)
     (dolist (element list)
       (cond ((functionp element) (visit-function element nil reach))
@@ -196,7 +198,7 @@ are not, since they often stand where a table or structure is filled later."
 ;;; except other experiments.
 
 (defparameter *file-digests* (make-hash-table :test 'equal :synchronized t)
-  "Digests of files by name. The files of a saved Lisp may be gone when it runs.")
+  "A table from names of files to digests. A saved Lisp needs the table if its files are gone.")
 
 (defvar *digests-settled-p* nil
   "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
@@ -205,8 +207,8 @@ are not, since they often stand where a table or structure is filled later."
   (name-in-directory (native-path file)))
 
 (defun digest-of-file (file written)
-  "Return a digest of the code in FILE. Signals MISUSE if its write date is no longer WRITTEN, the
-one at which it was loaded, or NIL."
+  "Return a digest of the code in FILE. Signals MISUSE if the file's write date has changed since it
+was loaded. WRITTEN is the date at loading, or NIL."
   (let ((now (ignore-errors (file-write-date (native-path file)))))
     (cond ((and *digests-settled-p* (gethash file *file-digests*)))
           ((and now (or (null written) (= now written)))
@@ -256,7 +258,8 @@ one at which it was loaded, or NIL."
     reach))
 
 (defun fingerprint-parts (experiment condition)
-  "Return the sorted parts of the fingerprint of CONDITION of EXPERIMENT, and its reach."
+  "Return the sorted parts of the fingerprint of CONDITION of EXPERIMENT, and the condition's
+REACH."
   (let* ((definitions (definitions-in-trial experiment condition))
          (reach (find-reach experiment condition definitions)))
     (values
@@ -298,7 +301,8 @@ one at which it was loaded, or NIL."
        parts))))
 
 (defun prepare-trials (experiment condition)
-  "Set the variables of CONDITION of EXPERIMENT, but no fingerprint: its files may have changed."
+  "Set the variables of CONDITION of EXPERIMENT, but not its fingerprint, because its files may have
+changed."
   (call-plainly
    (lambda ()
      (set-reach condition

@@ -24,7 +24,7 @@
   (error "" string "the text of the first error; \"\" if there was none" :writable :export))
 
 (defparameter *plan-states* '(:succeeded :failed :evaporated :deadlock :limit :stopped)
-  "The second values of RUN-PLAN.")
+  "The possible second values of RUN-PLAN.")
 
 (defun success-p (outcome) (string= outcome "success"))
 
@@ -48,7 +48,7 @@
                    (if (and reason (typep reason '(or symbol string))) (value-text reason) "")))))
 
 (defun check-ticks-passed (values)
-  "Signal MISUSE if VALUES, of :run, are a plan or its name, and no tick has passed."
+  "Signal MISUSE if VALUES, the values of :run, are a plan or its name, and no tick has passed."
   (let* ((value (first values))
          (plan (and value
                     (null (rest values))
@@ -61,13 +61,13 @@
 
 (defun error-in-plan (values)
   "Return the text of the Lisp error by which a plan failed, if VALUES are those of RUN-PLAN; else
-an empty one."
+an empty text."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
 
 (defun add-error (result text)
-  "Set the error of RESULT to TEXT, unless it has one already."
+  "Set the error of RESULT to TEXT, unless RESULT has an error already."
   (when (string= "" (result-error result))
     (setf (result-error result) (plain-text text))))
 
@@ -77,8 +77,8 @@ an empty one."
   (apply (the function function) (condition-arguments condition)))
 
 (defun checked-truth (clause function condition)
-  "Return the value of FUNCTION, of the form of CLAUSE. Signals MISUSE if it is a fluent or the
-failure of a plan."
+  "Return the value of FUNCTION, which evaluates the form of CLAUSE. Signals MISUSE if the value is
+a fluent or the failure of a plan."
   (let ((value (call-form function condition)))
     (when (fluent-p value)
       (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
@@ -98,10 +98,10 @@ table cannot have that value."
     (value-text value)))
 
 (defvar *aside-p* nil
-  "True while a stopped trial is inspected: errors are then not the trial's.")
+  "True while a stopped trial is inspected: errors are then not errors of the trial.")
 
 (defun call-until-error (function)
-  "Call FUNCTION, which may not exit this Lisp. Return the error that ended it, or NIL."
+  "Call FUNCTION, which may not exit this Lisp. Return the error that ended the call, or NIL."
   (flet ((leave (condition)
            (unless *aside-p*
              (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
@@ -113,7 +113,7 @@ table cannot have that value."
     nil))
 
 (defun trouble-text (function)
-  "Call FUNCTION. Return the text of the error that ended it, or NIL."
+  "Call FUNCTION. Return the text of the error that ended the call, or NIL."
   (let ((trouble (catch 'broken-off
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
@@ -130,7 +130,7 @@ table cannot have that value."
 ;;; plans run, and a run with one has no deadlocks, because the observer might set a fluent.
 
 (defstruct (sampler (:constructor make-sampler (experiment result)) (:copier nil))
-  "The state of taking samples of a trial."
+  "The state of recording the :each-tick values of a trial."
   (experiment nil :type experiment :read-only t)
   (result nil :type result :read-only t)
   ;; Lists (tick text...), the newest first.
@@ -165,7 +165,7 @@ table cannot have that value."
     (call-with-temporary-dice function tick world)))
 
 (defun sampled-text (sampler name function tick)
-  "Return the text of the value of FUNCTION, called NAME, at TICK; \"\" if it signals an error.
+  "Return the text of the value of FUNCTION, named NAME, at TICK; \"\" if FUNCTION signals an error.
 SAMPLER keeps the first error."
   (let* ((text "")
          (condition (result-condition (sampler-result sampler)))
@@ -197,7 +197,8 @@ SAMPLER keeps the first error."
         do (pop (sampler-samples sampler))))
 
 (defun sample-once (sampler simulation)
-  "Add a sample of SIMULATION to SAMPLER, unless it has one of this tick or the tick is not over."
+  "Add a sample of SIMULATION to SAMPLER, unless SAMPLER has a sample of this tick or the tick is
+not over."
   (let ((tick (simulation-tick simulation)))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (drop-later-samples sampler tick)
@@ -216,8 +217,8 @@ SAMPLER keeps the first error."
       (min 1 count))))
 
 (defun call-sampling (function experiment result)
-  "Call FUNCTION, which runs the trial of RESULT in the current simulation, and record :each-tick of
-EXPERIMENT for NOTE-SERIES."
+  "Call FUNCTION, which runs the trial of RESULT in the current simulation, and record the
+:each-tick values of EXPERIMENT for NOTE-SERIES."
   (let ((*sampler* (and (experiment-series experiment) (make-sampler experiment result)))
         (simulation (current-simulation)))
     (when *sampler*
@@ -225,7 +226,8 @@ EXPERIMENT for NOTE-SERIES."
     (funcall function)))
 
 (defun note-series (result)
-  "Set the series of RESULT; and its error, if it has none yet, to the first error of sampling."
+  "Store the recorded series in RESULT. If RESULT has no error yet, also store the first error of
+recording."
   (when *sampler*
     (sample-once *sampler* (current-simulation))
     (setf (result-series result) (reverse (sampler-samples *sampler*)))

@@ -11,8 +11,8 @@
 ;;; Ticks. A trial that asks for more than the limit is left by a THROW.
 
 (defun limit-gate (limit next)
-  "Return a gate that lets LIMIT ticks of a simulation pass, and then leaves the trial. NEXT is a
-gate to call as well, or NIL."
+  "Return a gate, a function that lets LIMIT ticks of a simulation pass and then leaves the trial.
+NEXT is another gate to call, or NIL."
   (lambda (simulation)
     (let ((left (- limit (simulation-tick simulation))))
       (unless (plusp left) (throw 'out-of-ticks nil))
@@ -23,7 +23,7 @@ gate to call as well, or NIL."
 (defvar *null-output* (make-broadcast-stream) "A stream that discards the output of trials.")
 
 (defun call-in-silence (function)
-  "Call FUNCTION. Discard its output; entering the debugger is an error."
+  "Call FUNCTION and discard its output. Entering the debugger is an error."
   (let* ((nobody (make-two-way-stream (make-concatenated-stream) *null-output*))
          (*standard-output* *null-output*) (*error-output* *null-output*)
          (*trace-output* *null-output*)
@@ -37,8 +37,8 @@ gate to call as well, or NIL."
 ;; Each trial has its own states of fluents and valves, as forks have. Variables that trials can
 ;; reach are bound, so no trial sees what another sets.
 (defun call-in-trial (function experiment condition trial &key gate journal)
-  "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE is a gate to call
-besides that of the limit. If JOURNAL is true the simulation keeps a journal."
+  "Call FUNCTION in the fresh simulation of TRIAL of CONDITION of EXPERIMENT. GATE is another gate
+to call besides the gate of the limit. If JOURNAL is true the simulation keeps a journal."
   (let ((seed (trial-seed experiment trial))
         (limit (experiment-limit experiment)))
     (call-plainly
@@ -87,7 +87,7 @@ if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
 
 (defun run-noting-failures (experiment condition result)
   "Return the value of RUN-FORMS. If a plan started by BEGIN-PLAN fails, and :run does not handle
-that, return the values that RUN-PLAN would have returned, and set the error of RESULT."
+the failure, return the values that RUN-PLAN would have returned, and set the error of RESULT."
   (block run
     (handler-bind ((user-code-error
                      (lambda (error)
@@ -98,8 +98,8 @@ that, return the values that RUN-PLAN would have returned, and set the error of 
       (run-forms experiment condition))))
 
 (defun decide-trial (experiment condition outcome reason)
-  "Return the final outcome and reason of a trial of CONDITION; OUTCOME and REASON are those by
-:run. If only :run reports success, the trial failed: only-believed."
+  "Return the final outcome and reason of a trial of CONDITION; OUTCOME and REASON are those that
+:run gives. If only :run reports success, the trial fails with the reason only-believed."
   (let ((success (experiment-success experiment)))
     (cond ((null success) (values outcome reason))
           ((checked-truth :success success condition) (values "success" ""))
@@ -118,8 +118,9 @@ that, return the values that RUN-PLAN would have returned, and set the error of 
         (result-error result) (plain-text text)))
 
 (defun outcome-so-far (experiment values)
-  "Return outcome and reason of a trial of EXPERIMENT by VALUES, those of :run. If they are not from
-RUN-PLAN, and a plan waits for something that can never happen, the trial failed: deadlock."
+  "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If VALUES are
+not from RUN-PLAN, and a plan waits for something that can never happen, the trial fails with the
+reason deadlock."
   (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
     (if (and (success-p outcome)
              (not (experiment-until experiment))
@@ -143,8 +144,8 @@ RUN-PLAN, and a plan waits for something that can never happen, the trial failed
     (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
 
 (defun note-unfinished (result values)
-  "Add an error to RESULT for a plan that can never continue or has not ended, unless it is a
-success; or else for commands without a tick. VALUES are those of :run."
+  "Add an error to RESULT for a plan that can never continue or has not ended, unless RESULT is a
+success. Otherwise add an error for commands without a tick, if any. VALUES are the values of :run."
   (let ((text (or (and (not (success-p (result-outcome result)))
                        (or (stranded-plan-text) (unfinished-text values)))
                   (no-ticks-text))))
@@ -152,7 +153,8 @@ success; or else for commands without a tick. VALUES are those of :run."
 
 (defun note-unnoticed-failures (result values failed)
   "If RESULT is a success, add an error for the first of the FAILED tasks whose failure is not the
-first of VALUES, those of :run: a failure is true, and may have been taken for a success."
+first of VALUES, the values of :run. Such a failure is true, and :run may have taken it for a
+success."
   (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
     (when (and task (success-p (result-outcome result)))
       (add-error result
@@ -199,8 +201,8 @@ first of VALUES, those of :run: a failure is true, and may have been taken for a
                  experiment result))
 
 (defun run-trial (experiment condition trial &key gate)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT, with GATE as for CALL-IN-TRIAL. Return its
-result."
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT, with GATE as for CALL-IN-TRIAL. Return the
+trial's result."
   (let ((result (make-result condition trial (trial-seed experiment trial))))
     (call-noting-errors
      (lambda ()
