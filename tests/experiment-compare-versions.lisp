@@ -76,7 +76,7 @@ would be beyond doubt, and three seeds are p = 1/4."
                       (append (rows-of-outcomes "a" "0" "+--+")
                               (rows-of-outcomes "b" "0" "+++")))
     (is (= 1 (length (experiment:comparison-contrasts comparison))))
-    (is (mentions-p text "Only one of them has the condition plan=b noise=0."))
+    (is (mentions-p text "Only one of the tables has the condition plan=b noise=0."))
     (is (mentions-p text "Left out, as only one has their seeds: plan=a noise=0: 1 of dir 1."))))
 
 (test compare-results.refuses-what-does-not-belong-together
@@ -154,7 +154,7 @@ would be beyond doubt, and three seeds are p = 1/4."
     (made-up-table after (rows-of-outcomes "a" "0" "+-+") "A1")
     (is (mentions-p (format nil "~{~A~}" (experiment:comparison-changes
                                           (experiment:compare-results before after :stream nil)))
-                    "and yet the rows of 2 trials differ"))))
+                    "nevertheless the rows of 2 trials differ"))))
 
 ;;; Pictures.
 

@@ -323,4 +323,4 @@
                                  (rows-of-outcomes "b" "0" "++++" :way 7)))
     (is (mentions-p (third (experiment:comparison-verdicts
                             (experiment:compare-conditions results 1 2 :stream nil)))
-                    "over 2 common seeds (2 left out, without a number in both)"))))
+                    "over 2 common seeds (2 left out, where a number is missing)"))))

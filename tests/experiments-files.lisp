@@ -44,12 +44,12 @@
 (test names.of-two-conditions-differ
   (is-true (has-words-p (said-of-clauses '(:vary (a "p" "p b=q") (b "q" "q b=q"))
                                          '(:run (list a b)))
-                        "(:vary (a" "two conditions would be called a=p b=q b=q"
+                        "(:vary (a" "two conditions would be named a=p b=q b=q"
                         "\"p\" \"q b=q\" and \"p b=q\" \"q\""))
   (is-true (has-words-p (said-of-clauses '(:conditions (a (base:max-speed* 1))
                                            (|a| (base:max-speed* 2)))
                                          '(:run t))
-                        "two conditions would be called a,")))
+                        "two conditions would be named a,")))
 
 ;;; What is no file of bytes: reading a pipe would wait for ever, /dev/zero fill the memory.
 

@@ -211,7 +211,7 @@ nothing is."
   (is-true (has-words-p (refusal-of-trials (make-hash-table)
                                            '(setf (gethash (hash-table-count *question-data*)
                                                            *question-data*) t))
-                        "give each its own: (:run (let ((*question-data* ...)) ...))")))
+                        "give each trial its own value: (:run (let ((*question-data* ...)) ...))")))
 
 (test refusals.say-what-helps
   (eval '(sb-ext:defglobal **question-global** (list 0)))
@@ -229,7 +229,7 @@ nothing is."
                              ;; Nothing lets go of the value.
                              data '(setf (gethash 'x (first (base:ensure-list *question-data*)))
                                     'some-value))
-                            "*question-data*" "give each its own")))))
+                            "*question-data*" "give each trial its own value")))))
 
 (test weak-tables.may-lose-what-they-have
   (dolist (weakness '(:key :value :key-and-value))

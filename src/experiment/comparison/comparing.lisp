@@ -123,7 +123,7 @@ are values of one factor that several conditions have, each condition with FIRST
 the otherwise equal condition with SECOND, and all together, as by COMPARE-LEVELS. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results)
-                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-conditions stream)
   (let ((names (compared-names 'compare-conditions (list results) measure)))
     (multiple-value-bind (pairs place) (designated-pairs results first second)
@@ -138,15 +138,15 @@ all pairs; each seed then counts once, by its mean over the conditions. MEASURE,
 returned value and the errors are those of COMPARE-CONDITIONS. p is corrected for all tests
 together; tests over all pairs are corrected separately."
   (check-argument compare-levels results (results-p results)
-                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-levels stream)
   (let* ((names (compared-names 'compare-levels (list results) measure))
          (place (factor-place results factor))
          (base (level-called (levels results place) against))
          (pairs (pairs-differing-at results place nil base)))
     (unless pairs
-      (reject-use "No condition differs from one with ~A=~A only in that. (In designs, such as ~
-                   :sobol, all factors vary together.)"
+      (reject-use "No condition differs only in this factor from a condition with ~A=~A. (In ~
+                   designs, such as :sobol, all factors vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))
 
@@ -194,9 +194,10 @@ there."
                      sum (loop for (i . j) in (common-trials sample other)
                                count (not (same-row-p sample i other j))))))
     (unless (zerop count)
-      (list (format nil "WARNING: and yet the rows of ~D trial~:P differ. Something that is in no ~
-                         fingerprint affects them, such as data that trials share, a clock or a ~
-                         file, or rows have been changed. Do not rely on either table." count)))))
+      (list (format nil "WARNING: nevertheless the rows of ~D trial~:P differ. Something that no ~
+                         fingerprint covers affects these trials, such as data that trials ~
+                         share, a clock or a file, or rows have been changed. Do not rely on ~
+                         either table." count)))))
 
 (defun changes-between (pairs after before)
   "Return sentences on the code and data that affect the trials of PAIRS in only one of two tables,
@@ -264,8 +265,8 @@ the names of conditions that only FIRST or only SECOND has."
                              (reject-use "One of the tables to compare has no rows.")))
                        (list before after))))
     (unless (apply #'string= names)
-      (reject-use "One table is of the experiment ~A and the other of ~A. Give two of one ~
-                   experiment."
+      (reject-use "One table is of the experiment ~A and the other of ~A. Give two tables ~
+                   of one experiment."
                   (first names) (second names)))
     (first names)))
 
@@ -285,7 +286,7 @@ the names of conditions that only FIRST or only SECOND has."
                         (list (overall-contrast first second pairs names after before)))
           :changes (changes-between pairs (results-directory after) (results-directory before))
           :notes (and lacking
-                      (list (format nil "Only one of them has the condition~P ~{~A~^, ~}."
+                      (list (format nil "Only one of the tables has the condition~P ~{~A~^, ~}."
                                     (length lacking) lacking))))
          stream "~A and ~A have no trials of equal condition and seed." before-name after-name)))))
 

@@ -36,7 +36,7 @@ no named case determines."
   "Return the index of the factor of RESULTS that is named FACTOR. Signals UNKNOWN-NAME."
   (or (and (typep factor '(or symbol string))
            (position (string factor) (results-factors results) :test #'string-equal))
-      (reject-name "column of what varies" (princ-to-string factor) (results-factors results))))
+      (reject-name "factor" (princ-to-string factor) (results-factors results))))
 
 (defun level-called (levels value)
   "Return the level in LEVELS that is VALUE, or the first level if VALUE is NIL. Signals

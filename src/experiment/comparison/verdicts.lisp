@@ -99,7 +99,7 @@ p."
 (defun left-out-words (difference)
   (let ((count (paired-left-out difference)))
     (when (plusp count)
-      (format nil "~D left out, without a ~:[number~;value~] in both" count
+      (format nil "~D left out, where a ~:[number~;value~] is missing" count
               (eq :rate (paired-kind difference))))))
 
 (defun trials-words (difference)
@@ -254,7 +254,7 @@ are 0."
 (defun comparison-remarks (comparison)
   (append (and (comparison-overall comparison)
                (list "Over all, each seed counts once, with its mean over the conditions."
-                     "Tests over all are corrected apart from tests in each condition."))
+                     "Tests over all conditions are corrected separately from other tests."))
           (comparison-notes comparison)
           (loop for contrast in (comparison-contrasts comparison)
                 append (left-out-notes contrast))))
@@ -310,14 +310,14 @@ are 0."
 (addition print-comparison)
 (defun print-comparison (comparison &optional (stream *standard-output*))
   "Write COMPARISON to STREAM and return it:
-  what is compared, and what the experiment asks, if known;
-  of versions, what has changed between them;
+  what is compared, and the question of the experiment, if it is known;
+  for versions, what has changed between the two;
   the verdicts (see COMPARISON-VERDICTS), a line each;
   what was left out, if anything;
-  a table, with a line for each pair of conditions: how many trials succeeded in both, one and
-    neither; and below it a row for each measure: the number of seeds, both rates or means, the
-    difference (of rates in points) with its 95 % interval, and p before and after Holm's
-    correction for all tests."
+  a table, with a line for each pair of conditions that says how many trials succeeded in both, one
+    and neither, and below that line a row for each measure: the number of seeds, both rates or
+    means, the difference (of rates in points) with its 95 % interval, and p before and after
+    Holm's correction for all tests."
   (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
   (write-wrapped (format nil "The experiment ~A, seed by seed~@[: ~A~]."
                          (comparison-experiment comparison) (comparison-sides comparison))

@@ -45,13 +45,13 @@ WHICH is a list of some of these:
   :TICKS        the ticks of trials that succeed: medians, with 95 % intervals
   :MEASURES     measures: rates, or means and all numbers
   :SURVIVAL     the share of trials not yet done after so many ticks
-  :DIFFERENCES in success and ticks, between the values of a factor, seed by seed The first factor
-whose values are numbers is the x axis. The others make series, and if these are more than six,
-several pictures. Pictures without data are left out. The title is the experiment's question, if the
-experiment is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing or the directory
-cannot be made."
+  :DIFFERENCES  in success and ticks, between the values of a factor, seed by seed
+The first factor whose values are numbers is the x axis. The other factors make series; more than
+six series make several pictures. Pictures without data are left out. The title is the experiment's
+question, if the experiment is loaded. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing
+or the directory cannot be made."
   (check-argument save-result-pictures results (results-p results)
-                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-argument save-result-pictures directory (typep directory '(or string pathname))
                   "the name of a directory")
   (check-argument save-result-pictures kind (member kind '(:svg :png)) ":svg or :png")

@@ -136,7 +136,7 @@ CLAUSE if there are no elements."
   "Signal MALFORMED-DEFINITION about CLAUSE unless the symbol NAME can name a column."
   (unless (and (string/= "" name) (every #'writable-char-p (symbol-name name)))
     (reject-clause definition clause
-                   (format nil "another name: a table has it, so it cannot be empty, nor have ~
+                   (format nil "another name: names of columns cannot be empty, nor have ~
                                 characters that cannot be seen, such as line feeds"))))
 
 (defun keyword-factor-p (name)
@@ -294,7 +294,7 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (unless (given-p :run) (reject-clause definition (list name +more+) "a clause (:run form...)")))
   (when (and (clause-arguments :thinking clauses) (member :thinking (varied-names clauses)))
     (reject-clause definition (find :thinking clauses :key #'first)
-                   "no such clause where :thinking varies"))
+                   "no clause (:thinking mode) if :thinking varies"))
   (dolist (part (clause-arguments :vary clauses))
     (when (find-if (lambda (case) (intersection (part-names part) (mapcar #'first (rest case))))
                    (clause-arguments :conditions clauses))

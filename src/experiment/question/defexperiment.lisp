@@ -79,8 +79,8 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
 
 (addition defexperiment)
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)
-  "Define the experiment NAME, which RUN-EXPERIMENT runs. A string may come first, with the question
-that it asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
+  "Define the experiment NAME, which RUN-EXPERIMENT runs. An optional string first gives the
+question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
   (:robots name...)          the robots in the world of each trial, all of one map
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
@@ -97,24 +97,25 @@ that it asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
   (:limit n)                 the most ticks of a trial, 100000 by default
   (:time-limit n)            the most seconds of real time of a trial, none by default;
                              RUN-EXPERIMENT overrides it
-  (:parameters (p form)...)  parameters, where not the manual's; your own settings do not count
+  (:parameters (p form)...)  parameters whose values are not the manual's; your own settings do
+                             not count
   (:clean)                   no noise, except where :parameters and :vary set it. (With noise in
                              perception set NO-SENSOR-ERROR* to NIL.)
   (:thinking mode)           the cost of thinking, see SET-THINKING; :FREE by default
   (:until form)              after :run, ticks pass until FORM is true; for continuations
   (:success form)            whether the trial succeeded, evaluated at its end; see TRIAL-VALUES.
-                             If only :run reports success, the trial failed: only-believed
-  (:measure (name form)...)  values at its end: numbers, T or NIL, symbols, strings, or :NONE for
-                             no value
-  (:each-tick (name form)...)  such values before the first tick and after each tick, once plans
-                             have run; kept in series.csv, see TRIAL-SERIES. The forms must only
-                             read. They have their own random numbers; any other change that they
-                             make affects the trial
-Without :success and :until the values of :run decide: those of RUN-PLAN by the plan's outcome; the
-task that BEGIN-PLAN returns by its outcome (unfinished: it has not ended); otherwise the first
-value is true for success, and the second, a symbol or string, is the reason. If a plan started by
-BEGIN-PLAN waits for something that can never happen, the trial failed: deadlock. RUN-EXPERIMENT
-tells what is kept."
+                             If only :run reports success, the trial fails: only-believed
+  (:measure (name form)...)  values at the end of the trial: numbers, T or NIL, symbols, strings,
+                             or :NONE for no value
+  (:each-tick (name form)...)  values before the first tick and after each tick, once plans have
+                             run; kept in series.csv, see TRIAL-SERIES. The forms must only read.
+                             They have their own random numbers; any other change that they make
+                             affects the trial
+Without :success and :until the values of :run decide. If RUN-PLAN or the task of BEGIN-PLAN is
+returned, the outcome of the plan counts (unfinished if the task has not ended). Otherwise a true
+first value is success, and the second value, a symbol or string, is the reason. If a plan started
+by BEGIN-PLAN waits for something that can never happen, the trial fails: deadlock. The
+documentation of RUN-EXPERIMENT says what is kept."
   (let ((definition (title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)
         (if (stringp (first clauses))
@@ -157,7 +158,7 @@ tells what is kept."
   (dolist (name names)
     (unless (and name (symbolp name))
       (reject-clause definition part
-                     "names of robots; with a quote where they vary: (:robots 'ann '(ann bob))"))
+                     "names of robots. In :vary, quote each value: (:robots 'ann '(ann bob))"))
     (unless (find-blueprint name nil)
       (reject-clause definition part
                      (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
@@ -187,7 +188,7 @@ tells what is kept."
 
 (defun check-values (definition part values)
   (unless (and (proper-list-p values) values)
-    (reject-clause definition part "one value at least, in a list"))
+    (reject-clause definition part "a list of at least one value"))
   (dolist (value values) (check-value definition part value))
   (check-values-differ definition part (mapcar #'value-text values)))
 
@@ -216,7 +217,7 @@ tells what is kept."
       (let* ((name (condition-name condition)) (other (gethash name known)))
         (when other
           (reject-clause definition clause
-                         (format nil "other names or values: two conditions would be called ~A, ~
+                         (format nil "other names or values: two conditions would be named ~A, ~
                                       ~{~S~^ ~} and ~{~S~^ ~}"
                                  (cut name 60) (condition-texts other)
                                  (condition-texts condition))))

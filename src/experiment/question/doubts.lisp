@@ -30,7 +30,7 @@
 (defun doubt-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
-    (doubt-definition "a trial is already a run. A with-simulation in it starts another one, with ~
+    (doubt-definition "a trial is already a run. A with-simulation in it starts another run, with ~
                        the same seed in each trial, and measures do not see it. Leave ~
                        with-simulation out: (run-plan ...) alone.")))
 
@@ -61,8 +61,8 @@
              (same-name-p 'run-plan (first (second form))))
     (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
       (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
-                         that ~S is T then. Write only ~S, whose second value says how it ended, ~
-                         or a clause (:success form)." (abridged form) (abridged (second form))))))
+                         that ~S is T even then. Write only ~S, whose second value says how the ~
+                         plan ended, or a clause (:success form)." (abridged form) (abridged (second form))))))
 
 (defun number-as-test-advice (form)
   (when (or (realp form)
@@ -113,6 +113,6 @@ false."
     (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
               (and name (fboundp name)))
       (let ((*print-case* :downcase) (*print-pretty* nil))
-        (doubt-definition "~A: the measure ~(~A~) is quoted, and so no value. Write the form ~
-                           alone: ~:[~S~;(~S ...)~]."
+        (doubt-definition "~A: the measure ~(~A~) is quoted: its value would be the form. Write ~
+                           the form alone: ~:[~S~;(~S ...)~]."
                           definition (first part) name (or name (second (second part))))))))

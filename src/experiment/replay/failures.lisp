@@ -157,7 +157,7 @@ an experiment that was run with a directory, or the directory's name. CONDITION 
 condition, from 1, its name, or a part of its name. Each call reads all of series.csv. Signals
 MISUSE (no directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
-                  "the number of a trial; they count from 1")
+                  "the number of a trial, counted from 1")
   (let* ((results (designated-results results))
          (file (series-file (directory-of-series results)))
          (sample (designated-sample results condition))

@@ -56,7 +56,7 @@ debugger without a user is an error of the trial."
   (complete-trial experiment result)
   (setf (simulation-gate (current-simulation))
         (lambda (simulation)
-          (reject-use "The trial is over, at tick ~D; no more of its ticks can pass."
+          (reject-use "The trial ended at tick ~D; no more ticks of this trial can pass."
                       (simulation-tick simulation))))
   (funcall then result))
 
@@ -116,7 +116,7 @@ one."
   (call-aside (lambda ()
                 (if (functionp step)
                     (eq :stop (funcall step simulation))
-                    (not (y-or-n-p "Tick ~D. Let the next one pass?"
+                    (not (y-or-n-p "Tick ~D. Let the next tick pass?"
                                    (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
@@ -153,7 +153,7 @@ there is no such row."
         for then in row
         unless (string= now then)
           collect (if (string= "fingerprint" column)
-                      (format nil "its code or configuration is another~@[; changed since: ~
+                      (format nil "its code or configuration is different~@[; changed since: ~
                                    ~{~A~^, ~}~]"
                               (changes-since (result-condition result) parts
                                              (directory-called directory)))
@@ -226,7 +226,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
 
 (defun check-replay (trial until then step journal directory)
   (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
-                  "the number of a trial; they count from 1")
+                  "the number of a trial, counted from 1")
   (check-argument replay-trial until (or (null until) (whole-p until 0))
                   "a tick, 0 or more, or NIL")
   (check-argument replay-trial then (typep then '(or function (and symbol (not null))))
@@ -241,21 +241,21 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
 (addition replay-trial)
 (defun replay-trial (experiment condition trial
                      &key until (then (constantly nil)) rate step journal trace directory)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT again: the same run as that of its row, plans
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT again: the same run as in its row, plans
 included. CONDITION is a number from 1, or an unambiguous part of its name. The trial runs in this
 thread: you see what it writes, and PRINT-PLANS, WHY and *BREAK-ON-USER-ERROR* work as usual. THEN,
 a function of no arguments, is called when the trial has ended or is stopped, while its simulation
 still exists, for example to call SAVE-PICTURE.
 
-  :until TICK   stops it there, in the middle of what it does
-  :rate R       passes R ticks a second, or :FREE, and opens a display if there is one
+  :until TICK   stops the trial at TICK, in the middle of what it does
+  :rate R       lets R ticks a second pass, or all at once (:FREE), and opens a display, if any
   :step T       asks before each tick whether it may pass; a function is called instead, with the
                 simulation, and stops the trial if it returns :STOP
   :trace T      keeps a trace of plans, for WHY and SAVE-PLAN-TIMELINE
-  :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; a name of a file saves it there
+  :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; the name of a file also saves it
   :directory D  compares the result with its row in D
 
-Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if it was stopped),
+Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if stopped),
 :reason, :ticks, :digest (as in the row), :measures (lists (name value)), :series (what :each-tick
 recorded, lists (tick value...)), :error, :journal, and :differences from the row, in words. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."

@@ -92,11 +92,11 @@ of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addi
 (defvar *statistics* '() "Lists (kind function . options), in order of definition.")
 
 (defmacro define-statistic (kind (values confidence) (&rest options) &body body)
-  "Define estimates of KIND: BODY returns three values for VALUES, a vector that is not empty: the
-value and the bounds of its interval at CONFIDENCE; any may be NIL. OPTIONS are
+  "Define estimates of KIND. For VALUES, a vector that is not empty, BODY returns three values: the
+estimate and the two bounds of its interval at CONFIDENCE. Any of these may be NIL. OPTIONS are
   :heading text   what headings of tables add to the name of the measure;
-  :interval text  the name of its intervals in pictures;
-  :beside kind    each estimate of that kind has one of this, too, in a column beside its own.
+  :interval text  the name of the intervals of KIND in pictures;
+  :beside other   each estimate of the kind OTHER has an estimate of KIND in a column beside it.
 Return KIND."
   `(progn
      (setf *statistics*
@@ -221,16 +221,16 @@ each condition, in the table's order.
 
   success   the rate of all trials, with Wilson's interval; a trial with an error did not succeed
   ticks     the median of the trials that succeeded, with its interval by ranks
-  measures  a rate, if always true or false; else the mean of the numbers, if any, with Student's
-            interval, leaving out anything else; else texts, with their counts. :NONE, and measures
-            that an error prevented, do not count
+  measures  a rate, if all values are true or false; else the mean of the numbers, if any, with
+            Student's interval, without the other values; else texts, with their counts. :NONE, and
+            measures that an error prevented, do not count
 
-Intervals have a confidence of 95 %. If trials were added until they were narrow, it is that of the
-look at which the condition stopped: then the intervals of a condition at all its looks together are
-wrong in at most 5 of 100 runs. That holds for each condition by itself, not for all intervals of a
-table together."
+Intervals have a confidence of 95 %. If trials were added until the intervals were narrow, the
+confidence is that of the look at which the condition stopped: then the intervals of a condition at
+all its looks together are wrong in at most 5 of 100 runs. This bound holds for each condition by
+itself, not for all intervals of a table together."
   (check-argument summarize-results results (results-p results)
-                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (let* ((samples (results-samples results))
          (names (results-measures results))
          (kinds (loop for place from 0 below (length names)

@@ -117,8 +117,9 @@ intervals were WIDTH wide."
     (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
                  after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~
                  is allowed, so that the intervals of one condition, at all its looks together, ~
-                 err in at most 5 % of such runs~:[~*~;, each of these ~D conditions by itself: ~
-                 that one of them all errs is more likely~]. ~@(~{~A~^, ~}~)."
+                 err in at most 5 % of such runs~:[~*~;. This holds for each of these ~D ~
+                 conditions by itself; an error in one of all conditions is more likely~]. ~
+                 ~@(~{~A~^, ~}~)."
             (value-text width) (rest summaries) (length summaries)
             (loop for count in counts
                   for look = (interim-look-number count)
@@ -291,7 +292,7 @@ for each condition how often it succeeded, how often it reached the limit of tic
 the reasons of failures and the errors, with an example of each, and the kinds of intervals.
 Conditions that the experiment no longer has, if known, are in a separate table."
   (check-argument print-results results (results-p results)
-                  "results, as RUN-EXPERIMENT and READ-RESULTS return")
+                  "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
                   "an output stream")
   (let ((summaries (summarize-results results)))

@@ -74,15 +74,16 @@ variable or a function; else NIL."
     (let ((variable (name :variable)) (function (name :function)))
       (cond (variable
              (format nil "~:[No trial can bind the global variable ~A: define it with DEFVAR ~
-                          instead. ~;~*~]If trials change what ~A holds, give each its own: ~
-                          (:run (let ((~:*~A ...)) ...))."
+                          instead. ~;~*~]If trials change what ~A holds, give each trial its own ~
+                          value: (:run (let ((~:*~A ...)) ...))."
                      (find variable (condition-variables condition)
                            :key (lambda (bound) (qualified-symbol-name (first bound)))
                            :test #'string=)
                      (without-package variable) (without-package variable)))
             (function
-             (format nil "If trials replace ~A, or leave something in it for others, keep that in ~
-                          a variable, which each trial binds." (without-package function)))))))
+             (format nil "If trials replace ~A, or store data in it for other trials, keep the ~
+                          data in a variable, which each trial binds."
+                     (without-package function)))))))
 
 (defun check-unchanged (experiment parts directory)
   (loop for condition in (experiment-conditions experiment)

@@ -119,7 +119,8 @@ signal DAMAGED-TABLE."
                        (funcall finish stream))
     (stream-error (condition)
       (reject-table (pathname stream) nil
-                    "it cannot be continued (~A). Its rows are kept; continue once there is room."
+                    "no row can be added to this table (~A). The rows in it are kept; continue ~
+                     once there is room on the disk."
                     (unwritten-reason condition)))))
 
 ;; The series is written first, so that a trial with a row has all of its series.
@@ -185,7 +186,7 @@ or of a former condition if CONDITION is NIL."
               (and (null condition)
                    (find (second texts) (experiment-conditions experiment)
                          :key #'condition-fingerprint :test #'equal)))
-      (reject-row file number "Its condition, factors and fingerprint do not agree."))
+      (reject-row file number "The condition, factors and fingerprint of this row do not agree."))
     (unless (= (trial-seed experiment trial) (parse-integer (nth seed texts)))
       (reject-row file number "Trial ~D has the seed ~D, not ~A." trial
                   (trial-seed experiment trial) (nth seed texts)))))

@@ -24,7 +24,7 @@ from 1. Return the position after the last complete line."
 (defun header-of (file &optional (layout *rows-layout*))
   "Return the names of the columns of FILE, a table with LAYOUT. Signals DAMAGED-TABLE."
   (let ((line (first-line file)))
-    (unless line (reject-table file nil "it is empty. Delete it."))
+    (unless line (reject-table file nil "the file is empty. Delete this file."))
     (check-header-line line file)
     (let ((columns (ignore-errors (csv-texts (line-text line)))))
       (unless (table-columns-p columns layout)
@@ -154,7 +154,7 @@ value of each factor."
 the table FILE by the new file. If the new file cannot be written, signal DAMAGED-TABLE and leave
 FILE unchanged."
   (call-writing (lambda () (call-replacing-file function file :check check))
-                file "it cannot be replaced (~A). It is unchanged."))
+                file "the file cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a reader: a function that takes one of FILES and a position, and returns the
@@ -175,7 +175,7 @@ line there."
 
 (defun reject-conflict (row other)
   (reject-table (indexed-file row) (indexed-number row)
-                "this row and line ~D of ~A are of one trial and differ. Something outside of ~
+                "this row and line ~D of ~A are of the same trial and differ. Something outside of ~
                  the experiment affects its trials; no table can have both."
                 (indexed-number other) (native-name (indexed-file other))))
 

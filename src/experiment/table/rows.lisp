@@ -66,7 +66,7 @@ SERIES, the trial's lines, at the end."
   (reject-table file number "~? Delete the line; its trial will be run again." control arguments))
 
 (defun call-writing (function file
-                     &optional (trouble "it cannot be written (~A). Is it, or its directory, ~
+                     &optional (trouble "the file cannot be written (~A). Is it, or its directory, ~
                                          read-only?"))
   "Call FUNCTION, which opens or changes FILE. If the operating system refuses, signal DAMAGED-TABLE
 with the text TROUBLE and the reason."
