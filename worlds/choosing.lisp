@@ -13,7 +13,8 @@
 
 (defun leave-trolley (name places)
   "Put a trolley NAME, which blocks robots, at one of PLACES, points of the current world. NAME and
-the world's seed decide which. People move it among PLACES now and then. Return it."
+the world's seed decide at which place. People move the trolley among PLACES now and then. Return
+the trolley."
   (make-new-thing name (cons *world* (roll-element places (dice-for name)))
                   (list '(:size 30) '(:weight 25) '(:substance metal) '(:obsmove #t)
                         (list :haunts places))
@@ -28,7 +29,8 @@ the world's seed decide which. People move it among PLACES now and then. Return 
 ;;; rollouts).
 
 (defvar forecasts* '()
-  "For each choice of an errand, the share of rollouts that succeeded, the latest choice first.")
+  "A list of the share of rollouts that succeeded for each choice of an errand, the latest choice
+first.")
 
 (defun note-forecast (projections best)
   "Push the share of successful rollouts of the alternative with index BEST on FORECASTS*."
@@ -39,8 +41,9 @@ the world's seed decide which. People move it among PLACES now and then. Return 
   (dolist (point points) (travel-to me point)))
 
 (def-interp-proc choose-way (me which first second &key (trials 5))
-  "Drive the robot of ME by the way FIRST or SECOND, lists of points with the same end. WHICH is
-:FIRST, :SECOND, :ANY (at random) or :BEST (by TRIALS rollouts of each)."
+  "Drive the robot of the reckoning ME by the way FIRST or SECOND, lists of points with the same
+end. WHICH is
+:FIRST, :SECOND, :ANY (at random) or :BEST (by TRIALS rollouts of each way)."
   (case which
     (:first (follow-way me first))
     (:second (follow-way me second))
@@ -50,14 +53,14 @@ the world's seed decide which. People move it among PLACES now and then. Return 
              (follow-way me second)))))
 
 (def-interp-proc be-in-time (me which first second)
-  "Do CHOOSE-WAY. Fails with DEADLINE-MISSED after 240 ticks."
+  "Do CHOOSE-WAY with a deadline. Fails with DEADLINE-MISSED after 240 ticks."
   (with-deadline (240)
     (choose-way me which first second)))
 
 (def-interp-proc carry-messages (which &key start)
-  "Drive from the corridor of OFFICE to the library, back, and then to the meeting room. The two
-rooms have a deadline each of 240 ticks. WHICH is how each way is chosen, as in CHOOSE-WAY. START is
-the robot's position, a list (x y heading); the default is the true one. Return T. Fails with
+  "Drive from the corridor of OFFICE to the library, back, and then to the meeting room. Each of the
+two rooms has a deadline of 240 ticks. WHICH says how each way is chosen, as in CHOOSE-WAY. START is
+the robot's position, a list (x y heading); the default is the true position. Return T. Fails with
 DEADLINE-MISSED or :CANNOT-GET-THERE."
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot))))))
@@ -73,17 +76,17 @@ DEADLINE-MISSED or :CANNOT-GET-THERE."
 ;;; The experiment.
 
 (defun forecast (which)
-  "Return the share of 20 rollouts in which CARRY-MESSAGES, choosing by WHICH, succeeds."
+  "Return the share of 20 rollouts in which CARRY-MESSAGES succeeds if it chooses ways by WHICH."
   (projection-probability (project 'carry-messages :arguments (list which) :horizon 1200)))
 
 (defexperiment choosing-by-rollouts
   "How much does it help to try ways in rollouts before driving? And how good are the forecasts?
 
-Always the short way, always the long way, or either at random: each is in time at both places in
-about half of all trials, because the robot does not know what blocks it. Five rollouts for each way
-at each choice find that out. The measures:
-- FORECAST: the forecast probability of success. For :BEST it is the share of successful rollouts of
-  the way chosen last, otherwise the share of 20 rollouts at the start.
+A robot that always takes the short way, always the long way, or either at random is in time at both
+places in about half of all trials, because it does not know what blocks a way. Five rollouts for
+each way at each choice show what does. The measures:
+- FORECAST: the forecast probability of success. For :BEST the forecast is the share of successful
+  rollouts of the way chosen last, otherwise the share of 20 rollouts at the start.
 - MISS: the squared difference between FORECAST and the outcome (1 or 0). Its mean is the Brier
   score."
   (:robots marvin)

@@ -44,7 +44,7 @@
 
 (defun before-doorway (map door direction)
   "Return the point from which a robot should drive into the cell DOOR. DIRECTION, a step (dx dy),
-leads from DOOR to the robot's side of it."
+leads from DOOR to the side where the robot is."
   (destructuring-bind ((x y) (dx dy)) (list (middle-of door) direction)
     (let ((room (loop for length from 1 to 3
                       while (free-p map (+ x (* length dx)) (+ y (* length dy)))
@@ -70,8 +70,8 @@ leads from DOOR to the robot's side of it."
         (and (< .6 along (+ length 1)) (< across (max .4 (* .5 along))))))))
 
 (defun as-good-p (chart start point door goal)
-  "True if driving straight from START to POINT on CHART costs no more than the part of the way from
-START to GOAL that leads to the cell DOOR."
+  "True if the straight way from START to POINT on CHART costs no more than the way from START
+towards GOAL as far as the cell DOOR."
   (let ((cost (straight-cost chart start point)))
     (and cost
          (<= cost (- (way-cost chart start goal) (way-cost chart (middle-of door) goal))))))

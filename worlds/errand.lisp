@@ -13,8 +13,8 @@
 (in-readtable :nisp)
 
 (defstruct (errand (:include claim) (:copier nil))
-  "The parts, description and continuation of an errand. PATIENCE is how many more setbacks it
-accepts."
+  "The parts, description and continuation of an errand. PATIENCE is the number of further setbacks
+after which the errand ends."
   (camera nil :read-only t)
   (hand nil :read-only t)
   (bin nil :read-only t)
@@ -27,8 +27,8 @@ accepts."
 
 (defun run-errand (robot description continuation &key (camera 0) (hand 0) (bin 0))
   "Make ROBOT find something that fits DESCRIPTION, go to it, grasp it with HAND and stow it in BIN.
-Parts are given by index. Returns at once. At the end CONTINUATION gets an error code or NIL, and
-ROBOT. The codes:
+The camera, hand and bin are given by index. Returns at once. At the end CONTINUATION gets an error
+code or NIL, and ROBOT. The codes:
 - :GAVE-UP after too many setbacks.
 - :INSUFFICIENT-STRENGTH after three things that were too heavy.
 - :INSUFFICIENT-CAPACITY if BIN has no room. The hand then still holds the thing.
@@ -43,7 +43,8 @@ ROBOT. The codes:
 ;;; Endings and setbacks.
 
 (defun end-errand (errand err)
-  "End ERRAND with the error code ERR, or NIL for success. Does nothing if it has ended already."
+  "End ERRAND with the error code ERR, or NIL for success. Does nothing if ERRAND has ended
+already."
   (unless (errand-over errand)
     (setf (errand-over errand) #t)
     (funcall (errand-continuation errand) err (errand-robot errand))))
@@ -63,7 +64,7 @@ ROBOT. The codes:
 
 (defun unless-interrupted (errand err step)
   "Call STEP, a function of no arguments, whether the command succeeded or not. If ERR or the state
-of the robot shows that ERRAND was taken over, end it instead."
+of the robot shows that another program took over the robot, end ERRAND instead."
   (if (over-p errand err)
       (end-errand errand :interrupt)
       (funcall step)))
@@ -71,7 +72,8 @@ of the robot shows that ERRAND was taken over, end it instead."
 ;;; Finding.
 
 (defun find-target (errand)
-  "Search where the camera points. Track and approach what is found; if nothing is, look elsewhere."
+  "Search where the camera points. Track and approach the thing found; if none is found, look
+elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
       (cond ((over-p errand err) (end-errand errand :interrupt))
@@ -96,7 +98,8 @@ of the robot shows that ERRAND was taken over, end it instead."
 ;;; Going there.
 
 (defun track-then (errand designator next otherwise)
-  "Track DESIGNATOR and take the step NEXT when the track has begun, or OTHERWISE if it cannot."
+  "Track DESIGNATOR and take the step NEXT when the track has begun, or OTHERWISE if it cannot
+begin."
   (let ((begun #f))
     (camera-track (errand-camera errand) designator
       (continuation (err camera designator)
@@ -109,7 +112,8 @@ of the robot shows that ERRAND was taken over, end it instead."
   (track-then errand designator #'go-to-target #'find-target))
 
 (defun go-to-target (errand)
-  "Drive to what the camera tracks. If something blocks the way, check whether it is near enough."
+  "Drive to what the camera tracks. If something blocks the way, check whether the tracked thing is
+near enough."
   (robot-goto-designator (robot-to-command errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (unless-interrupted errand err
@@ -136,7 +140,8 @@ of the robot shows that ERRAND was taken over, end it instead."
 
 (defun look-closely-at (errand looks wanted next otherwise)
   "Search for local things, next to the robot or in the bin, until WANTED searches have succeeded;
-then take the step NEXT with the last designator. After LOOKS searches take OTHERWISE instead."
+then take the step NEXT with the last designator. After LOOKS searches take the step OTHERWISE
+instead."
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
@@ -153,8 +158,8 @@ then take the step NEXT with the last designator. After LOOKS searches take OTHE
               #'check-target))
 
 (defun grasp-tracked (errand designator)
-  "Grasp DESIGNATOR, which the camera tracks. If it is too heavy, it may be the wrong thing: leave
-it."
+  "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, it may be the wrong thing:
+leave it."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
       (unless-interrupted errand err
@@ -178,7 +183,7 @@ it."
       (go-on errand err #'insert-target #'open-for-target :bin-open))))
 
 (defun insert-target (errand)
-  "Put the hand into the bin, again if it bumps. End ERRAND if there is no room."
+  "Put the hand into the bin; try again if the hand bumps. End ERRAND if the bin has no room."
   (hand-insert-bin (errand-hand errand) (errand-bin errand)
     (continuation (err hand bin)
       (if (and (eq err :insufficient-capacity) (not (over-p errand err)))
@@ -186,7 +191,8 @@ it."
           (go-on errand err #'drop-target #'open-for-target)))))
 
 (defun drop-target (errand)
-  "Let go inside the bin. If the hand is empty, the thing was lost on the way: search again."
+  "Drop the thing inside the bin. If the hand is empty, the thing was lost on the way: search
+again."
   (hand-ungrasp (errand-hand errand)
     (continuation (err hand)
       (let ((lost (eq err :not-grasping)))
@@ -199,7 +205,7 @@ it."
                     (go-on errand err #'close-on-target #'close-on-target))))))))))
 
 (defun close-on-target (errand)
-  "Close the bin, again if it jams, and end ERRAND."
+  "Close the bin, try again if it jams, and end ERRAND."
   (storage-bin-close (errand-bin errand)
     (continuation (err bin part)
       (go-on errand err (lambda (errand) (end-errand errand nil)) #'close-on-target

@@ -12,10 +12,10 @@
 (defexperiment fetching-against-motion-noise
   "How often does FETCH-THING bring the globe home, the more the wheels err?
 
-All other noise is off, so failures come from dead reckoning. Up to a fifth of the speed, twice the
-default, doorways and walls correct it. With more noise, more robots get lost. BELIEVED is how often
-the plan reports success; it is larger than the true rate, because some lost robots end their plan
-as if they were home."
+All other noise is off, so failures come from dead reckoning. Up to noise of a fifth of the speed,
+twice the default, doorways and walls correct the reckoning. With more noise, more robots get lost.
+BELIEVED is how often the plan reports success; this rate is larger than the true rate, because some
+lost robots end their plan as if they were home."
   (:robots marvin)
   (:clean t)
   (:vary (motion-noise* 0 .2 .4 .6 .8 1))
@@ -29,9 +29,9 @@ as if they were home."
   "How often does FETCH-THING bring the globe home, the worse the cameras see it and the more often
 somebody pushes it about?
 
-A little of either does little harm: half of all looks may miss, or there may be a push in a hundred
-ticks. A push invalidates the designator of the globe, and a look that misses does not find it
-again. So both together do more harm than the two apart."
+A few misses, or a few pushes, do little harm: half of all looks may miss, or there may be a push in
+a hundred ticks. A push invalidates the designator of the globe, and a look that misses does not
+find it again. So misses and pushes together do more harm than their separate effects."
   (:robots marvin)
   (:vary (miss-thing-prob* .05 .3 .5 .7)
          (pushes 0 .01 .03 .1))

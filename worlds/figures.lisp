@@ -10,19 +10,19 @@
   '((fetching-against-motion-noise "success" "survival")
     (fetching-against-blindness-and-kicks "success")
     (three-ways-of-searching "success" "difference-in-success-by-way"))
-  "For each experiment the names of the pictures that the page shows.")
+  "Lists (experiment picture...): the names of the pictures that the page shows.")
 
 (defparameter *ways-shown*
   '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
     (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20 nil))
-  "Lists (experiment condition trials part): the ways that the page shows, and the part of the map
-to draw; NIL is the whole map.")
+  "Lists (experiment condition trials part): the trials whose ways the page shows, and the part of
+the map to draw; NIL is the whole map.")
 
 (defparameter *figures* (asdf:system-relative-pathname "ars-magna" "worlds/")
-  "The directory of the pictures and the page. Tests bind it to another one.")
+  "The directory of the pictures and the page. Tests bind this variable to another directory.")
 
 (defun in-worlds (name)
-  "Return the path of the file NAME in worlds/. Create its directory if there is none."
+  "Return the path of the file NAME in worlds/. Create the directory of the file if there is none."
   (ensure-directories-exist (merge-pathnames name *figures*)))
 
 (defun pictures-of (experiment)
@@ -30,7 +30,7 @@ to draw; NIL is the whole map.")
   (in-worlds (format nil "pictures/~(~A~)/" experiment)))
 
 (defun save-pictures-kept (experiment results names)
-  "Save the pictures called NAMES of the RESULTS of EXPERIMENT, and no others."
+  "Save the pictures named NAMES of the RESULTS of EXPERIMENT, and no others."
   (dolist (file (save-result-pictures results (pictures-of experiment)))
     (unless (member (pathname-name file) names :test #'string=)
       (delete-file file))))
@@ -41,7 +41,7 @@ to draw; NIL is the whole map.")
   (format nil "<!-- ~(~A~) -->" what))
 
 (defun with-table (lines experiment table)
-  "Return LINES of a page, the table of EXPERIMENT replaced by TABLE, a list of lines."
+  "Return LINES of a page with the table of EXPERIMENT replaced by TABLE, a list of lines."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
             (end (position (comment-line "end of table") lines :test #'string= :start start)))
@@ -133,8 +133,8 @@ to draw; NIL is the whole map.")
             (* rate (- 1 rate)))))
 
 (defun paired-lines (firsts bests)
-  "Return the lines that compare, seed by seed, the outcomes BESTS of rollouts with FIRSTS, those of
-the short way."
+  "Return the lines that compare two vectors of outcomes, seed by seed: BESTS with rollouts, and
+FIRSTS by the short way."
   (let* ((more (count t (map 'list (lambda (first best)
                                      (and (in-time-p best) (not (in-time-p first))))
                              firsts bests)))
@@ -164,7 +164,7 @@ the short way."
 ;;; The command.
 
 (defun save-quick-figures ()
-  "Save the pictures that take only seconds. Tests compare the shipped ones with these."
+  "Save the pictures that take only seconds. Tests compare the shipped pictures with these."
   (save-watson)
   (save-layers)
   (draw-ward (in-worlds "floors/"))

@@ -21,7 +21,7 @@
 
 (defstruct (claim (:constructor nil) (:copier nil))
   "A program's claim on a robot: the robot, and how many commands it should have received by now. If
-it has received more, another program has taken it over."
+the robot has received more commands, another program has taken it over."
   (robot nil :type robot :read-only t)
   (asked 0 :type integer))
 
@@ -35,15 +35,15 @@ it has received more, another program has taken it over."
   (/= (claim-asked claim) (asked-so-far (claim-robot claim))))
 
 (defun over-p (claim err)
-  "True if CLAIM has to end: ERR, the error code of its last command, is :INTERRUPT, or another
-program has taken over its robot."
+  "True if the program with CLAIM has to end: ERR, the error code of its last command, is
+:INTERRUPT, or another program has taken over its robot."
   (or (eq err :interrupt) (taken-over-p claim)))
 
 ;;; Journeys.
 
 (defstruct (journey (:include claim) (:copier nil))
-  "The goal and the reckoning of a robot. STEPS and PATIENCE are how many more steps and obstacles
-it accepts."
+  "The goal and the reckoning of a robot. STEPS and PATIENCE are the numbers of further steps and
+obstacles after which the journey ends."
   (me nil :type reckoning :read-only t)
   (goal '() :type list :read-only t)
   (tolerance 1 :type real :read-only t)
@@ -53,17 +53,18 @@ it accepts."
   (patience 40 :type fixnum))
 
 (defun goal-near (chart x y)
-  "Return the point (X,Y), a list, or the nearest that is free on CHART. Signals WRONG-ARGUMENT."
+  "Return the point (X,Y), a list, or the nearest point that is free on CHART. Signals
+WRONG-ARGUMENT."
   (let ((point (nearest-free-point chart (list x y))))
     (unless point
       (ars-magna.base:reject-argument 'robot-go-to "the point" (list x y)
                                       (format nil "the coordinates of a point of ~A, within five ~
-                                                   cells of a free one"
+                                                   cells of a free cell"
                                               (chart-map chart))))
     (as-list point)))
 
 (defun check-going (robot x y continuation start tolerance patience)
-  "Signal WRONG-ARGUMENT for the first of these arguments that ROBOT-GO-TO cannot use."
+  "Signal WRONG-ARGUMENT for the first argument that ROBOT-GO-TO cannot use."
   (check-arguments 'robot-go-to
                    (list (typep robot 'robot) "robot" robot "a robot")
                    (list (realp x) "x" x "a number of metres from the left")
@@ -77,10 +78,10 @@ it accepts."
 
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Make ROBOT go to the point (X,Y) of its map, or the nearest free point, to within TOLERANCE
-metres. It drives through doorways and round obstacles, by its odometer, its place sense and a
-camera. START is its position, a list (x y heading); the default is the true one. Returns at once.
-The robot's current command is interrupted, even if the robot is at the goal already. At the end
-CONTINUATION, unless it is NIL, is called once with an error code or NIL, and ROBOT. The codes:
+metres. ROBOT drives through doorways and round obstacles, by its odometer, its place sense and a
+camera. START is its position, a list (x y heading); the default is the true position. Returns at
+once. The robot's current command is interrupted, even if the robot is at the goal already. At the
+end CONTINUATION, unless it is NIL, is called once with an error code or NIL, and ROBOT. The codes:
 - :NO-WAY if no way leads there.
 - :GAVE-UP after PATIENCE obstacles, or 300 steps.
 - :INTERRUPT if another command took over the robot or the camera, or the run ended or was rewound.
@@ -103,13 +104,15 @@ Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid
 
 (defun after-command (journey err next otherwise)
   "Call NEXT, a function of no arguments, if a command ended without an error code ERR, else
-OTHERWISE. If the command was interrupted or the robot taken over, end JOURNEY instead."
+OTHERWISE. If the command was interrupted or another program took over the robot, end JOURNEY
+instead."
   (cond ((over-p journey err) (end-journey journey :interrupt))
         (err (funcall otherwise))
         (t (funcall next))))
 
 (defun go-on-journey (journey)
-  "Take the next step of JOURNEY, or end it: at the goal, without a way, or after too many steps."
+  "Take the next step of JOURNEY, or end JOURNEY: at the goal, without a way, or after too many
+steps."
   (let* ((me (journey-me journey)) (goal (journey-goal journey))
          (step (next-step-of me goal)))
     (cond ((<= (distance-left me goal) (journey-tolerance journey)) (end-journey journey nil))
@@ -173,7 +176,8 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 ;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 
 (defun look-for-doorway (journey cell beyond)
-  "Drive the robot of JOURNEY, which faces the doorway CELL, through it to the point BEYOND."
+  "Drive the robot of JOURNEY, which faces the doorway CELL, through the doorway to the point
+BEYOND."
   (labels ((blindly ()
              (drive-to-point journey (middle-of cell)
                              (lambda (journey) (leave-doorway journey beyond))))
@@ -190,7 +194,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
         (blindly))))
 
 (defun go-to-doorway (journey doorway beyond)
-  "Track the designator DOORWAY and drive the robot of JOURNEY to it."
+  "Track the designator DOORWAY and drive the robot of JOURNEY to the doorway."
   (let ((begun nil))
     (camera-track (journey-camera journey) doorway
       (continuation (err camera designator)
@@ -205,7 +209,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 ;; In a doorway the camera may lose its track before a CAMERA-UNTRACK begins, which then would fail.
 ;; After the run has ended nothing is tracked, and no command can be issued.
 (defun free-from-track (journey doorway)
-  "Stop the camera of JOURNEY from tracking the designator DOORWAY, if it does, without a message."
+  "If the camera of JOURNEY tracks the designator DOORWAY, stop this track without a message."
   (let ((camera (journey-camera journey)) (run (robot-simulation (journey-robot journey))))
     (when (and (eq doorway (camera-tracks camera))
                (not (ars-magna.run:simulation-over run)))

@@ -25,7 +25,8 @@
   (list (* factor (first step)) (* factor (second step))))
 
 (defun take-step (thing step)
-  "Move THING by STEP, a list (dx dy) in metres, unless a wall or lid blocks it. True if it moved."
+  "Move THING by STEP, a list (dx dy) in metres, unless a wall or lid blocks THING. Return true if
+THING moved."
   (kick-thing thing (first step) (second step) #f))
 
 ;;; Things.
@@ -67,8 +68,8 @@
         (set-attribute walker :heading #f))))
 
 (defun approach (walker point stride)
-  "Move WALKER at most STRIDE metres towards POINT, a list (x y), or in a random direction if that
-is blocked. True if it has arrived."
+  "Move WALKER at most STRIDE metres towards POINT, a list (x y), or in a random direction if the
+way is blocked. Return true if WALKER has arrived."
   (multiple-value-bind (x y) (thing-position walker)
     (let* ((step (list (- (first point) x) (- (second point) y)))
            (distance (sqrt (+ (expt (first step) 2) (expt (second step) 2)))))

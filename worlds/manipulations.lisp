@@ -74,7 +74,7 @@
 ;;; Lamps.
 
 (defun switch-lamp (lamp lit hand)
-  "Light LAMP if LIT is true, else put it out. Return the error code or NIL, and HAND."
+  "Switch LAMP on if LIT is true, else switch it off. Return the error code or NIL, and HAND."
   (cond ((beside-hand-p lamp hand)
          (set-attribute lamp :lit lit)
          (values nil hand))

@@ -2,7 +2,7 @@
 
 (ars:define-user-package :ars-worlds
   (:documentation "Worlds to start with: maps, robots, prototypes, kickers, manipulations, plans,
-programs and experiments. They are user code, written as you would write yours.")
+  programs and experiments. All are user code, written as you would write your own.")
   ;; prototypes
   (:export #:table* #:desk* #:drawer* #:shelf* #:cupboard* #:cabinet* #:bed* #:sofa* #:chair*
            #:lamp* #:plant* #:box* #:crate* #:waste-basket* #:suitcase* #:bottle* #:cup* #:tin*
@@ -56,6 +56,7 @@ programs and experiments. They are user code, written as you would write yours."
 (in-package :ars-worlds)
 
 (defmacro document-variables (&rest documentation)
-  "Set the docstrings of variables. DOCUMENTATION is names and texts, alternating."
+  "Set the docstrings of variables. DOCUMENTATION has the names of variables and their docstrings,
+alternating."
   `(setf ,@(loop for (name text) on documentation by #'cddr
                  append `((documentation ',name 'variable) ,text))))

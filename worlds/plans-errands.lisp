@@ -15,7 +15,7 @@
 (def-interp-proc find-and-take (me places description &key (camera (widest-camera)) (hand 0) (bin 0)
                                                            (rounds 12))
   "Visit PLACES, points of the map, in turn, at most ROUNDS times, and look for a thing that fits
-DESCRIPTION. Stow the first one found in BIN. ME is the robot's reckoning. Return true. Fails with
+DESCRIPTION. Stow the first such thing in BIN. ME is the robot's reckoning. Return true. Fails with
 :NOT-FOUND."
   (let ((taken nil))
     (n-times rounds UNTIL taken
@@ -43,9 +43,9 @@ DESCRIPTION. Stow the first one found in BIN. ME is the robot's reckoning. Retur
                               &key start (camera (widest-camera)) (hand 0) (bin 0))
   "Look at PLACES, points of the map, for a thing that fits DESCRIPTION, stow it in BIN, return to
 START and put the thing on the floor there. START is the robot's position, a list (x y heading); the
-default is the true one. If the thing is in the hand or in BIN already, because an earlier errand
-was interrupted, the robot brings that one. Return the estimated position at the end, a point. Fails
-with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
+default is the true position. If the thing is in the hand or in BIN already, because an earlier
+errand was interrupted, the robot brings that thing. Return the estimated position at the end, a
+point. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
   (check-points 'fetch-thing 'places places)
   (with-valve ((rpl-robot-valve))
     (let* ((start (or start (here (rpl-robot))))
@@ -60,8 +60,8 @@ with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
 ;;; Tidying.
 
 (def-interp-proc tidy-once (me places description camera hand bin)
-  "Find one thing that fits DESCRIPTION near one of PLACES and stow it in BIN. True if one was
-found."
+  "Find a thing that fits DESCRIPTION near one of PLACES and stow it in BIN. Return true if a thing
+was found."
   (handle-failure ((:not-found () (return nil)))
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 
@@ -69,9 +69,9 @@ found."
                             &key start (camera (widest-camera)) (hand 0) (limit 20))
   "Collect things near PLACES, points of the map: those that fit the first of DESCRIPTIONS into the
 first storage bin, and so on. START is the robot's position, a list (x y heading); the default is
-the true one. The robot first drops what it holds. It stops after LIMIT things, or after a whole
-round without any. Things that are kicked about meanwhile are looked for again. Return how many
-things were stowed."
+the true position. The robot first drops what it holds. It stops after LIMIT things, or after a
+whole round without a thing. Things that are kicked about meanwhile are searched for again. Return
+how many things were stowed."
   (check-points 'tidy-room 'places places)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

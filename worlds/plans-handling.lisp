@@ -34,7 +34,7 @@ the code. CLAUSES are as in CASE, with ERROR bound to the code; a true value acc
     (:bin-open t)))
 
 (def-interp-proc close-bin (bin)
-  "Close the storage bin with index BIN, unless it is closed; repeat if it jams. Fails with
+  "Close the storage bin with index BIN, unless it is closed; repeat if the lid jams. Fails with
 :ROBOT-IN-BIN if a part of the robot is inside."
   (insistently (error (bin-outcome bin (rpl-storage-bin-close bin)))
     (:bin-closed t)
@@ -42,8 +42,8 @@ the code. CLAUSES are as in CASE, with ERROR bound to the code; a true value acc
      (fail :class :robot-in-bin :part (fluent-value (vref storage-bin-jammer* bin))))))
 
 (def-interp-proc reach-into-bin (hand bin)
-  "Put HAND into the storage bin with index BIN; open it if need be. Fails with :BIN-FULL if it has
-no room for what HAND holds."
+  "Put HAND into the storage bin with index BIN; open the bin if it is closed. Fails with :BIN-FULL
+if the bin has no room for what HAND holds."
   (insistently (error (hand-outcome hand (rpl-hand-insert-bin hand bin)))
     (:insufficient-capacity (fail :class :bin-full :bin bin))
     (:bin-closed (open-bin bin) nil)
@@ -115,8 +115,8 @@ GRASP-THING and STOW-THING do; after :BIN-FULL and :LOST-GRIP, HAND is empty."
 ;;; Beginning. An earlier errand that was interrupted may have left a hand or a bin in any state.
 
 (def-interp-proc free-hand (hand bin)
-  "Take HAND out of the container it is in, if any, and stow what it holds in BIN. Drop it on the
-floor if BIN is NIL or has no room. The state of HAND is taken from its fluents."
+  "Take HAND out of the container it is in, if any, and stow the thing that it holds in BIN. Drop
+the thing on the floor if BIN is NIL or has no room. The state of HAND is taken from its fluents."
   (if (vref hand-inside* hand)
       (draw-back hand))
   (if (vref hand-grasping* hand)
@@ -138,7 +138,7 @@ floor if BIN is NIL or has no room. The state of HAND is taken from its fluents.
 ;;; Putting down.
 
 (def-interp-proc look-into-bin (camera bin)
-  "Put CAMERA into the storage bin with index BIN; open it if need be."
+  "Put CAMERA into the storage bin with index BIN; open the bin if it is closed."
   (insistently (error (outcome (rpl-camera-insert camera bin)
                                (vref camera-moved* camera) (vref camera-movement-error* camera)))
     (:bin-closed (open-bin bin) nil)

@@ -7,8 +7,8 @@
 (in-readtable :nisp)
 
 (defun begin-manipulation (name arguments)
-  "Issue the manipulation NAME with ARGUMENTS, a list without continuation. Return a fluent. Its
-value is NIL until the manipulation ends, then the error code, or :DONE for success."
+  "Issue the manipulation NAME with ARGUMENTS, a list without continuation. Return a fluent. The
+fluent's value is NIL until the manipulation ends, then the error code, or :DONE for success."
   (let ((end (create-fluent nil)))
     (apply #'run-manipulation name
            (append arguments
@@ -24,7 +24,8 @@ value is NIL until the manipulation ends, then the error code, or :DONE for succ
 
 (def-interp-proc manipulate-thing (name hand camera description &key with)
   "Do the manipulation NAME with HAND on something next to the robot that fits DESCRIPTION; WITH
-describes a tool in HAND, such as a key. Look for both before each attempt. Fails with
+describes a tool in HAND, such as a key. Look for the thing and the tool before each attempt. Fails
+with
 :WILL-NOT-DO after twelve attempts."
   (insistently (error (let ((target (look-closely camera description))
                             (tool (if with (look-closely camera with)))
@@ -35,8 +36,8 @@ describes a tool in HAND, such as a key. Look for both before each attempt. Fail
     ((:already-open :already-closed) t)))
 
 (def-interp-proc visit-thing (me camera description)
-  "Drive the robot of ME to something that fits DESCRIPTION; search at most eight times. Return a
-local designator of it. Fails with :NOT-FOUND."
+  "Drive the robot of the reckoning ME to something that fits DESCRIPTION; search at most eight
+times. Return a local designator of the thing. Fails with :NOT-FOUND."
   (let ((found nil))
     (n-times 8 UNTIL found
       (setf found (visit-things me camera description)))
@@ -47,7 +48,7 @@ local designator of it. Fails with :NOT-FOUND."
 (def-interp-proc open-with-key (key container &key start (camera (widest-camera)) (hand 0))
   "Find a thing that fits the description KEY and grasp it with HAND. Drive to a thing that fits
 CONTAINER, unlock it, drop the key and open it. START is the robot's position, a list (x y heading);
-the default is the true one. Return the estimated position at the end, a point. Fails with
+the default is the true position. Return the estimated position at the end, a point. Fails with
 :NOT-FOUND, :TOO-HEAVY or :WILL-NOT-DO."
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot))))))

@@ -9,8 +9,8 @@
 (in-readtable :nisp)
 
 (def-interp-proc look-for-things (camera type description)
-  "Return the designators of the things that CAMERA sees in one look and that fit DESCRIPTION, a
-list. TYPE is :LOCAL or :NON-LOCAL."
+  "Return a list of the designators of things that CAMERA sees in one look and that fit DESCRIPTION.
+TYPE is :LOCAL or :NON-LOCAL."
   (outcome (rpl-camera-get-all-object-designators camera type description)
            (vref camera-input* camera) (vref camera-designators* camera)))
 
@@ -42,8 +42,8 @@ designator or NIL."
 ;;; score or subtracts from it, until the score decides.
 
 (def-interp-proc confirm-thing (camera description)
-  "Look with CAMERA at what is local until enough looks agree whether something fits DESCRIPTION.
-Return a local designator of it, or NIL."
+  "Look with CAMERA at local things until enough looks agree whether one of them fits DESCRIPTION.
+Return a local designator of this thing, or NIL."
   (let ((score 0) (found nil))
     (loop UNTIL (or (>= score 5) (<= score -5))
       (let ((designators (look-for-things camera :local description)))
@@ -54,15 +54,16 @@ Return a local designator of it, or NIL."
 ;;; Approaching.
 
 (def-interp-proc go-round (me attempt)
-  "Drive the robot of ME 1.5 metres aside, to the right if ATTEMPT is even, else to the left."
+  "Drive the robot of the reckoning ME 1.5 metres aside, to the right if ATTEMPT is even, else to
+the left."
   (turn-by (if (evenp attempt) 1.2 -1.2))
   (drive-by 1.5)
   (reckon me))
 
 (def-interp-proc approach-thing (me camera designator description &key (attempts 6))
-  "Drive the robot of ME, guided by CAMERA, to DESIGNATOR, which fits DESCRIPTION. If its track is
-lost, search again. Return the estimated position. Fails with :NOT-REACHED after ATTEMPTS attempts,
-or if the search finds nothing."
+  "Drive the robot of the reckoning ME, guided by CAMERA, to DESIGNATOR, which fits DESCRIPTION. If
+the track is lost, search again. Return the estimated position. Fails with :NOT-REACHED after
+ATTEMPTS attempts, or if the search finds nothing."
   (let ((target designator) (there nil) (attempt 0))
     (loop UNTIL there
       (if (or (null target) (>= attempt attempts))
@@ -80,9 +81,9 @@ or if the search finds nothing."
     (reckon me)))
 
 (def-interp-proc visit-things (me camera description &key (candidates 3))
-  "Look round from the position of the robot of ME for something that fits DESCRIPTION, drive to it
-and check it from there. If it does not fit, try another one, at most CANDIDATES in all. Return a
-local designator of it, or NIL."
+  "Look round from the position of the robot of the reckoning ME for something that fits
+DESCRIPTION, drive to it and check it from there. If the thing does not fit, try another thing, at
+most CANDIDATES in all. Return a local designator of a thing that fits, or NIL."
   (let ((found (if (look-for-things camera :local description)
                    (confirm-thing camera description)
                    nil)))

@@ -14,7 +14,7 @@
         (fluent-value ,result)))
 
 (defvar driving-speed* .9
-  "How fast the shipped plans drive, in metres per tick.")
+  "The speed at which the shipped plans drive, in metres per tick.")
 
 ;;; Single movements. They return an error code, or NIL for success.
 
@@ -43,8 +43,9 @@ code or NIL."
 ;;; Obstacles.
 
 (def-interp-proc feel-ahead (me)
-  "Find out what stopped the robot of ME, by driving slowly ahead. Correct the reckoning by a wall,
-or remember a thing as an obstacle. Return :WALL or :THING, or NIL if nothing is there any more."
+  "Find out what stopped the robot of the reckoning ME, by driving slowly ahead. If a wall did,
+correct the reckoning; if a thing did, remember it as an obstacle. Return :WALL or :THING, or NIL if
+nothing is ahead any more."
   (rpl-robot-set-speed .1)
   (rpl-robot-goto-wall)
   (if (wait-for robot-stopped* :timeout 12)
@@ -55,7 +56,8 @@ or remember a thing as an obstacle. Return :WALL or :THING, or NIL if nothing is
            nil)))
 
 (def-interp-proc drive-towards (me point)
-  "Drive the robot of ME straight to POINT. Return :WALL or :THING if one stopped it, else NIL."
+  "Drive the robot of the reckoning ME straight to POINT. Return :WALL or :THING if a wall or thing
+stopped the robot, else NIL."
   (turn-towards me point)
   (if (and (> (distance-left me point) .05)
            (drive-by (distance-left me point)))
@@ -66,12 +68,13 @@ or remember a thing as an obstacle. Return :WALL or :THING, or NIL if nothing is
 ;;; than a doorway is wide. Inside a doorway the robot corrects its position and heading.
 
 (def-interp-proc look-for-places (camera type)
-  "Return the designators of the places of TYPE that CAMERA sees in one look, a list."
+  "Return a list of the designators of the places of TYPE that CAMERA sees in one look."
   (outcome (rpl-camera-get-all-place-designators camera type)
            (vref camera-input* camera) (vref camera-designators* camera)))
 
 (defun nearest-ahead (designators)
-  "Return the one of DESIGNATORS nearest to the robot's heading, within .7 radians, or NIL."
+  "Return the designator in DESIGNATORS that is nearest to the robot's heading, within .7 radians,
+or NIL."
   (flet ((off (designator) (abs (angle-difference (!_angle designator) 0))))
     (let ((best (first (sort (copy-list designators) #'< :key #'off))))
       (and best (< (off best) .7) best))))
@@ -85,7 +88,7 @@ or remember a thing as an obstacle. Return :WALL or :THING, or NIL if nothing is
 
 (def-interp-proc go-to-designated (camera designator &optional patience)
   "Drive the robot to DESIGNATOR, guided by CAMERA, for at most PATIENCE ticks if that is given.
-Return an error code, or NIL when it is there."
+Return an error code, or NIL when the robot is there."
   (rpl-robot-set-speed driving-speed*)
   (or (begin-track camera designator)
       (seq (rpl-robot-goto-designator camera)
@@ -127,8 +130,8 @@ Return an error code, or NIL when it is there."
         nil)))
 
 (def-interp-proc pass-doorway (me camera cell beyond)
-  "Drive the robot of ME through the nearby doorway CELL to the point BEYOND. Return :WALL or :THING
-if one stopped it, else NIL."
+  "Drive the robot of the reckoning ME through the nearby doorway CELL to the point BEYOND. Return
+:WALL or :THING if a wall or thing stopped the robot, else NIL."
   (turn-towards me (middle-of cell))
   (let ((doorway (find-doorway camera))
         (stopped nil))
@@ -157,15 +160,15 @@ if one stopped it, else NIL."
   (camera-index (widest-of (rpl-robot))))
 
 (def-interp-proc take-step-of-way (me camera step)
-  "Do STEP, as NEXT-STEP returns it, with the robot of ME. Return :WALL or :THING if one stopped it,
-else NIL."
+  "Do STEP, a step that NEXT-STEP has returned, with the robot of the reckoning ME. Return :WALL or
+:THING if a wall or thing stopped the robot, else NIL."
   (if (eq :door (first step))
       (pass-doorway me camera (second step) (third step))
       (drive-towards me (second step))))
 
 (def-interp-proc get-free (me stopped)
-  "Get the robot of ME away from what STOPPED it, :WALL or :THING: wait for a thing to move away,
-and every third time turn and drive off."
+  "Get the robot of the reckoning ME away from the obstacle that STOPPED it, :WALL or :THING. Wait
+for a thing to move away; every third time turn and drive off."
   (let ((trouble (incf (reckoning-trouble me))))
     (if (eq stopped :thing)
         (wait-time (* 3 (mod trouble 3))))
@@ -192,7 +195,7 @@ OPERATOR cannot use."
                               name points "a list of points (x y), such as ((3 4) (5 6))")))
 
 (defun check-limits (operator tolerance patience)
-  "Signal WRONG-ARGUMENT for the first of these arguments that OPERATOR cannot use."
+  "Signal WRONG-ARGUMENT for the first argument that OPERATOR cannot use."
   (check-arguments operator
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
                          "a number of metres, from 0")
@@ -212,7 +215,7 @@ argument is invalid."
                 (show-way me '())))
 
 (def-interp-proc travel-step-by-step (me point tolerance patience camera)
-  "Do TRAVEL-TO, but leave the way in the pictures."
+  "Do TRAVEL-TO, but still show the way in pictures afterwards."
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
     (loop UNTIL (<= (distance-left me point) tolerance)
@@ -226,8 +229,8 @@ argument is invalid."
 
 (def-interp-proc patrol-places (points &key (rounds 1) start)
   "Visit POINTS of the map in turn, ROUNDS times. START is the robot's position, a list (x y
-heading); the default is the true one. Points that cannot be reached are left out. Return the number
-of visits."
+heading); the default is the true position. Points that cannot be reached are left out. Return the
+number of visits."
   (check-points 'patrol-places 'points points)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

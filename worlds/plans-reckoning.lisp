@@ -21,7 +21,7 @@ in radians."
   (trouble 0 :type fixnum))
 
 (defun here (robot)
-  "Return the true position and heading of ROBOT, a list (x y heading). Plans use it as their
+  "Return the true position and heading of ROBOT, a list (x y heading). Plans use this list as their
 start."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
@@ -33,7 +33,7 @@ start."
   "The names of the odometers of reckonings.")
 
 (defun name-for-reckoning (robot)
-  "Return the name for the odometer of the next reckoning of ROBOT."
+  "Return the name of the odometer for the next reckoning of ROBOT."
   (let ((taken (remove-if-not (lambda (name) (member name *reckoning-names*))
                               (mapcar #'odometer-name (robot-odometers robot)))))
     (or (find-if-not (lambda (name) (member name taken)) *reckoning-names*)
@@ -41,24 +41,26 @@ start."
 
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
   "Return a reckoning of ROBOT (default: the plan's robot) that begins at START, a list (x y
-heading). The last eight reckonings of a robot can be used side by side; older ones are over."
+heading). The last eight reckonings of a robot can be used side by side; older reckonings are no
+longer valid."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
                     (ars-magna.robot:make-odometer robot (name-for-reckoning robot))
                     x y heading)))
 
 (defun check-reckoning (me)
-  "Signal MISUSE if the odometer of the reckoning ME has been taken for a newer one."
+  "Signal MISUSE if a newer reckoning uses the odometer of the reckoning ME."
   (let ((odometer (reckoning-odometer me)))
     (unless (eq odometer (robot-odometer (ars-magna.robot:odometer-robot odometer)
                                          (odometer-name odometer)))
       (ars-magna.base:reject-use
-       "This reckoning is over: the robot has begun ~D others since. Begin a new one."
+       "This reckoning is no longer valid: the robot has begun ~D others since. Begin a new
+reckoning."
        (length *reckoning-names*)))))
 
 (defun reckon (me)
   "Update the reckoning ME by its odometer; the robot must stand still. Return the estimated
-position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
+position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING."
   (check-reckoning me)
   (let* ((odometer (reckoning-odometer me))
          (moved (nominal (get-odometer-pos odometer)))
@@ -72,16 +74,16 @@ position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
     (list (reckoning-x me) (reckoning-y me))))
 
 (defun distance-left (me point)
-  "Return the estimated distance of the robot of ME from POINT, in metres."
+  "Return the estimated distance of the robot of the reckoning ME from POINT, in metres."
   (apply #'length-of (mapcar #'- point (reckon me))))
 
 (defun angle-towards (me point)
-  "Return the angle by which the robot of ME has to turn to face POINT, in radians."
+  "Return the angle by which the robot of the reckoning ME has to turn to face POINT, in radians."
   (destructuring-bind (dx dy) (mapcar #'- point (reckon me))
     (angle-difference (atan2 dy dx) (reckoning-heading me))))
 
 (defun point-ahead (me distance)
-  "Return the point DISTANCE metres ahead of the robot of ME."
+  "Return the point DISTANCE metres ahead of the robot of the reckoning ME."
   (destructuring-bind (x y) (reckon me)
     (list (+ x (* distance (cosine (reckoning-heading me))))
           (+ y (* distance (sine (reckoning-heading me)))))))
@@ -89,18 +91,18 @@ position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
 ;;; The way shown in pictures.
 
 (defun robot-of (me)
-  "Return the robot of ME."
+  "Return the robot of the reckoning ME."
   (ars-magna.robot:odometer-robot (reckoning-odometer me)))
 
 (defun show-way (me points)
-  "Show POINTS in pictures as the planned way of the robot of ME; () shows none."
+  "Show POINTS in pictures as the planned way of the robot of the reckoning ME; () shows none."
   (publish-way (robot-of me) points))
 
 ;;; Obstacles. The chart has the cells that are barred now, the reckoning has the tick until when.
 
 (defun bar-on-chart (me)
-  "Bar on the chart of ME exactly the cells that its reckoning has as barred, at a cost of at most
-90 each. Remove the shown way, which may not be the best any more."
+  "Bar exactly those cells on the chart of the reckoning ME that ME has noted as barred, at a cost
+of at most 90 for each cell. Remove the shown way, because it may no longer be the best."
   (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
@@ -114,7 +116,7 @@ position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
             do (bar-cell chart cell cost))))
 
 (defun bar-cells (me point cost until)
-  "Add COST to the cell at POINT, and an eighth of it to the cells around, until the tick UNTIL."
+  "Add COST to the cell at POINT, and an eighth of COST to the cells around, until the tick UNTIL."
   (loop for dx from -1 to 1
         do (loop for dy from -1 to 1
                  do (push (list (mapcar #'+ (cell-of point) (list dx dy))
@@ -124,11 +126,11 @@ position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
   (bar-on-chart me))
 
 (defun bar-ahead (me)
-  "Remember for 200 ticks that something stands directly ahead of the robot of ME."
+  "Remember for 200 ticks that something stands directly ahead of the robot of the reckoning ME."
   (bar-cells me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
 
 (defun chart-now (me)
-  "Return the chart of ME. Cells whose time is over are free again."
+  "Return the chart of ME. Cells that were barred until a past tick are free again."
   (flet ((over-p (entry) (< (third entry) (simulation-tick))))
     (when (some #'over-p (reckoning-barred me))
       (setf (reckoning-barred me) (remove-if #'over-p (reckoning-barred me)))
@@ -136,19 +138,21 @@ position, a point. Signals MISUSE if ME is over: see BEGIN-RECKONING."
   (reckoning-chart me))
 
 (defun shown-to-p (me end)
-  "True if pictures show a way of the robot of ME that leads to the point END."
+  "True if pictures show a way of the robot of the reckoning ME that leads to the point END."
   (let ((point (first (last (robot-planned-way (robot-of me))))))
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
 
 (defun show-way-to (me chart goal)
-  "Show in pictures the way of the robot of ME on CHART to GOAL, unless they show it already."
+  "Show in pictures the way of the robot of the reckoning ME on CHART to GOAL, unless pictures show
+this way already."
   (let ((end (nearest-free-point chart goal)))
     (when (and end (not (shown-to-p me end)))
       (let ((start (nearest-free-point chart (reckon me))))
         (show-way me (and start (find-way chart start end)))))))
 
 (defun next-step-of (me goal)
-  "Return the next step of the robot of ME to GOAL, as NEXT-STEP does. Show the way in pictures."
+  "Return the next step of the robot of the reckoning ME to GOAL, as NEXT-STEP does. Show the way in
+pictures."
   (let ((chart (chart-now me)))
     (show-way-to me chart goal)
     (next-step chart (reckon me) goal)))
@@ -165,7 +169,7 @@ FROM and TO, which are close together; NIL if there is none."
 
 (defun correct-by-wall (me)
   "Move the estimate of ME, whose robot has met a wall ahead, to the nearest wall ahead or behind on
-its map. Return T, or NIL and change nothing if none is within two metres."
+its map. Return T. If no wall is within two metres, change nothing and return NIL."
   (flet ((crossing (distance)
            (multiple-value-list
             (wall-crossed (chart-map (reckoning-chart me))
@@ -182,8 +186,8 @@ its map. Return T, or NIL and change nothing if none is within two metres."
                         (return-from correct-by-wall t)))))
 
 (defun doorway-nearby (me)
-  "Return the cell of the doorway nearest to the estimated position of ME, or NIL if none is within
-2.5 metres."
+  "Return the cell of the doorway nearest to the estimated position of ME, or NIL if no doorway is
+within 2.5 metres."
   (destructuring-bind (x y) (reckon me)
     (let ((best nil) (least 2.5))
       (loop for dx from -3 to 3
@@ -204,7 +208,7 @@ its map. Return T, or NIL and change nothing if none is within two metres."
           (reckoning-y me) (within (reckoning-y me) (second cell)))))
 
 (defun correct-by-direction (me cell)
-  "Set the estimated heading of ME to the nearest direction of the place at CELL."
+  "Set the estimated heading of ME to the nearest of the directions that the place at CELL has."
   (reckon me)
   (let ((place (doorway-at (chart-map (reckoning-chart me)) (first cell) (second cell))))
     (when place

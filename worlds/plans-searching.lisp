@@ -16,7 +16,7 @@
 (defvar watson-lookouts*
   '((12.5 5.5) (20.5 6) (26 9.5) (34 7) (10 14.5) (29 14.5) (6 22.5) (16 22.5) (25.5 22.5)
     (35.5 22.5))
-  "Points (x y) of WATSON from which together a robot sees the whole floor.")
+  "Points (x y) of WATSON; from all of them together a robot sees the whole floor.")
 
 ;;; Where to go next. LEFT are those of PLACES that were not visited in this round.
 
@@ -26,15 +26,15 @@
   (roll-element places dice))
 
 (defun way-to (me place)
-  "Return the cost of the way of the robot of ME to PLACE, about its length in metres; NIL if there
-is no way."
+  "Return the cost of the way from the robot of the reckoning ME to PLACE, about its length in
+metres; NIL if there is no way."
   (let* ((chart (chart-now me))
          (start (nearest-free-point chart (reckon me))))
     (and start (way-cost chart start place))))
 
 (defun nearest-place (me places left dice)
-  "Return the place of LEFT with the cheapest way for the robot of ME; the first if it can reach
-none."
+  "Return the place in LEFT with the cheapest way for the robot of the reckoning ME; the first place
+if the robot can reach none."
   (declare (ignore places dice))
   (flet ((straight (place) (distance-left me place)))
     (let ((nearest (first left)) (least nil))
@@ -63,14 +63,16 @@ designator or NIL."
     seen))
 
 (def-interp-proc make-out (me camera seen description)
-  "Drive the robot of ME to the designator SEEN. True if the thing there fits DESCRIPTION."
+  "Drive the robot of the reckoning ME to the designator SEEN. Return true if the thing there fits
+DESCRIPTION."
   (handle-failure ((:not-reached () (return nil)))
     (approach-thing me camera seen description)
     (if (confirm-thing camera description) t nil)))
 
 (def-interp-proc find-from-here (me camera description &key (candidates 3))
-  "Look round from the position of the robot of ME for something that fits DESCRIPTION, and drive to
-it. If it does not fit, try another one, at most CANDIDATES in all. True if one was found."
+  "Look round from the position of the robot of the reckoning ME for something that fits
+DESCRIPTION, and drive to it. If the thing does not fit, try another thing, at most CANDIDATES in
+all. Return true if a thing was found."
   (let ((found nil))
     (n-times candidates UNTIL found
       (let ((seen (look-round camera description)))
@@ -81,21 +83,21 @@ it. If it does not fit, try another one, at most CANDIDATES in all. True if one 
 ;;; Visits to a place.
 
 (def-interp-proc go-and-look (me place camera description)
-  "Drive the robot of ME to PLACE, and look from there for something that fits DESCRIPTION. True if
-it was found."
+  "Drive the robot of the reckoning ME to PLACE, and look from there for something that fits
+DESCRIPTION. Return true if such a thing was found."
   (travel-to me place)
   (find-from-here me camera description))
 
 (defun other-camera (camera)
-  "Return the index of another camera of the plan's robot than CAMERA, or NIL."
+  "Return the index of a camera of the plan's robot other than CAMERA, or NIL if there is none."
   (if (> (rpl-robot-num-cameras) 1)
       (if (zerop camera) 1 0)
       nil))
 
 (def-interp-proc travel-watching (me place camera description)
-  "Drive the robot of ME to PLACE, guided by another camera, while CAMERA looks ahead for something
-that fits DESCRIPTION. Stop as soon as CAMERA sees it, and return a designator; return NIL at PLACE.
-Fails with :ONLY-ONE-CAMERA if there is no other camera."
+  "Drive the robot of the reckoning ME to PLACE, guided by another camera, while CAMERA looks ahead
+for something that fits DESCRIPTION. Stop as soon as CAMERA sees such a thing, and return its
+designator. Return NIL at PLACE. Fails with :ONLY-ONE-CAMERA if there is no other camera."
   (let ((seen nil)
         (guide (or (other-camera camera) (fail :class :only-one-camera))))
     (outcome (rpl-camera-align-robot camera)
@@ -108,8 +110,8 @@ Fails with :ONLY-ONE-CAMERA if there is no other camera."
     seen))
 
 (def-interp-proc look-on-the-way (me place camera description)
-  "Do GO-AND-LOOK, and also look ahead while driving. If a thing seen on the way turns out to be
-another, or cannot be reached, drive on without looking. True if the thing was found."
+  "Do GO-AND-LOOK, and also look ahead while driving. If a thing seen on the way does not fit after
+all, or cannot be reached, drive on without looking. Return true if the thing was found."
   (let ((seen (travel-watching me place camera description)))
     (cond ((null seen) (find-from-here me camera description))
           ((make-out me camera seen description) t)
@@ -118,8 +120,8 @@ another, or cannot be reached, drive on without looking. True if the thing was f
 ;;; Searching.
 
 (def-interp-proc search-places (description places choose visit rounds start camera)
-  "Call VISIT, the name of a plan, for one of PLACES after another until it finds something that
-fits DESCRIPTION. CHOOSE is a function that returns the next place. There are at most ROUNDS visits
+  "Call VISIT, the name of a plan, for one of PLACES after another until VISIT finds something that
+fits DESCRIPTION. The function CHOOSE returns the next place. There are at most ROUNDS visits
 for each of PLACES. Return the estimated metres driven. Fails with :NOT-FOUND."
   (check-points 'search-places 'places places)
   (with-valve ((rpl-robot-valve))
@@ -141,8 +143,8 @@ for each of PLACES. Return the estimated metres driven. Fails with :NOT-FOUND."
                                    &key (rounds 10) start (camera (widest-camera)))
   "Visit random ones of PLACES, points of the map, and look round from each with CAMERA for
 something that fits DESCRIPTION. Stop next to the thing. There are at most ROUNDS visits for each of
-PLACES. START is the robot's position, a list (x y heading); the default is the true one. Return the
-estimated metres driven. Fails with :NOT-FOUND."
+PLACES. START is the robot's position, a list (x y heading); the default is the true position.
+Return the estimated metres driven. Fails with :NOT-FOUND."
   (search-places description places #'draw-place 'go-and-look rounds start camera))
 
 (def-interp-proc search-nearest (description places

@@ -64,7 +64,7 @@
 ;;; Containers that can be carried.
 
 (defvar box* (new-thing box nil ((:size 8) (:capacity 8) (:weight 2)))
-  "A box of no particular colour or substance (manual 5.3).")
+  "A box without a particular colour or substance (manual 5.3).")
 
 (defvar crate* (new-thing crate nil
                  ((:obsmove #t) (:size 24) (:capacity 20) (:weight 12)
@@ -112,7 +112,7 @@
 
 (defvar key* (new-thing key nil
                ((:type :key) (:size .1) (:weight .05) (:color lightgreen) (:substance metal)))
-  "A key. It fits the things with the same :lock-id.")
+  "A key. A key fits the things with the same :lock-id.")
 
 (defvar toolbox*
   (let ((toolbox (new-thing toolbox nil

@@ -9,8 +9,8 @@
 (in-readtable :nisp)
 
 (defun dice-for (purpose)
-  "Return new dice for PURPOSE, a symbol. They depend only on PURPOSE and the seed of the current
-world."
+  "Return new dice for PURPOSE, a symbol. The dice depend only on PURPOSE and the seed of the
+current world."
   (ars-magna.base:make-dice (world-seed *world*) purpose))
 
 ;;; Before.
@@ -24,24 +24,25 @@ world."
                                          (things-at *world* (+ x dx) (+ y dy)))))))
 
 (defun point-in-the-open (dice)
-  "Return the middle of a random cell in the open of the current world, a list (x y). DICE draw it;
-all such cells are equally likely."
+  "Return the middle of a random cell in the open of the current world, a list (x y). DICE choose
+the cell; all such cells are equally likely."
   (let ((map (ars-magna.world:world-map *world*)))
     (loop repeat 10000
           for x = (+ .5 (roll-index (map-width map) dice))
           for y = (+ .5 (roll-index (map-height map) dice))
           when (in-the-open-p map x y)
             return (list x y)
-          finally (error "~A has hardly a cell in the open. Take a wider map." map))))
+          finally (error "~A has hardly any cell without walls or obstacles around. Use a wider
+          map." map))))
 
 (defun hide-thing (name descriptor)
   "Put a new thing NAME with the attributes of DESCRIPTOR on the floor of the current world,
-anywhere in the open, and return it. NAME and the world's seed decide where."
+anywhere in the open, and return it. NAME and the world's seed decide where the thing is."
   (make-new-thing name (cons *world* (point-in-the-open (dice-for name))) descriptor))
 
 (defun make-restless (thing probability)
   "Push THING .9 metres in a random direction, with PROBABILITY in each tick from now on. A
-PROBABILITY of 0 ends this."
+PROBABILITY of 0 ends the pushes."
   (if (plusp probability)
       (put-kicker be-pushed (it thing) (:prob probability) (take-step it (random-step .9)))
       (put-kicker be-pushed (it thing))))
@@ -49,13 +50,13 @@ PROBABILITY of 0 ends this."
 ;;; After. Plans must not use these.
 
 (defun near-p (thing point &optional (distance 3))
-  "True if THING lies on the floor, less than DISTANCE metres from POINT, a list (x y)."
+  "True if THING is on the floor, less than DISTANCE metres from POINT, a list (x y)."
   (multiple-value-bind (x y) (thing-position thing)
     (and (eq :floor (thing-location thing))
          (< (apply #'length-of (mapcar #'- point (list x y))) distance))))
 
 (defun beside-p (robot thing)
-  "True if THING lies on the floor and is local to ROBOT, which could grasp it."
+  "True if THING is on the floor and local to ROBOT, so that ROBOT could grasp it."
   (multiple-value-bind (x y) (thing-position thing)
     (and (eq :floor (thing-location thing))
          (ars-magna.robot:within-reach-p robot x y))))

@@ -10,7 +10,8 @@
 
 (defparameter *ward-rooms*
   '((8 8 49 39) (48 8 89 39) (88 8 121 39) (8 60 71 91) (70 60 121 91) (8 38 121 61))
-  "The rooms of the ward, then its corridor, each from outer wall to outer wall: x0 y0 x1 y1.")
+  "Lists (x0 y0 x1 y1): the rooms of the ward, then its corridor, each from outer wall to outer
+wall.")
 
 (defparameter *ward-doors*
   '((20 38 29 39) (60 38 69 39) (100 38 109 39) (30 60 39 61) (90 60 99 61))
@@ -19,7 +20,7 @@
 (defparameter *ward-furniture*
   '((12 14 13 15) (24 14 25 15) (12 26 13 27) (24 26 25 27) (56 11 78 12) (104 12 105 13)
     (104 22 105 23) (14 86 28 88) (112 66 119 80) (78 84 79 85) (86 84 87 85))
-  "The furniture as the scanner sees it: x0 y0 x1 y1.")
+  "Lists (x0 y0 x1 y1): the furniture as the scanner sees it.")
 
 (defun in-box-p (x y box)
   (destructuring-bind (x0 y0 x1 y1) box

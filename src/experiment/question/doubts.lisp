@@ -62,7 +62,8 @@
     (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
       (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
                          that ~S is T even then. Write only ~S, whose second value says how the ~
-                         plan ended, or a clause (:success form)." (abridged form) (abridged (second form))))))
+                         plan ended, or a clause (:success form)."
+                        (abridged form) (abridged (second form))))))
 
 (defun number-as-test-advice (form)
   (when (or (realp form)
