@@ -40,16 +40,16 @@ ends the Lisp that it runs in. Manual 3.7, A and E.")
                 #:find-experiment #:all-experiments #:experiment-name #:experiment-documentation
                 #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
-                #:number-in #:ensure-store-directory
-                #:run-again #:trial-words #:*trial-replayed* #:call-until-error
-                #:call-aside #:await-time
+                #:number-from-text #:ensure-store-directory
+                #:run-again #:trial-prompt-line #:*replayed-trial-line* #:call-until-error
+                #:call-outside-trial #:await-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measure-values
                 #:print-failures
                 #:run-experiment #:trial-under-way #:merge-results #:processors
                 #:settle-fingerprints
                 #:results-directory #:print-results #:save-result-pictures #:read-results
-                #:call-on-page
+                #:call-with-page-width
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
                 #:missing-shards #:check-same-code)

@@ -78,7 +78,7 @@
 (test compare-levels.means-over-all-are-of-the-same-conditions-on-both-sides
   (with-made-up (results (six-noises))
     (let* ((overall (only-overall (experiment:compare-levels results 'plan :stream nil)))
-           (ticks (experiment::difference-called "ticks" overall)))
+           (ticks (experiment::find-difference "ticks" overall)))
       (is (equal '("success" "ticks" "way" "found")
                  (mapcar #'experiment:paired-measure (experiment:contrast-differences overall))))
       (is (= 30 (experiment:paired-trials ticks)))

@@ -251,7 +251,7 @@
     (is (notany #'ars-magna.experiment::significant-p (rest differences)))))
 
 (defun doubts-of (count trials)
-  (ars-magna.experiment::no-difference-words (first (measured-differences count 1000 trials))))
+  (ars-magna.experiment::no-difference-text (first (measured-differences count 1000 trials))))
 
 (test compare.says-how-many-seeds-so-many-tests-need
   (is (mentions-p (doubts-of 60 8) (format nil "over 8 seeds p cannot be below .008, too much for ~
@@ -293,8 +293,8 @@
                             1.1e-16: 0.6000000000000001 against 0.6 on average over 30 common ~
                             seeds.")
                (verdict-on-all (+ .1d0 .2d0 .3d0) (+ .3d0 .2d0 .1d0))))
-  (is-false (experiment::tested-p (experiment::mean-difference "x" '(.1d0 .3d0)
-                                                               (list .1d0 (+ .1d0 .2d0)))))
+  (is-false (experiment::counts-as-test-p (experiment::mean-difference "x" '(.1d0 .3d0)
+                                                                       (list .1d0 (+ .1d0 .2d0)))))
   (is (mentions-p (verdict-on '(.1d0 .3d0 2d0) (list .1d0 (+ .1d0 .2d0) 3d0))
                   "No significant difference in x")))
 

@@ -20,7 +20,7 @@
         do (is (eq number-p (and (base:csv-number-p text) t)) "~A" text))
   (let ((before (count-symbols)))
     (dolist (text '("--17" "+18-19" "-20e21e22"))
-      (is (null (experiment:number-in text)))
+      (is (null (experiment:number-from-text text)))
       (base:csv-line (list text)))
     (is (= before (count-symbols)))))
 

@@ -46,7 +46,7 @@
 (test panels.take-cases-as-words-and-not-what-they-decide
   (with-report (results '("case" "noise" "speed") '()
                         `((("calm" "0" "1") ("success")) (("rough" "1" "1") ("success"))))
-    (is (equal '(0) (experiment::free-factors results)))
+    (is (equal '(0) (experiment::varying-factors results)))
     (is (= 0 (experiment::x-axis-factor results)))))
 
 ;;; Files.
@@ -184,7 +184,7 @@
       (is (= 105 (experiment::horizon (list sample) 5000)))
       (is (= 100 (experiment::horizon (list sample) 100)))
       (destructuring-bind (name &key times steps)
-          (experiment::curve-of "x" sample 105 .95d0 t)
+          (experiment::sample-curve "x" sample 105 .95d0 t)
         (is (string= "x" name))
         (is (equalp #(100 105 105 105) times))
         (is (= 1 (length steps)))
@@ -344,7 +344,7 @@
 (test charts.say-how-many-trials-broke-off-with-an-error
   (with-report (results '("way") '() '((("a") ("error" :error "boom") ("success" :ticks 3))
                                        (("b") ("success" :ticks 5) ("success" :ticks 4))))
-    (is-true (mentions-p (experiment::intervals-words
+    (is-true (mentions-p (experiment::intervals-text
                           :rate (experiment::summarize-results results))
                          "1 trial broke off with an error"))))
 
@@ -356,4 +356,4 @@
                      (loop for i from 1 to 12 collect (+ 6d0 i)))))
     (is (plusp (experiment:paired-low difference)))
     (is (= 1 (experiment:paired-p difference)))
-    (is-false (experiment::tested-p difference))))
+    (is-false (experiment::counts-as-test-p difference))))

@@ -94,10 +94,10 @@
 
 (test values.come-back-from-texts
   (dolist (value '(0 -7 123456789012345678901234567890 0.1d0 -1d-7 1.5d20 1d100))
-    (is (eql value (experiment::number-in (experiment::value-text value)))))
+    (is (eql value (experiment::number-from-text (experiment::value-text value)))))
   (dolist (text '("" "-" "1-2" "e" "1e" "#.(quit)" "1 2" "red" "1.2.3" "--1" "+" "1e5e5" "e1"
                   "-e1" "E+7" ".e1" "."))
-    (is (null (experiment::number-in text)) "~S" text)))
+    (is (null (experiment::number-from-text text)) "~S" text)))
 
 (test lines.with-quotes-and-commas-come-back
   (let ((texts '("a,b" "\"" "" "c \"d\", e" "ü")))
@@ -243,7 +243,7 @@
     (ensure-directories-exist directory)
     (experiment::call-with-directory
      (lambda () (signals base:misuse (walk directory)))
-     (experiment::directory-called directory))
+     (experiment::directory-path directory))
     (walk directory :trials 1)
     (is (= 3 (length (table-lines directory))))))
 

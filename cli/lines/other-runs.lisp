@@ -127,14 +127,15 @@ command, such as that of GO-TO, receive :INTERRUPT."
   "Read lines of SESSION after the end of TRIAL, with RESULT, until one leaves it."
   (setf (open-trial-result trial) result)
   (pause-trial trial)
-  (call-aside (lambda ()
-                (show-messages session)
-                (write-result session trial result)
-                (when row
-                  (say-here session
-                            "~:[It is as in its row.~;~:*It differs from its row: ~{~A~^; ~}.~]"
-                            (row-differences (open-trial-experiment trial) result parts row
-                                             (open-trial-directory trial))))))
+  (call-outside-trial (lambda ()
+                        (show-messages session)
+                        (write-result session trial result)
+                        (when row
+                          (say-here session
+                                    "~:[It is as in its row.~;~:*It differs from its row: ~
+                                     ~{~A~^; ~}.~]"
+                                    (row-differences (open-trial-experiment trial) result parts row
+                                                     (open-trial-directory trial))))))
   (loop (run-line-in-trial session trial)))
 
 ;;; Going there, and out again.

@@ -227,7 +227,7 @@ that could not be read."
 (defun evaluate-line (session text)
   "Evaluate TEXT as Lisp. The tables that it prints fit the window of SESSION, if it has one."
   (if (session-terminal-p session)
-      (call-on-page (lambda () (evaluate-text session text)) (1- (size-of-window session)))
+      (call-with-page-width (lambda () (evaluate-text session text)) (1- (size-of-window session)))
       (evaluate-text session text)))
 
 (defun run-text (session text)

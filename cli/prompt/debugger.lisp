@@ -179,7 +179,7 @@ run, or else all; NIL if its user has left it."
     (call-debugging session break-request
                     (lambda ()
                       (if (session-trial session)
-                          (call-aside #'read-lines)
+                          (call-outside-trial #'read-lines)
                           (read-lines)))))
   ;; Others may say how to continue if its user no longer can.
   (let ((others (sessions-to-answer-for session)))

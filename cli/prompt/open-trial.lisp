@@ -128,7 +128,7 @@
       (announce-display (session-robot) '()))))
 
 (defun run-line-in-trial (session trial)
-  (call-aside
+  (call-outside-trial
    (lambda ()
      (tell-whereabouts session)
      (begin-trial session trial)
@@ -164,7 +164,7 @@
   "Wait until the next tick is due in TRIAL. NIL if a line was typed before."
   (let ((left (if (eq :free (open-trial-rate trial)) 0 (- (open-trial-due trial) (seconds-now)))))
     (if (watched-p session)
-        (unless (call-aside (lambda () (await-typed-line session left)))
+        (unless (call-outside-trial (lambda () (await-typed-line session left)))
           (setf (open-trial-due trial) (next-due trial))
           t)
         (progn (when (plusp left) (await-time (open-trial-due trial) *simulation*))

@@ -8,13 +8,13 @@
 ;;; Values of options.
 
 (defun parse-count (text)
-  (let ((number (number-in text)))
+  (let ((number (number-from-text text)))
     (if (and (integerp number) (<= 1 number 1000000000))
         number
         (reject-usage "~A is no number from 1 to 1e9, in digits." text))))
 
 (defun parse-width (text)
-  (let ((number (number-in text)))
+  (let ((number (number-from-text text)))
     (if (and number (< 0 number 1))
         number
         (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
@@ -23,7 +23,7 @@
   "Most shards that trials can be divided into. A command must have room for all their numbers.")
 
 (defun parse-shards (text)
-  (let ((count (number-in text)))
+  (let ((count (number-from-text text)))
     (if (and (integerp count) (<= 1 count +largest-count-of-shards+))
         count
         (reject-usage "--shards takes a number of parts, from 1 to ~D, not ~A."

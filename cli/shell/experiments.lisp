@@ -73,7 +73,7 @@ is one of several in a file. Signals BAD-LINE."
   "Print RESULTS. If they are kept, keep that text beside them, and with PLOT their pictures."
   (print-results results *standard-output*)
   (when (results-directory results)
-    (write-file-anew (lambda (out) (call-on-page (lambda () (print-results results out))))
+    (write-file-anew (lambda (out) (call-with-page-width (lambda () (print-results results out))))
                      (merge-pathnames "summary.txt" (results-directory results))
                      "the summary" :remedy "remove it, or give another directory"))
   (when plot (save-result-pictures results (results-directory results))))

@@ -257,7 +257,7 @@ E. A batch with plans to run does not wait for lines."
 (defun call-fitting (function console)
   "Call FUNCTION. The tables that it prints fit the window of CONSOLE, if that is on a terminal."
   (if (terminal-stream-p (console-stream console))
-      (call-on-page function (1- (window-size)))
+      (call-with-page-width function (1- (window-size)))
       (funcall function)))
 
 (defun run-process ()

@@ -10,7 +10,8 @@ written with FiveAM. Use this package together with FIVEAM.")
   (:import-from :ars-magna.run #:variables-among)
   (:import-from :ars-magna.experiment
                 #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
-                #:experiment-trials #:experiment-limit #:experiment-package #:doubt-nested-run
+                #:experiment-trials #:experiment-limit #:experiment-package #:warn-of-nested-run
                 #:find-condition #:condition-name
-                #:run-guarded #:replay-trial #:call-in-silence #:call-by-workers #:form-in-package
+                #:run-trial-in-worker #:replay-trial #:call-without-output #:call-by-workers
+                #:form-in-package
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error))

@@ -75,7 +75,7 @@ there is no name."
 
 (defun subject-maker (operator form robots parameters clean limit)
   "Return a form that makes the subject from these arguments of the macro OPERATOR."
-  (doubt-nested-run form)
+  (warn-of-nested-run form)
   (let ((names (robot-names operator robots form)))
     `(make-subject (lambda ()
                      (declare (special ,@(variables-among names)))
@@ -116,8 +116,9 @@ or NIL."
                  (check-at-least check) (check-level check))))
 
 (defun try-trial (check trial stopping-p)
-  (call-in-silence
-   (lambda () (run-guarded (check-experiment check) (check-condition check) trial stopping-p))))
+  (call-without-output
+   (lambda ()
+     (run-trial-in-worker (check-experiment check) (check-condition check) trial stopping-p))))
 
 ;; The trials that count are decided in their order, whichever worker runs them.
 (defun run-some-trials (check first)

@@ -13,7 +13,7 @@
                                  (results-measures (first results)))))
     (remove-duplicates (list* "success" "ticks" measures) :test #'string= :from-end t)))
 
-(defun compared-names (operator results measure)
+(defun measures-to-compare (operator results measure)
   "Return the names of the measures that OPERATOR compares in RESULTS, a list of results: those in
 MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
   (let ((known (common-measures results)))
@@ -32,10 +32,10 @@ MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
 (defun contrast-of-conditions (results first second place)
   "Return a contrast, still without differences, of the samples FIRST and SECOND of RESULTS. Factors
 with equal values make the contrast's WHERE; the other factors make the names of the two sides."
-  (loop for other in (if place (cons place (factors-else results place)) (naming-factors results))
+  (loop for other in (if place (cons place (other-factors results place)) (naming-factors results))
         for factor = (nth other (results-factors results))
-        for a = (text-at other first)
-        for b = (text-at other second)
+        for a = (factor-text other first)
+        for b = (factor-text other second)
         if (string= a b)
           collect (full-level-name factor a) into where
         else
@@ -49,8 +49,8 @@ with equal values make the contrast's WHERE; the other factors make the names of
 pair...)."
   (loop with factor = (nth place (results-factors results))
         for group in (grouped pairs (lambda (pair)
-                                      (mapcar (lambda (sample) (text-at place sample)) pair)))
-        collect (append (mapcar (lambda (sample) (level-name factor (text-at place sample)))
+                                      (mapcar (lambda (sample) (factor-text place sample)) pair)))
+        collect (append (mapcar (lambda (sample) (level-name factor (factor-text place sample)))
                                 (first group))
                         group)))
 
@@ -65,7 +65,7 @@ seeds compare."
         when (rest group)
           collect (overall-contrast level base group names results)))
 
-(defun sides-words (contrasts kind)
+(defun sides-text (contrasts kind)
   "Return a text that names the two sides of CONTRASTS if one side is the same in all of them; else
 NIL. KIND is the noun for the side that differs."
   (flet ((names (reader) (remove-duplicates (mapcar reader contrasts) :test #'string= :from-end t)))
@@ -97,9 +97,9 @@ comparison to STREAM unless that is NIL."
     (finish-comparison
      (make-comparison
       (sample-experiment (first (first pairs)))
-      (sides-words contrasts (if place (nth place (results-factors results)) "condition"))
+      (sides-text contrasts (if place (nth place (results-factors results)) "condition"))
       :conditions contrasts
-      :overall (and place (overall-needed-p contrasts)
+      :overall (and place (overall-contrast-needed-p contrasts)
                     (overall-contrasts results pairs place names)))
      stream "These conditions have no seeds in common. Run more trials of the experiment in the ~
              same directory.")))
@@ -125,7 +125,7 @@ UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can b
   (check-argument compare-conditions results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-conditions stream)
-  (let ((names (compared-names 'compare-conditions (list results) measure)))
+  (let ((names (measures-to-compare 'compare-conditions (list results) measure)))
     (multiple-value-bind (pairs place) (designated-pairs results first second)
       (comparison-of-conditions results pairs place names stream))))
 
@@ -140,10 +140,10 @@ together; tests over all pairs are corrected separately."
   (check-argument compare-levels results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-levels stream)
-  (let* ((names (compared-names 'compare-levels (list results) measure))
+  (let* ((names (measures-to-compare 'compare-levels (list results) measure))
          (place (factor-place results factor))
-         (base (level-called (levels results place) against))
-         (pairs (pairs-differing-at results place nil base)))
+         (base (find-level (levels results place) against))
+         (pairs (pairs-differing-in-factor results place nil base)))
     (unless pairs
       (reject-use "No condition differs only in this factor from a condition with ~A=~A. (In ~
                    designs, such as :sobol, all factors vary together.)"
@@ -160,8 +160,8 @@ together; tests over all pairs are corrected separately."
   "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
 experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if the parts are not listed
 there."
-  (let ((now (parts-described (sample-condition (first pair)) after))
-        (then (parts-described (sample-condition (second pair)) before)))
+  (let ((now (recorded-parts (sample-condition (first pair)) after))
+        (then (recorded-parts (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
 
 (defun part-of-kind-p (kind part) (starts-with-subseq (format nil "~A " kind) part))
@@ -174,13 +174,13 @@ there."
             (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
 
 (defun experiment-changes (after before)
-  (let ((now (form-described after)) (then (form-described before)))
+  (let ((now (recorded-form after)) (then (recorded-form before)))
     (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
                        does, measures or counts as success may differ, so differences below need ~
                        not be due to the code.")
           (append (lines-only-in then now "before") (lines-only-in now then "now")))))
 
-(defun parts-words (parts conditions)
+(defun changed-parts-text (parts conditions)
   (let ((others (remove-if (lambda (part) (part-of-kind-p "condition" part)) parts)))
     (format nil "What differs between the tables, under ~D condition~:P: ~{~A~^, ~}."
             conditions
@@ -219,7 +219,7 @@ read from experiment.txt in the directories AFTER and BEFORE, which may be NIL."
                               differ, but there is no experiment.txt with their parts.")))
           (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
                           (experiment-changes after before))
-                     (list (parts-words parts (length changed))))))))
+                     (list (changed-parts-text parts (length changed))))))))
 
 ;;;; Comparing versions
 
@@ -234,7 +234,7 @@ name of these results."
          (values (read-results value) (if (stringp value) value (native-name value))))
         (t (reject-argument operator name value "the name of a directory, or results"))))
 
-(defun short-names (first second)
+(defun distinguishing-names (first second)
   "FIRST and SECOND are paths. Return their last components if these differ, else the whole paths."
   (flet ((last-part (name)
            (let ((name (string-right-trim "/" name)))
@@ -258,7 +258,7 @@ the names of conditions that only FIRST or only SECOND has."
                             (remove-if (lambda (sample) (counterpart sample first))
                                        (results-samples second)))))))
 
-(defun check-one-experiment (before after)
+(defun check-same-experiment (before after)
   (let ((names (mapcar (lambda (results)
                          (if (results-samples results)
                              (sample-experiment (first (results-samples results)))
@@ -271,9 +271,9 @@ the names of conditions that only FIRST or only SECOND has."
     (first names)))
 
 (defun comparison-of-versions (before after before-name after-name names stream)
-  (multiple-value-bind (first second) (short-names after-name before-name)
+  (multiple-value-bind (first second) (distinguishing-names after-name before-name)
     (multiple-value-bind (pairs lacking) (condition-pairs after before)
-      (let* ((experiment (check-one-experiment before after))
+      (let* ((experiment (check-same-experiment before after))
              (contrasts (loop for (sample other) in pairs
                               for contrast = (make-contrast (sample-condition sample) first second)
                               collect (compare-samples contrast after sample before other
@@ -282,7 +282,7 @@ the names of conditions that only FIRST or only SECOND has."
          (make-comparison
           experiment (format nil "~A against ~A, before" after-name before-name)
           :versions contrasts
-          :overall (and (overall-needed-p contrasts)
+          :overall (and (overall-contrast-needed-p contrasts)
                         (list (overall-contrast first second pairs names after before)))
           :changes (changes-between pairs (results-directory after) (results-directory before))
           :notes (and lacking
@@ -305,5 +305,5 @@ The comparison tells: which conditions got better or worse; how many trials are 
   (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)
       (comparison-of-versions old new old-name new-name
-                              (compared-names 'compare-results (list new old) measure)
+                              (measures-to-compare 'compare-results (list new old) measure)
                               stream))))

@@ -57,7 +57,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
                (when (>= seed other) (incf j))))
     (nreverse pairs)))
 
-(defun pairs-for (name first second &optional (pairs (common-trials first second)))
+(defun comparable-pairs (name first second &optional (pairs (common-trials first second)))
   "Return those PAIRS of trials of the samples FIRST and SECOND in which the measure NAME can be
 compared."
   (if (string-equal name "ticks")
@@ -67,7 +67,7 @@ compared."
                      pairs)
       pairs))
 
-(defun column-of (results sample name)
+(defun measure-column (results sample name)
   (if (string-equal name "success")
       (cl:map 'vector #'success-p (sample-outcomes sample))
       (sample-measure results sample name)))
@@ -93,27 +93,28 @@ for texts."
              name (filter-both #'finite-value-p firsts seconds)))
           (t nil))))
 
-(defun set-left-out (difference pairs)
+(defun set-left-out-count (difference pairs)
   "Set how many of PAIRS, an integer, DIFFERENCE leaves out. Return DIFFERENCE, which may be NIL."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
   difference)
 
-(defun difference-in (name results first other-results second pairs)
-  (let ((pairs (pairs-for name first second pairs))
-        (column (column-of results first name)) (other (column-of other-results second name)))
+(defun measure-difference (name results first other-results second pairs)
+  (let ((pairs (comparable-pairs name first second pairs))
+        (column (measure-column results first name))
+        (other (measure-column other-results second name)))
     (multiple-value-bind (firsts seconds)
         (filter-both (lambda (value) (not (eq :none value)))
                     (loop for (i . nil) in pairs collect (aref column i))
                     (loop for (nil . j) in pairs collect (aref other j)))
       (cond ((string-equal name "ticks") (mean-difference "ticks" firsts seconds))
             ((or firsts (string-equal name "success"))
-             (set-left-out (difference-of-values (string-downcase name) firsts seconds)
-                           (length pairs)))
+             (set-left-out-count (difference-of-values (string-downcase name) firsts seconds)
+                                 (length pairs)))
             ;; Never measured in both: reported as not comparable.
             ((or (some #'finite-value-p column) (some #'finite-value-p other))
-             (set-left-out (mean-difference (string-downcase name) '() '())
-                           (length pairs)))))))
+             (set-left-out-count (mean-difference (string-downcase name) '() '())
+                                 (length pairs)))))))
 
 ;;; Contrasts.
 
@@ -150,11 +151,12 @@ the comparison in CONTRAST. Return CONTRAST."
           (contrast-differences contrast)
           (unless (same-runs-p contrast)
             (loop for name in names
-                  for difference = (difference-in name results first other-results second pairs)
+                  for difference = (measure-difference name results first other-results second
+                                                       pairs)
                   when difference collect difference)))
     contrast))
 
-(defun difference-called (name contrast)
+(defun find-difference (name contrast)
   (find name (contrast-differences contrast) :key #'paired-measure :test #'string-equal))
 
 (defun all-contrasts (comparison)
@@ -163,7 +165,7 @@ the comparison in CONTRAST. Return CONTRAST."
 (defun tested-differences (contrasts)
   "Return the differences of CONTRASTS that count as tests: see ADJUST-P-VALUES."
   (loop for contrast in contrasts
-        append (remove-if-not #'tested-p (contrast-differences contrast))))
+        append (remove-if-not #'counts-as-test-p (contrast-differences contrast))))
 
 ;;;; Over several conditions
 
@@ -172,7 +174,7 @@ the comparison in CONTRAST. Return CONTRAST."
 ;;; have a value, so both means of a seed are over the same conditions. Seeds count only if both
 ;;; have them under all conditions. PAIRS are lists of two samples.
 
-(defun complete-seeds (pairs)
+(defun seeds-in-all-pairs (pairs)
   "Return a hash table whose keys are the seeds that both samples of each of PAIRS have."
   (let ((counts (make-hash-table)))
     (loop for (first second) in pairs
@@ -186,9 +188,9 @@ the comparison in CONTRAST. Return CONTRAST."
   "Return lists (seed a b) of the values of the measure NAME in trials of SEEDS. Each of PAIRS is a
 sample of RESULTS and a sample of OTHER-RESULTS."
   (loop for (first second) in pairs
-        for column = (column-of results first name)
-        for other = (column-of other-results second name)
-        append (loop for (i . j) in (pairs-for name first second)
+        for column = (measure-column results first name)
+        for other = (measure-column other-results second name)
+        append (loop for (i . j) in (comparable-pairs name first second)
                      for seed = (aref (sample-seeds first) i)
                      for a = (aref column i)
                      for b = (aref other j)
@@ -227,7 +229,7 @@ texts."
 
 (defun overall-contrast (first second pairs names results &optional (other-results results))
   (let ((contrast (make-contrast "over all" first second))
-        (seeds (complete-seeds pairs)))
+        (seeds (seeds-in-all-pairs pairs)))
     (setf (contrast-trials contrast) (hash-table-count seeds)
           (contrast-differences contrast)
           (loop for name in names
@@ -236,5 +238,5 @@ texts."
                 when difference collect difference))
     contrast))
 
-(defun overall-needed-p (contrasts)
+(defun overall-contrast-needed-p (contrasts)
   (and (rest contrasts) (notevery #'same-runs-p contrasts)))

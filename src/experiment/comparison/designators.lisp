@@ -5,30 +5,30 @@
 ;;; A value of a factor is a level. Factors are given by their places in SAMPLE-TEXTS. Named
 ;;; conditions are the levels of the first factor, CASE, which determines those of their factors.
 
-(defun text-at (place sample) (nth place (sample-texts sample)))
+(defun factor-text (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
   "Return the levels in RESULTS of the factor with index PLACE: a list of texts, in the table's
 order."
-  (remove-duplicates (mapcar (lambda (sample) (text-at place sample)) (results-samples results))
+  (remove-duplicates (mapcar (lambda (sample) (factor-text place sample)) (results-samples results))
                      :test #'string= :from-end t))
 
-(defun case-decides-p (place samples)
+(defun case-determines-factor-p (place samples)
   "True if the first factor of SAMPLES, the named cases, determines the factor with index PLACE."
   (loop for sample in samples
         always (loop for other in samples
-                     always (or (string/= (text-at 0 sample) (text-at 0 other))
-                                (string= (text-at place sample) (text-at place other))))))
+                     always (or (string/= (factor-text 0 sample) (factor-text 0 other))
+                                (string= (factor-text place sample) (factor-text place other))))))
 
 (defun naming-factors (results)
   "Return the indices of the factors that names of conditions of RESULTS mention: the factors that
 no named case determines."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
-        unless (and case-p (plusp place) (case-decides-p place (results-samples results)))
+        unless (and case-p (plusp place) (case-determines-factor-p place (results-samples results)))
           collect place))
 
-(defun free-factors (results)
+(defun varying-factors (results)
   "Return the indices of those NAMING-FACTORS of RESULTS that have several levels."
   (remove-if-not (lambda (place) (rest (levels results place))) (naming-factors results)))
 
@@ -38,7 +38,7 @@ no named case determines."
            (position (string factor) (results-factors results) :test #'string-equal))
       (reject-name "factor" (princ-to-string factor) (results-factors results))))
 
-(defun level-called (levels value)
+(defun find-level (levels value)
   "Return the level in LEVELS that is VALUE, or the first level if VALUE is NIL. Signals
 UNKNOWN-NAME."
   (if (null value)
@@ -53,7 +53,7 @@ UNKNOWN-NAME."
 
 (defun level-name (factor text)
   "Return the name of the level TEXT of FACTOR: TEXT itself if it is a word, else FACTOR=TEXT."
-  (if (or (number-in text) (member text '("TRUE" "FALSE" "") :test #'string=))
+  (if (or (number-from-text text) (member text '("TRUE" "FALSE" "") :test #'string=))
       (full-level-name factor text)
       text))
 
@@ -62,7 +62,7 @@ UNKNOWN-NAME."
 
 ;;; Pairs.
 
-(defun factors-else (results place)
+(defun other-factors (results place)
   "Return the indices of the factors that must be equal in conditions that are compared in the
 factor with index PLACE."
   (let ((naming (naming-factors results)))
@@ -71,19 +71,19 @@ factor with index PLACE."
                       (loop for other from 1 below (length (results-factors results))
                             collect other)))))
 
-(defun pairs-differing-at (results place level base)
+(defun pairs-differing-in-factor (results place level base)
   "Return pairs of samples of RESULTS that differ only in the factor with index PLACE. The second
 sample of a pair has the level BASE; the first has LEVEL, or any other level if LEVEL is NIL."
-  (let ((else (factors-else results place)))
+  (let ((else (other-factors results place)))
     (flet ((counterpart (sample)
              (find-if (lambda (other)
-                        (and (string= base (text-at place other))
+                        (and (string= base (factor-text place other))
                              (loop for place in else
-                                   always (string= (text-at place sample)
-                                                   (text-at place other)))))
+                                   always (string= (factor-text place sample)
+                                                   (factor-text place other)))))
                       (results-samples results))))
       (loop for sample in (results-samples results)
-            for text = (text-at place sample)
+            for text = (factor-text place sample)
             for other = (and (string/= base text)
                              (or (null level) (string= level text))
                              (counterpart sample))
@@ -97,7 +97,7 @@ sample of a pair has the level BASE; the first has LEVEL, or any other level if 
 (defun designator-text (designator)
   (if (typep designator '(or symbol string)) (string designator) (value-text designator)))
 
-(defun exact-or-partial (things exactly partly)
+(defun exact-or-partial-matches (things exactly partly)
   (or (remove-if-not exactly things) (remove-if-not partly things)))
 
 (defun level-title (results level)
@@ -119,24 +119,24 @@ DESIGNATOR is an integer; else NIL."
 sample."
   (unless (numbered-sample results designator)
     (let ((word (designator-text designator)))
-      (exact-or-partial
-       (loop for place in (free-factors results)
+      (exact-or-partial-matches
+       (loop for place in (varying-factors results)
              append (loop for level in (levels results place) collect (list place level)))
        (lambda (level)
          (level-word-p word (nth (first level) (results-factors results)) (second level)))
        (lambda (level) (search word (level-title results level) :test #'char-equal))))))
 
-(defun samples-called (results word)
+(defun samples-named (results word)
   "Return the samples of RESULTS whose condition is named WORD. If there are none, return the
 samples that have the level WORD, or else the samples whose name contains WORD."
   (let ((samples (results-samples results)))
     (or (remove word samples :key #'sample-condition :test-not #'string-equal)
-        (exact-or-partial samples
-                          (lambda (sample)
-                            (some (lambda (factor text) (level-word-p word factor text))
-                                  (results-factors results) (sample-texts sample)))
-                          (lambda (sample)
-                            (search word (sample-condition sample) :test #'char-equal))))))
+        (exact-or-partial-matches samples
+                                  (lambda (sample)
+                                    (some (lambda (factor text) (level-word-p word factor text))
+                                          (results-factors results) (sample-texts sample)))
+                                  (lambda (sample)
+                                    (search word (sample-condition sample) :test #'char-equal))))))
 
 (defun designated-samples (results designator)
   "Return the samples of RESULTS that DESIGNATOR can mean. DESIGNATOR is a sample, or a condition's
@@ -144,7 +144,7 @@ number, from 1, or its name, or a part of the name. Signals UNKNOWN-NAME if no s
   (let ((samples (results-samples results)) (one (numbered-sample results designator))
         (word (designator-text designator)))
     (cond (one (list one))
-          ((and (string/= "" word) (samples-called results word)))
+          ((and (string/= "" word) (samples-named results word)))
           (t (reject-name "condition" (if (symbolp designator) designator word)
                           (mapcar #'sample-condition samples))))))
 
@@ -187,7 +187,7 @@ BASE is NIL if SECOND is :ALL."
 factors."
   (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
-          append (pairs-differing-at results place level other))))
+          append (pairs-differing-in-factor results place level other))))
 
 (defun pairs-of-levels (results first second)
   "Return two values: pairs of samples that have the levels FIRST and SECOND of one factor and are
@@ -220,7 +220,7 @@ levels. Signals MISUSE if several factors have these levels."
 values of one factor; else NIL."
   (when (and (integerp first) (integerp second) (/= first second))
     (let ((level (designator-text first)) (base (designator-text second)))
-      (loop for place in (free-factors results)
+      (loop for place in (varying-factors results)
             for levels = (levels results place)
             when (and (member level levels :test #'string=) (member base levels :test #'string=))
               return (list place level base)))))
@@ -230,7 +230,7 @@ values of one factor; else NIL."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
          (level-pair-samples results level-pair)))
 
-(defun resolve-numbers (results first second)
+(defun resolve-condition-numbers (results first second)
   "Return FIRST and SECOND. Return them as texts if they are levels of one factor and not numbers of
 conditions. Signals MISUSE if they could be levels as well as numbers of conditions."
   (let ((level-pair (level-pair-of-integers results first second)))
@@ -247,7 +247,7 @@ conditions. Signals MISUSE if they could be levels as well as numbers of conditi
   "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND, which
 may be :ALL; and the index of the factor, if the designators are levels that several conditions
 have."
-  (multiple-value-bind (first second) (resolve-numbers results first second)
+  (multiple-value-bind (first second) (resolve-condition-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))
                  (and (not (eq :all second)) (rest (designated-samples results second))))

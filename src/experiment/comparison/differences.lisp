@@ -41,7 +41,7 @@ all pairs are equal; or NIL")
 (defun paired-estimate (difference)
   "Return the first rate or mean of DIFFERENCE minus the second, or NIL if there are no trials."
   (and (paired-first difference)
-       (number-less (paired-first difference) (paired-second difference))))
+       (subtract-numbers (paired-first difference) (paired-second difference))))
 
 (setf (documentation 'paired-adjusted-p 'function)
       "Return PAIRED-P corrected for all tests of the comparison (Holm), or NIL. Tests over several
@@ -54,7 +54,7 @@ conditions are corrected separately from tests of single conditions.")
 
 ;;; Rates.
 
-(defun pair-table (firsts seconds)
+(defun count-true-pairs (firsts seconds)
   "FIRSTS and SECONDS are lists of booleans. Return a list of four counts: the pairs in which both,
 only the first, only the second, and neither are true."
   (let ((both 0) (first 0) (second 0) (neither 0))
@@ -64,7 +64,7 @@ only the first, only the second, and neither are true."
     (list both first second neither)))
 
 (defun rate-difference (measure firsts seconds)
-  (destructuring-bind (both first second neither) (pair-table firsts seconds)
+  (destructuring-bind (both first second neither) (count-true-pairs firsts seconds)
     (let ((trials (+ both first second neither)))
       (if (zerop trials)
           (make-difference measure :rate 0 nil nil nil nil nil)
@@ -79,27 +79,27 @@ only the first, only the second, and neither are true."
 
 ;; The same floats added in another order differ in the last digits. Such a difference is reported
 ;; as rounding and not tested. Whole numbers have no rounding.
-(defconstant +grain+ (* 4 double-float-epsilon)
+(defconstant +rounding-tolerance+ (* 4 double-float-epsilon)
   "The largest relative difference of two floats that rounding can explain.")
 
 (defun equal-but-for-rounding-p (a b)
   (or (= a b)
       (and (or (floatp a) (floatp b))
            (<= (abs (- (rational a) (rational b)))
-               (* (rational +grain+) (max (abs (rational a)) (abs (rational b))))))))
+               (* (rational +rounding-tolerance+) (max (abs (rational a)) (abs (rational b))))))))
 
-(defun rounding-of (firsts seconds)
+(defun largest-rounding (firsts seconds)
   "Return the largest difference between FIRSTS and SECONDS if rounding can explain all; else NIL."
   (cond ((every #'= firsts seconds) 0)
         ((every #'equal-but-for-rounding-p firsts seconds)
-         (reduce #'max (mapcar (lambda (a b) (abs (number-less a b))) firsts seconds)))))
+         (reduce #'max (mapcar (lambda (a b) (abs (subtract-numbers a b))) firsts seconds)))))
 
 (defun exact-mean (numbers)
   "Return the mean of NUMBERS: a float if one of NUMBERS is a float, else a rational."
   (let ((mean (/ (reduce #'+ numbers :key #'rational) (length numbers))))
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
-(defun p-of-mean (numbers)
+(defun mean-p-value (numbers)
   "Return the p value of the mean of NUMBERS, which are differences. The test makes fewer draws for
 many numbers; the smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
@@ -112,23 +112,23 @@ many numbers; the smallest possible p does not depend on the draws."
       (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))
              (scale (scale-of-numbers differences))
              (numbers (mapcar (lambda (number) (scale-number number scale)) differences))
-             (rounding (rounding-of firsts seconds)))
+             (rounding (largest-rounding firsts seconds)))
         (multiple-value-bind (low high) (student-interval numbers)
           (make-difference measure kind (length firsts) (exact-mean firsts) (exact-mean seconds)
                            (unscale-number low scale) (unscale-number high scale)
-                           (if rounding 1d0 (p-of-mean numbers))
+                           (if rounding 1d0 (mean-p-value numbers))
                            '() rounding)))))
 
 ;;; Several differences.
 
 ;; A measure that is the same in all pairs cannot show a difference, so it does not count as a test.
-(defun tested-p (difference)
+(defun counts-as-test-p (difference)
   (and (paired-p difference) (not (paired-rounding difference))))
 
 (defun adjust-p-values (differences)
   "Set the adjusted p of each of DIFFERENCES by Holm's correction."
   (let* ((with-p (remove nil differences :key #'paired-p))
-         (tested (remove-if-not #'tested-p with-p)))
+         (tested (remove-if-not #'counts-as-test-p with-p)))
     (dolist (difference with-p)
       (setf (paired-adjusted-p difference) (paired-p difference)
             (paired-tests difference) (max 1 (length tested))))
@@ -136,7 +136,7 @@ many numbers; the smallest possible p does not depend on the draws."
           for adjusted in (holm-adjusted (mapcar #'paired-p tested))
           do (setf (paired-adjusted-p difference) adjusted))))
 
-(defun smallest-p (seeds)
+(defun smallest-possible-p (seeds)
   "Return the smallest possible p of a test over SEEDS seeds, for differences that all have the same
 sign."
   (expt 2 (- 1 (max 1 seeds))))

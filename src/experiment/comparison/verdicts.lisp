@@ -6,21 +6,22 @@
 ;;; left of the point. It is the second digit of the width of the interval, or if that is 0 of the
 ;;; difference.
 
-(defun last-decimal (size)
+(defun decimals-of-second-digit (size)
   "Return the position after the decimal point of the second significant digit of SIZE."
   (- 1 (power-of-ten (rational size))))
 
-(defun last-useful-decimal (difference)
+(defun useful-decimals (difference)
   "Return the number of decimals to which the numbers of DIFFERENCE, a difference of means, are
 rounded."
   (let* ((low (paired-low difference)) (high (paired-high difference))
-         (width (if low (number-less high low) 0))
+         (width (if low (subtract-numbers high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
                                            (paired-first difference)))))
     (cond ((plusp width)
-           (min (last-decimal width)
-                (max 6 (+ 5 (last-decimal (max (abs low) (abs high)))))))
-          (reach (max (last-decimal reach) (min 3 (+ 13 (last-decimal reach)))))
+           (min (decimals-of-second-digit width)
+                (max 6 (+ 5 (decimals-of-second-digit (max (abs low) (abs high)))))))
+          (reach (max (decimals-of-second-digit reach)
+                      (min 3 (+ 13 (decimals-of-second-digit reach)))))
           (t 3))))
 
 (defun scientific-text (number decimals)
@@ -40,12 +41,12 @@ rounded."
            (decimal-text number (max 0 decimals)))
           (t (scientific-text number decimals)))))
 
-(defun number-writer (difference)
+(defun number-formatter (difference)
   "Return a function that takes a number of DIFFERENCE and returns its text, without a unit."
   (cond ((eq :rate (paired-kind difference))
          (lambda (value) (percent-text value (paired-trials difference))))
         ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
-        (t (let ((decimals (if (paired-first difference) (last-useful-decimal difference) 0)))
+        (t (let ((decimals (if (paired-first difference) (useful-decimals difference) 0)))
              (lambda (value) (mean-text value decimals))))))
 
 ;;;; Verdicts
@@ -64,56 +65,56 @@ rounded."
         ((> p .995d0) "= 1")
         (t (format nil "= ~A" (probability-text p)))))
 
-(defun bare-p-text (p)
+(defun p-number-text (p)
   (string-left-trim "= " (p-text p)))
 
-(defun amount-words (difference value)
+(defun value-with-unit-text (difference value)
   "Return the text of VALUE, a number of DIFFERENCE. Rates have the unit points."
-  (let ((text (funcall (number-writer difference) value)))
+  (let ((text (funcall (number-formatter difference) value)))
     (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
             (member text '("1" "-1") :test #'string=))))
 
-(defun interval-words (difference)
-  (let ((write (number-writer difference)))
+(defun difference-interval-text (difference)
+  (let ((write (number-formatter difference)))
     (format nil "difference ~A (95 % interval ~A to ~A)"
-            (amount-words difference (paired-estimate difference))
+            (value-with-unit-text difference (paired-estimate difference))
             (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
-(defun p-words (difference)
+(defun p-values-text (difference)
   "Return a text with p of DIFFERENCE, corrected for the number of tests, and with the uncorrected
 p."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
             (< 1 tests) tests
-            (and (string/= (p-text p) (p-text adjusted)) (bare-p-text p)))))
+            (and (string/= (p-text p) (p-text adjusted)) (p-number-text p)))))
 
-(defun both-words (difference)
-  (let ((write (number-writer difference)))
+(defun both-values-text (difference)
+  (let ((write (number-formatter difference)))
     (if (eq :rate (paired-kind difference))
         (format nil "~A % against ~A %" (funcall write (paired-first difference))
                 (funcall write (paired-second difference)))
         (format nil "~A against ~A on average" (funcall write (paired-first difference))
                 (funcall write (paired-second difference))))))
 
-(defun left-out-words (difference)
+(defun left-out-pairs-text (difference)
   (let ((count (paired-left-out difference)))
     (when (plusp count)
       (format nil "~D left out, where a ~:[number~;value~] is missing" count
               (eq :rate (paired-kind difference))))))
 
-(defun trials-words (difference)
+(defun common-seeds-text (difference)
   (format nil "~:[over~;where both succeed,~] ~D common seed~:P~@[ (~A)~]"
           (string= "ticks" (paired-measure difference)) (paired-trials difference)
-          (left-out-words difference)))
+          (left-out-pairs-text difference)))
 
-(defun figures-words (difference)
-  (format nil "~A, ~A ~A, ~A" (p-words difference) (both-words difference)
-          (trials-words difference) (interval-words difference)))
+(defun difference-figures-text (difference)
+  (format nil "~A, ~A ~A, ~A" (p-values-text difference) (both-values-text difference)
+          (common-seeds-text difference) (difference-interval-text difference)))
 
 ;;; Verdicts.
 
-(defun direction-words (difference first second)
+(defun direction-text (difference first second)
   (let ((more (plusp (paired-estimate difference))) (measure (paired-measure difference)))
     (cond ((string= measure "success")
            (format nil "~A succeeds ~:[less~;more~] often than ~A" first more second))
@@ -128,18 +129,19 @@ p."
 (defun seeds-needed (tests)
   "Return the least number of seeds for which p, corrected for TESTS tests, can be at most .05."
   (loop for seeds from 1
-        when (<= (* tests (smallest-p seeds)) 1/20) return seeds))
+        when (<= (* tests (smallest-possible-p seeds)) 1/20) return seeds))
 
-(defun few-seeds-words (difference)
+(defun too-few-seeds-text (difference)
   "Return a text with the number of seeds needed if there are too few for a significant p of
 DIFFERENCE; else NIL."
   (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
                    ~D or more~@[, or compare fewer measures~]"
-              seeds (probability-text (smallest-p seeds)) tests (seeds-needed tests) (< 1 tests)))))
+              seeds (probability-text (smallest-possible-p seeds)) tests (seeds-needed tests)
+              (< 1 tests)))))
 
-(defun not-significant-words (difference)
+(defun why-not-significant-text (difference)
   "Return a text on why DIFFERENCE is not significant although its interval leaves out 0."
   (let ((tests (paired-tests difference)))
     (if (< 1 tests)
@@ -147,43 +149,45 @@ DIFFERENCE; else NIL."
                      interval that leaves out 0 proves nothing" tests)
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
-(defun no-difference-words (difference)
+(defun no-difference-text (difference)
   "Return a text on how large DIFFERENCE can be, or on why it is not significant in spite of its
 interval."
   (let ((low (paired-low difference)) (high (paired-high difference)))
     (if (<= low 0 high)
         (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"
-                (amount-words difference (max (abs low) (abs high))))
-        (format nil "~A~@[~A~]" (not-significant-words difference) (few-seeds-words difference)))))
+                (value-with-unit-text difference (max (abs low) (abs high))))
+        (format nil "~A~@[~A~]" (why-not-significant-text difference)
+                (too-few-seeds-text difference)))))
 
 (defun verdict (difference contrast)
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
                    (format nil "~A of ~A and ~A cannot be compared: ~A, and at least 2 are needed"
-                           (paired-measure difference) first second (trials-words difference)))
+                           (paired-measure difference) first second (common-seeds-text difference)))
                   ((plusp (or (paired-rounding difference) 0))
                    (format nil "~A of ~A and ~A differ by no more than rounding, seed by seed at ~
                                 most ~A: ~A ~A"
                            (paired-measure difference) first second
                            (figure-text (paired-rounding difference) :digits 2)
-                           (both-words difference) (trials-words difference)))
+                           (both-values-text difference) (common-seeds-text difference)))
                   ((and (eql 0 (paired-rounding difference))
                         (= 0 (paired-low difference) (paired-high difference)))
                    (format nil "~A of ~A and ~A are equal, seed by seed: ~A ~A"
-                           (paired-measure difference) first second (both-words difference)
-                           (trials-words difference)))
+                           (paired-measure difference) first second (both-values-text difference)
+                           (common-seeds-text difference)))
                   ((significant-p difference)
-                   (format nil "~A: ~A" (direction-words difference first second)
-                           (figures-words difference)))
+                   (format nil "~A: ~A" (direction-text difference first second)
+                           (difference-figures-text difference)))
                   (t (format nil "No significant difference in ~A between ~A and ~A: ~A; ~A"
                              (paired-measure difference) first second
-                             (figures-words difference) (no-difference-words difference)))))))
+                             (difference-figures-text difference)
+                             (no-difference-text difference)))))))
 
 (defun success-verdict (contrast)
   "Return :BETTER or :WORSE if the first side of CONTRAST succeeds significantly more or less often,
 :SAME if both sides are the same runs, else NIL."
-  (let ((difference (difference-called "success" contrast)))
+  (let ((difference (find-difference "success" contrast)))
     (cond ((same-runs-p contrast) :same)
           ((null difference) nil)
           ((significant-p difference)
@@ -233,7 +237,7 @@ difference alone."
 
 ;;; What was left out.
 
-(defun counts-words (contrast first second)
+(defun side-counts-text (contrast first second)
   "Return a text with FIRST and SECOND, counts of trials of the two sides of CONTRAST; NIL if both
 are 0."
   (let ((words (loop for count in (list first second)
@@ -242,10 +246,10 @@ are 0."
     (and words (format nil "~@[~A: ~]~{~A~^ and ~}" (contrast-where contrast) words))))
 
 (defun left-out-notes (contrast)
-  (let ((alone (counts-words contrast (contrast-unpaired-first contrast)
-                             (contrast-unpaired-second contrast)))
-        (errors (counts-words contrast (contrast-errors-first contrast)
-                              (contrast-errors-second contrast))))
+  (let ((alone (side-counts-text contrast (contrast-unpaired-first contrast)
+                                 (contrast-unpaired-second contrast)))
+        (errors (side-counts-text contrast (contrast-errors-first contrast)
+                                  (contrast-errors-second contrast))))
     (append (and alone (list (format nil "Left out, as only one has their seeds: ~A." alone)))
             (and errors (not (same-runs-p contrast))
                  (list (format nil "Ended with an error, and counted as not succeeded: ~A."
@@ -261,20 +265,21 @@ are 0."
 
 ;;;; PRINT-COMPARISON
 
-(defparameter *headings* '("measure" "seeds" "first" "second" "difference" "p" "p alone"))
+(defparameter *comparison-headings*
+  '("measure" "seeds" "first" "second" "difference" "p" "p alone"))
 
 (defun table-row (difference)
-  (let ((write (number-writer difference)) (rate-p (eq :rate (paired-kind difference))))
+  (let ((write (number-formatter difference)) (rate-p (eq :rate (paired-kind difference))))
     (flet ((text (value) (if value (funcall write value) "-")))
       (list (paired-measure difference) (integer-text (paired-trials difference))
             (format nil "~A~:[~; %~]" (text (paired-first difference)) rate-p)
             (format nil "~A~:[~; %~]" (text (paired-second difference)) rate-p)
             (format nil "~A (~A to ~A)" (text (paired-estimate difference))
                     (text (paired-low difference)) (text (paired-high difference)))
-            (bare-p-text (paired-adjusted-p difference)) (bare-p-text (paired-p difference))))))
+            (p-number-text (paired-adjusted-p difference)) (p-number-text (paired-p difference))))))
 
 (defun contrast-heading (contrast)
-  (let ((table (let ((success (difference-called "success" contrast)))
+  (let ((table (let ((success (find-difference "success" contrast)))
                  (and success (paired-table success)))))
     (format nil "~@[~A: ~]~A (first) against ~A~:[~; (the same)~]~@[: ~{both ~D, only the first ~
                  ~D, only the second ~D, neither ~D~}~]"
@@ -290,14 +295,14 @@ are 0."
                                                       :anchor (if (string= "measure" heading)
                                                                   :start
                                                                   :end)))
-                         *headings* (apply #'append groups))))
-    (write-cells (mapcar #'list *headings*) columns stream)
+                         *comparison-headings* (apply #'append groups))))
+    (write-cells (mapcar #'list *comparison-headings*) columns stream)
     (loop for contrast in (all-contrasts comparison)
           for rows in groups
           do (format stream "~A~%" (contrast-heading contrast))
              (dolist (row rows) (write-cells (mapcar #'list row) columns stream)))))
 
-(defun method-words (comparison)
+(defun methods-text (comparison)
   (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
                of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
                test (of equal distributions: skewed numbers can differ in that while their ~
@@ -333,5 +338,5 @@ are 0."
     (terpri stream)
     (write-table comparison stream)
     (terpri stream)
-    (write-wrapped (method-words comparison) stream))
+    (write-wrapped (methods-text comparison) stream))
   comparison)

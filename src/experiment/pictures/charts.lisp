@@ -19,22 +19,22 @@ values are the names of series, if there is only one such factor."
 
 (defun x-axis-factor (results)
   "Return the factor on the x axis of pictures of RESULTS, or NIL if nothing varies."
-  (let ((free (free-factors results)))
-    (or (find-if (lambda (place) (every #'number-in (levels results place))) free)
+  (let ((free (varying-factors results)))
+    (or (find-if (lambda (place) (every #'number-from-text (levels results place))) free)
         (first free))))
 
 (defun series-factors (results)
   "Return the factors that make the series in pictures of RESULTS."
-  (remove (x-axis-factor results) (free-factors results)))
+  (remove (x-axis-factor results) (varying-factors results)))
 
 ;;; Series and panels.
 
-(defun common-name (sample places factors)
+(defun factor-values-name (sample places factors)
   "Return the name of SAMPLE made from the factors with the indices PLACES, or NIL if there are
 none."
   (and places
        (level-names (loop for place in places collect (nth place factors))
-                    (loop for place in places collect (text-at place sample)))))
+                    (loop for place in places collect (factor-text place sample)))))
 
 (defun series-title (places factors)
   (and places (null (rest places)) (nth (first places) factors)))
@@ -42,10 +42,10 @@ none."
 (defun series-name (sample places factors)
   "Return the name of the series that SAMPLE belongs to. If the series have a title, the name is
 only the factor's value."
-  (let ((text (and (series-title places factors) (text-at (first places) sample))))
+  (let ((text (and (series-title places factors) (factor-text (first places) sample))))
     (if (and text (string/= "" text))
         text
-        (common-name sample places factors))))
+        (factor-values-name sample places factors))))
 
 (defun group-series (samples places factors)
   (loop for group in (grouped samples (lambda (sample) (series-name sample places factors)))
@@ -57,7 +57,7 @@ only the factor's value."
     (loop while list
           collect (loop repeat size while list collect (pop list)))))
 
-(defun chunk-panels (series where title)
+(defun split-into-panels (series where title)
   (loop with chunks = (split-evenly series +most-series+)
         for chunk in chunks
         for number from 1
@@ -69,13 +69,14 @@ only the factor's value."
 FACTORS make the series."
   (let ((series (group-series samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
-          ((null (rest places)) (chunk-panels series where title))
+          ((null (rest places)) (split-into-panels series where title))
           (t (let ((last (last places)))
                (loop for group in (grouped samples
-                                           (lambda (sample) (common-name sample last factors)))
+                                           (lambda (sample)
+                                             (factor-values-name sample last factors)))
                      append (panels group (butlast places) factors
                                     (format nil "~@[~A ~]~A" where
-                                            (common-name (first group) last factors)))))))))
+                                            (factor-values-name (first group) last factors)))))))))
 
 ;;;; Charts
 
@@ -92,29 +93,29 @@ FACTORS make the series."
   "Return a text: what the conditions of PANEL have in common, then SENTENCES, strings or NIL."
   (format nil "~@[~A. ~]~{~A~^ ~}" (panel-where panel) (remove nil sentences)))
 
-(defun errors-words (summaries)
+(defun errors-text (summaries)
   "Return a sentence on the trials of SUMMARIES that ended with an error; \"\" if none did."
   (let ((count (reduce #'+ summaries :key #'summary-errors)))
     (if (zerop count)
         ""
         (format nil " ~D trial~:P broke off with an error, and did not succeed." count))))
 
-(defun intervals-words (kind summaries)
+(defun intervals-text (kind summaries)
   "Return a sentence on the intervals of the estimates of KIND in SUMMARIES, followed by the
-ERRORS-WORDS."
+ERRORS-TEXT."
   (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
                ~A.~A"
           (statistic-option kind :interval)
           (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
           (trials-text summaries)
-          (errors-words summaries)))
+          (errors-text summaries)))
 
 ;;; Estimates against the factor on the x axis.
 
 (defun x-value (text)
-  (or (number-in text) (if (string= "" text) "none" text)))
+  (or (number-from-text text) (if (string= "" text) "none" text)))
 
-(defun log-x-p (numbers)
+(defun logarithmic-x-p (numbers)
   "True if NUMBERS are so far apart that they need a logarithmic scale."
   (and (cddr numbers) (every #'realp numbers) (every #'plusp numbers)
        (<= 50 (/ (reduce #'max numbers) (reduce #'min numbers)))))
@@ -123,7 +124,7 @@ ERRORS-WORDS."
   (loop for (name . samples) in (panel-series panel)
         collect (cons name (loop for sample in samples
                                  for estimate = (funcall estimate-of sample)
-                                 collect (list (if place (x-value (text-at place sample)) "all")
+                                 collect (list (if place (x-value (factor-text place sample)) "all")
                                                (estimate-value estimate) (estimate-low estimate)
                                                (estimate-high estimate))))))
 
@@ -137,11 +138,12 @@ ERRORS-WORDS."
             collect (list name (panel-where panel)
                           (line-chart series
                                       :percent (eq :rate kind)
-                                      :log-x (and place (log-x-p (mapcar #'x-value
-                                                                         (levels results place))))
+                                      :log-x (and place
+                                                  (logarithmic-x-p
+                                                   (mapcar #'x-value (levels results place))))
                                       :title (picture-title results)
                                       :subtitle (subtitle panel words
-                                                          (intervals-words kind summaries))
+                                                          (intervals-text kind summaries))
                                       :x-label (and place (nth place factors))
                                       :legend-title (panel-title panel)
                                       :y-label y-label))))))
@@ -160,7 +162,7 @@ ERRORS-WORDS."
 
 (defconstant +most-rows+ 30 "The most rows of a picture.")
 
-(defun pictures-of-rows (name rows chart)
+(defun row-pictures (name rows chart)
   (loop with chunks = (split-evenly rows +most-rows+)
         for chunk in chunks
         for number from 1
@@ -168,19 +170,19 @@ ERRORS-WORDS."
 
 (defun spread-pictures (results summaries place)
   (let ((name (nth place (results-measures results))))
-    (pictures-of-rows (format nil "spread-of-~A" name)
-                      (loop for sample in (results-samples results)
-                            for summary in summaries
-                            for estimate = (nth place (summary-measures summary))
-                            for values = (sample-measure results sample name)
-                            collect (list (sample-condition sample)
-                                          (remove-if-not #'finite-value-p values)
-                                          (estimate-value estimate) (estimate-low estimate)
-                                          (estimate-high estimate)))
-                      (lambda (rows)
-                        (measure-chart rows :middle-label "mean" :title (picture-title results)
-                                            :x-label name
-                                            :subtitle (intervals-words :mean summaries))))))
+    (row-pictures (format nil "spread-of-~A" name)
+                  (loop for sample in (results-samples results)
+                        for summary in summaries
+                        for estimate = (nth place (summary-measures summary))
+                        for values = (sample-measure results sample name)
+                        collect (list (sample-condition sample)
+                                      (remove-if-not #'finite-value-p values)
+                                      (estimate-value estimate) (estimate-low estimate)
+                                      (estimate-high estimate)))
+                  (lambda (rows)
+                    (measure-chart rows :middle-label "mean" :title (picture-title results)
+                                        :x-label name
+                                        :subtitle (intervals-text :mean summaries))))))
 
 (defun measure-pictures (results summaries)
   (loop for name in (results-measures results)
@@ -212,11 +214,12 @@ most ticks of any trial."
 (defun horizon (samples limit)
   "Return the tick until which curves are drawn: a little after the last success of SAMPLES."
   (let ((last (loop for sample in samples
-                    maximize (reduce #'max (values-where #'success-p sample (sample-ticks sample))
+                    maximize (reduce #'max (values-with-outcome #'success-p sample
+                                                                (sample-ticks sample))
                                      :initial-value 0))))
     (max last (min limit (ceiling (* 21/20 last))))))
 
-(defun curve-of (name sample horizon confidence band-p)
+(defun sample-curve (name sample horizon confidence band-p)
   "Return the curve of SAMPLE for SURVIVAL-CHART, until the tick HORIZON, with bands if BAND-P."
   (let* ((events (cl:map 'vector #'success-p (sample-outcomes sample)))
          (times (cl:map 'vector (lambda (ticks done-p) (if done-p ticks horizon))
@@ -228,7 +231,7 @@ most ticks of any trial."
 
 (defconstant +most-bands+ 4 "The most curves that have bands; more would hide each other.")
 
-(defun survival-words (band-p results)
+(defun survival-text (band-p results)
   (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. What failed, broke off or came ~
                to the limit of ~D ticks is never done."
           (and band-p (if (results-until results) "the last look's confidence" "95 %"))
@@ -239,11 +242,11 @@ most ticks of any trial."
     (list
      "survival" (panel-where panel)
      (survival-chart (loop for (name sample) in (panel-series panel)
-                           collect (curve-of name sample horizon (confidence-for results sample)
-                                             band-p))
+                           collect (sample-curve name sample horizon (confidence-for results sample)
+                                                 band-p))
                      :title (picture-title results)
                      :subtitle (subtitle panel (concatenate 'string
-                                                            (survival-words band-p results)
+                                                            (survival-text band-p results)
                                                             errors))
                      :x-label "ticks" :y-label "trials not yet done"
                      :legend-title (panel-title panel)
@@ -253,46 +256,46 @@ most ticks of any trial."
   (let ((samples (results-samples results)))
     (when (any-value-p (mapcar #'summary-ticks summaries))
       (loop with horizon = (horizon samples (tick-limit results))
-            for panel in (panels samples (free-factors results) (results-factors results))
-            collect (survival-picture results panel horizon (errors-words summaries))))))
+            for panel in (panels samples (varying-factors results) (results-factors results))
+            collect (survival-picture results panel horizon (errors-text summaries))))))
 
 ;;; Differences.
 
-(defun pairs-by (results place)
+(defun pairs-by-factor (results place)
   "Return pairs of samples of RESULTS that differ only in the factor with index PLACE, and true. The
 second sample of a pair has the factor's first level. If there are no such pairs, return pairs of
 each other sample with the first one, and NIL."
-  (let ((pairs (pairs-differing-at results place nil (first (levels results place)))))
+  (let ((pairs (pairs-differing-in-factor results place nil (first (levels results place)))))
     (if pairs
         (values pairs t)
         (loop with first = (first (results-samples results))
               for other in (rest (results-samples results))
               collect (list other first)))))
 
-(defun comparison-by (results place measure)
+(defun comparison-by-factor (results place measure)
   "Return the comparison of RESULTS by the factor PLACE in MEASURE, as COMPARE-LEVELS makes it; NIL
 if there is nothing to compare."
-  (multiple-value-bind (pairs equal-p) (pairs-by results place)
+  (multiple-value-bind (pairs equal-p) (pairs-by-factor results place)
     (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair)) pairs)))
       (and pairs
            (comparison-of-conditions results pairs (and equal-p place) (list measure) nil)))))
 
-(defun contrasts-in (measure comparison)
+(defun contrasts-with-measure (measure comparison)
   (remove-if-not (lambda (contrast)
-                   (let ((difference (difference-called measure contrast)))
+                   (let ((difference (find-difference measure contrast)))
                      (or (same-runs-p contrast)
                          (and difference (paired-estimate difference)))))
                  (all-contrasts comparison)))
 
 (defun difference-pictures (results summaries)
   (declare (ignore summaries))
-  (loop for place in (free-factors results)
+  (loop for place in (varying-factors results)
         append (loop for measure in '("success" "ticks")
-                     for comparison = (comparison-by results place measure)
+                     for comparison = (comparison-by-factor results place measure)
                      when comparison
-                       append (pictures-of-rows
+                       append (row-pictures
                                (format nil "difference-in-~A-by-~A" measure
                                        (nth place (results-factors results)))
-                               (contrasts-in measure comparison)
+                               (contrasts-with-measure measure comparison)
                                (lambda (contrasts)
                                  (comparison-chart comparison measure :contrasts contrasts))))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(defparameter *pictures*
+(defparameter *picture-kinds*
   '((:success . success-pictures) (:ticks . ticks-pictures) (:measures . measure-pictures)
     (:survival . survival-pictures) (:differences . difference-pictures))
   "An alist from keys of SAVE-RESULT-PICTURES to functions of results and summaries that return
@@ -10,7 +10,7 @@ pictures.")
 
 ;;; Files are named after their contents.
 
-(defun file-word (text)
+(defun file-name-part (text)
   "Return TEXT as part of a file's name: at most 100 letters, digits, points and single dashes."
   (let* ((text (substitute-if #\- (lambda (char)
                                     (not (or (and (< (char-code char) 128) (alphanumericp char))
@@ -20,8 +20,8 @@ pictures.")
          (name (format nil "~{~A~^-~}" words)))
     (subseq name 0 (min 100 (length name)))))
 
-(defun unused-name (name where names)
-  (let ((name (file-word (format nil "~A~@[-~A~]" name where))))
+(defun unused-file-name (name where names)
+  (let ((name (file-name-part (format nil "~A~@[-~A~]" name where))))
     (if (member name names :test #'string=)
         (loop for number from 2
               for other = (format nil "~A-~D" name number)
@@ -31,13 +31,13 @@ pictures.")
 (defun save-pictures (pictures directory kind)
   (let ((names '()))
     (loop for (title where chart) in pictures
-          for name = (unused-name title where names)
+          for name = (unused-file-name title where names)
           do (push name names)
           collect (save-chart (file-in directory (format nil "~A.~(~A~)" name kind)) chart))))
 
 (addition save-result-pictures)
 (define-with-keywords save-result-pictures
-    (results directory &key (kind :svg) (which (mapcar #'first *pictures*)))
+    (results directory &key (kind :svg) (which (mapcar #'first *picture-kinds*)))
   "Save pictures of RESULTS in DIRECTORY, created if necessary. Return a list of the files, which
 are named after what they show. KIND is :SVG or, if the program rsvg-convert is installed, :PNG.
 WHICH is a list of some of these:
@@ -57,11 +57,11 @@ or the directory cannot be made."
   (check-argument save-result-pictures kind (member kind '(:svg :png)) ":svg or :png")
   (check-argument save-result-pictures which
                   (and (proper-list-p which)
-                       (every (lambda (key) (assoc key *pictures*)) which))
-                  (format nil "a list of some of ~{~(~S~)~^, ~}" (mapcar #'first *pictures*)))
+                       (every (lambda (key) (assoc key *picture-kinds*)) which))
+                  (format nil "a list of some of ~{~(~S~)~^, ~}" (mapcar #'first *picture-kinds*)))
   (when (results-samples results)
     (let ((summaries (summarize-results results)))
-      (save-pictures (loop for (key . function) in *pictures*
+      (save-pictures (loop for (key . function) in *picture-kinds*
                            when (member key which)
                              append (funcall function results summaries))
                      (ensure-store-directory directory) kind))))
@@ -84,9 +84,9 @@ or the directory cannot be made."
 
 (defun ways-of-trials (experiment condition trials)
   (prepare-trials experiment condition)
-  (call-in-silence (lambda ()
-                     (loop for trial in trials
-                           append (ways-of-trial experiment condition trial)))))
+  (call-without-output (lambda ()
+                         (loop for trial in trials
+                               append (ways-of-trial experiment condition trial)))))
 
 (defun trial-numbers (trials)
   "Return a list of trial numbers for TRIALS, an argument of SAVE-WAYS-PICTURE."
@@ -99,7 +99,7 @@ or the directory cannot be made."
       trials
       (loop for trial from 1 to trials collect trial)))
 
-(defun trials-in-words (trials)
+(defun shown-trials-text (trials)
   "Return a text on the paths in a picture of TRIALS, a list of numbers."
   (let ((count (length trials)))
     (cond ((= 1 count) (format nil "The way of each robot in trial ~D" (first trials)))
@@ -124,7 +124,7 @@ missing."
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
          (trials (trial-numbers trials))
-         (start (call-in-silence
+         (start (call-without-output
                  (lambda ()
                    (call-in-trial (lambda ()
                                     (take-snapshot (simulation-world (current-simulation))))
@@ -136,7 +136,7 @@ missing."
            (format nil "~A. ~A, with a marker ~:[at the end of each~;for each robot where ~
                         it ended~]. Robots and things are where ~:[the first of these~;the ~
                         trial~] begins."
-                   (condition-name condition) (trials-in-words trials)
+                   (condition-name condition) (shown-trials-text trials)
                    (rest (snapshot-robots start)) (null (rest trials)))
            (loop for (key value) on options by #'cddr
                  unless (eq :trials key) append (list key value)))))
@@ -157,7 +157,7 @@ missing."
               (contrast-second contrast))))
 
 (defun picture-row (contrast measure comparison)
-  (let ((difference (difference-called measure contrast)))
+  (let ((difference (find-difference measure contrast)))
     (flet ((scaled (value)
              (and value (if (eq :rate (paired-kind difference)) (* 100 value) value))))
       (cond ((same-runs-p contrast)
@@ -176,17 +176,17 @@ missing."
     (format nil "~D~:[ to ~D~;~]" least (= least most) most)))
 
 (defun shown-differences (contrasts measure)
-  (remove nil (mapcar (lambda (contrast) (difference-called measure contrast)) contrasts)))
+  (remove nil (mapcar (lambda (contrast) (find-difference measure contrast)) contrasts)))
 
-(defun tests-words (contrasts measure)
+(defun tests-text (contrasts measure)
   "Return a text on the number of tests for which p of MEASURE in CONTRASTS is corrected; or NIL."
-  (let ((tested (remove-if-not #'tested-p (shown-differences contrasts measure))))
+  (let ((tested (remove-if-not #'counts-as-test-p (shown-differences contrasts measure))))
     (when tested
       (let ((tests (paired-tests (first tested))))
         (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
                 (length tested))))))
 
-(defun seeds-words (comparison measure)
+(defun seeds-text (comparison measure)
   (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
     (and trials
          (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)
@@ -196,12 +196,12 @@ missing."
   (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
                ~@[ ~A.~]~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
           (or (comparison-sides comparison) "Conditions")
-          (tests-words (comparison-contrasts comparison) measure)
-          (seeds-words comparison measure)
+          (tests-text (comparison-contrasts comparison) measure)
+          (seeds-text comparison measure)
           ;; These may disagree where numbers are few.
           (and (not (rate-compared-p measure comparison))
                "The intervals are Student's, p is of a permutation test")
-          (tests-words (comparison-overall comparison) measure)))
+          (tests-text (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
   "Return the chart, an SVG document, of differences in MEASURE in COMPARISON, or only in its

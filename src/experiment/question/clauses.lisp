@@ -40,7 +40,7 @@
   (let ((step (expt 10 power)))
     (float (* step (round (rational value) step)) 1d0)))
 
-(defun value-between (low high scale share)
+(defun value-on-scale (low high scale share)
   "Return the number that is the SHARE, from 0 to below 1, of the way from LOW to HIGH on SCALE."
   (ecase scale
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
@@ -64,12 +64,12 @@
            collect (loop for share in point
                          for (name nil nil scale) in ranges
                          for (low high) in bounds
-                         collect (list name (value-between low high scale share))))
+                         collect (list name (value-on-scale low high scale share))))
      :test #'equal :from-end t)))
 
 ;;;; All clauses
 
-(defparameter *clauses*
+(defparameter *clause-syntax*
   '((:robots "(:robots name...), robots of one map")
     (:parameters "(:parameters (parameter form)...)")
     (:clean "(:clean) or (:clean t)")
@@ -89,14 +89,14 @@
   "The clauses and their syntax.")
 
 (defun clause-usage (key)
-  (format nil (second (assoc key *clauses*))))
+  (format nil (second (assoc key *clause-syntax*))))
 
 (defun reject-by-usage (definition clause)
   (reject-clause definition clause (clause-usage (first clause))))
 
 (defun clause-key (definition clause)
-  (unless (and (proper-list-p clause) (assoc (first clause) *clauses*))
-    (let* ((keys (mapcar #'first *clauses*))
+  (unless (and (proper-list-p clause) (assoc (first clause) *clause-syntax*))
+    (let* ((keys (mapcar #'first *clause-syntax*))
            (word (and (consp clause) (symbolp (first clause)) (first clause)))
            (nearest (and word (nearest-name word keys))))
       (reject-clause definition clause
@@ -117,7 +117,7 @@
   (let ((clause (find key clauses :key #'first)))
     (values (rest clause) (and clause t))))
 
-(defun check-each (definition clause test &optional (expected (clause-usage (first clause))))
+(defun check-elements (definition clause test &optional (expected (clause-usage (first clause))))
   "Signal MALFORMED-DEFINITION for the first element after the key of CLAUSE that fails TEST, or for
 CLAUSE if there are no elements."
   (unless (rest clause) (reject-by-usage definition clause))
@@ -148,7 +148,7 @@ CLAUSE if there are no elements."
 
 (defun can-vary-p (name)
   (and name (symbolp name) (not (keywordp name))
-       (or (parameter-called name)
+       (or (parameter-of-variable name)
            (null (variable-kind name))
            (and (special-p name) (not (package-locked-p (symbol-package name)))))))
 
@@ -224,7 +224,7 @@ CLAUSE if there are no elements."
    :from-end t))
 
 (defun varied-variables (clauses)
-  (remove-if (lambda (name) (or (keyword-factor-p name) (parameter-called name)))
+  (remove-if (lambda (name) (or (keyword-factor-p name) (parameter-of-variable name)))
              (varied-names clauses)))
 
 ;;; Checking all clauses.
@@ -243,9 +243,11 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (dolist (part (clause-arguments key clauses)) (check (first part) part))))
 
 (defun check-column-names (definition clauses)
-  (let ((before (append *columns-before* (and (clause-arguments :conditions clauses) '("case")))))
-    (check-columns definition (append before *columns-between* *columns-after*) clauses :measure)
-    (check-columns definition (append before *series-columns*) clauses :each-tick)))
+  (let ((before (append *columns-before-factors*
+                        (and (clause-arguments :conditions clauses) '("case")))))
+    (check-columns definition (append before *columns-before-measures* *columns-after-measures*)
+                   clauses :measure)
+    (check-columns definition (append before *columns-before-values*) clauses :each-tick)))
 
 (defun check-number-clause (definition clause test)
   (unless (and (= 2 (length clause)) (funcall test (second clause)))
@@ -256,19 +258,20 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
 
 (defun check-clause (definition clause)
   (ecase (first clause)
-    (:robots (check-each definition clause (lambda (name) (and name (typep name 'symbol)))))
+    (:robots (check-elements definition clause (lambda (name) (and name (typep name 'symbol)))))
     (:parameters
-     (check-each definition clause
-                 (lambda (part) (and (typep part 'named-form) (parameter-called (first part))))
-                 "(parameter form), with a parameter of the simulation such as max-speed*")
+     (check-elements definition clause
+                     (lambda (part)
+                       (and (typep part 'named-form) (parameter-of-variable (first part))))
+                     "(parameter form), with a parameter of the simulation such as max-speed*")
      (check-names definition clause (mapcar #'first (rest clause))))
     (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
               (reject-by-usage definition clause)))
-    (:vary (check-each definition clause #'consp)
+    (:vary (check-elements definition clause #'consp)
      (dolist (part (rest clause))
        (if (design-part-p part) (check-design definition part) (check-factor definition part)))
      (check-names definition clause (loop for part in (rest clause) append (part-names part))))
-    (:conditions (check-each definition clause #'consp)
+    (:conditions (check-elements definition clause #'consp)
      (dolist (case (rest clause)) (check-case definition case))
      (check-names definition clause (mapcar #'first (rest clause)))
      (check-same-factors definition (rest clause)))
@@ -278,12 +281,12 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (:time-limit (check-number-clause definition clause #'seconds-p))
     (:seed (check-number-clause definition clause #'integerp))
     (:run (unless (rest clause) (reject-by-usage definition clause))
-     (check-runs definition clause))
+     (check-run-clause definition clause))
     (:thinking (unless (= 2 (length clause)) (reject-by-usage definition clause)))
-    ((:until :success) (check-test definition clause))
+    ((:until :success) (check-test-clause definition clause))
     ((:measure :each-tick)
-     (check-each definition clause (lambda (part) (typep part 'named-form)))
-     (dolist (part (rest clause)) (doubt-quoted-measure definition part)))))
+     (check-elements definition clause (lambda (part) (typep part 'named-form)))
+     (dolist (part (rest clause)) (warn-of-quoted-measure definition part)))))
 
 (defun check-all-clauses (definition name clauses)
   (check-clauses definition clauses)
@@ -300,8 +303,8 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
                    (clause-arguments :conditions clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)
-  (doubt-unnamed :measure clauses)
-  (doubt-unnamed :each-tick clauses)
-  (doubt-nested-run (clause-arguments :run clauses))
-  (doubt-truth-of-plan (first (last (clause-arguments :run clauses))))
-  (doubt-unused clauses))
+  (warn-of-unnamed-measures :measure clauses)
+  (warn-of-unnamed-measures :each-tick clauses)
+  (warn-of-nested-run (clause-arguments :run clauses))
+  (warn-of-plan-as-test (first (last (clause-arguments :run clauses))))
+  (warn-of-unused-variables clauses))

@@ -39,7 +39,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
   `(list ,@(loop for (name form) in (clause-arguments key clauses)
                  collect `(list ',name ,(function-form clauses (list form))))))
 
-(defun clean-p (clauses)
+(defun clean-clause-p (clauses)
   (multiple-value-bind (rest given) (clause-arguments :clean clauses)
     (and given (or (null rest) (first rest)))))
 
@@ -47,7 +47,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
   (multiple-value-bind (rest given) (clause-arguments :thinking clauses)
     (if given (value-form :thinking (first rest)) :free)))
 
-(defun deciding-text (clauses)
+(defun outcome-clauses (clauses)
   "Return the CLAUSES, apart from factors, that affect the outcome of a trial."
   (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
                      :measure :each-tick)
@@ -59,7 +59,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
      :documentation ,documentation
      :robots ',(clause-arguments :robots clauses)
      :parameters ,(parts-form (clause-arguments :parameters clauses) #'second)
-     :clean ,(clean-p clauses)
+     :clean ,(clean-clause-p clauses)
      :thinking ,(thinking-form clauses)
      :factors ,(parts-form (clause-arguments :vary clauses) #'values-form)
      :cases (list ,@(loop for (name . parts) in (clause-arguments :conditions clauses)
@@ -75,7 +75,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
      :measures ,(named-functions-form :measure clauses)
      :series ,(named-functions-form :each-tick clauses)
      :form ',form
-     :deciding ',(deciding-text clauses)))
+     :deciding ',(outcome-clauses clauses)))
 
 (addition defexperiment)
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)
@@ -135,7 +135,7 @@ documentation of RUN-EXPERIMENT says what is kept."
 (defun check-value (definition part value)
   "Signal MALFORMED-DEFINITION unless the factor of PART can have VALUE."
   (let* ((name (first part))
-         (parameter (and (not (keyword-factor-p name)) (parameter-called name))))
+         (parameter (and (not (keyword-factor-p name)) (parameter-of-variable name))))
     (cond ((eq :robots name) (check-robots definition part (ensure-list value)))
           ((eq :thinking name)
            (unless (thinking-mode-p value)
@@ -148,7 +148,7 @@ documentation of RUN-EXPERIMENT says what is kept."
                             (format nil "values of ~(~A~), ~A, not ~A" name
                                     (describe-type (parameter-type parameter))
                                     (safe-text value)))))
-          ((not (value-p value))
+          ((not (table-value-p value))
            (reject-clause definition part
                           (format nil "numbers, symbols, strings or lists of them, not ~A: a ~
                                        table must have a text for it"
@@ -173,7 +173,7 @@ documentation of RUN-EXPERIMENT says what is kept."
 (defun equal-in-table-p (text other)
   "True if TEXT and OTHER, cells of a table, are equal texts or numbers, such as 1 and 1.0."
   (or (string= text other)
-      (let ((number (number-in text)) (other-number (number-in other)))
+      (let ((number (number-from-text text)) (other-number (number-from-text other)))
         (and number other-number (= number other-number)))))
 
 (defun check-values-differ (definition part texts)
@@ -238,7 +238,7 @@ of other slots of an experiment."
                                                :allow-other-keys t options))
          (settings (settings-from definition parameters)))
     (setf (experiment-conditions experiment)
-          (call-plainly (lambda () (all-conditions experiment clean settings))))
+          (call-with-trial-syntax (lambda () (all-conditions experiment clean settings))))
     (check-conditions-differ definition
                              (if factors
                                  (list* :vary (mapcar #'first factors))

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(doubt-nested-run))
+(export '(warn-of-nested-run))
 
 (defun mentioned-p (name tree)
   (cond ((consp tree) (loop while (consp tree)
                             thereis (mentioned-p name (pop tree))))
         (t (eq name tree))))
 
-(defun doubt-unused (clauses)
+(defun warn-of-unused-variables (clauses)
   (dolist (name (varied-variables clauses))
     (unless (or (special-p name)
                 (loop for key in '(:run :until :success :measure :each-tick)
@@ -18,7 +18,7 @@
                          ~A?~]"
                         name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
-(defun doubt-unnamed (key clauses)
+(defun warn-of-unnamed-measures (key clauses)
   "Warn if a part (name form) of the clause KEY of CLAUSES looks like a call with a robot."
   (loop with robots = (clause-arguments :robots clauses)
         for (name form) in (clause-arguments key clauses)
@@ -27,7 +27,7 @@
                                 it first: (~(~S~) (NAME (~A ~A)))."
                                name form name form key name form)))
 
-(defun doubt-nested-run (forms)
+(defun warn-of-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
     (doubt-definition "a trial is already a run. A with-simulation in it starts another run, with ~
@@ -40,21 +40,21 @@
   "Return the symbol NAME if FORM is 'NAME or #'NAME; else NIL."
   (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
 
-(defun run-plan-text (name)
+(defun run-plan-advice (name)
   (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
                runs nothing" name))
 
-(defun check-runs (definition clause)
+(defun check-run-clause (definition clause)
   "Signal MALFORMED-DEFINITION if CLAUSE, :run, is only the name of a plan."
   (let ((name (and (null (cddr clause)) (quoted-name (second clause)))))
     (when (and name (find-procedure name nil))
-      (reject-clause definition clause (run-plan-text name))))
+      (reject-clause definition clause (run-plan-advice name))))
   (let ((advice (test-advice (first (last clause)))))
     (when advice (doubt-definition "~A, :run: ~A" definition advice))))
 
 ;;; Tests.
 
-(defun doubt-truth-of-plan (form)
+(defun warn-of-plan-as-test (form)
   "Warn if FORM, the last form of :run, tests the first value of a plan, which is true on failure."
   (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
              (same-name-p 'if (first form))
@@ -96,7 +96,7 @@
                      form)
     nil))
 
-(defun check-test (definition clause)
+(defun check-test-clause (definition clause)
   "Signal MALFORMED-DEFINITION unless CLAUSE has one form. Warn if the form is always true or always
 false."
   (unless (= 2 (length clause)) (reject-by-usage definition clause))
@@ -108,7 +108,7 @@ false."
                     (plan-as-test-advice test))))
     (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
 
-(defun doubt-quoted-measure (definition part)
+(defun warn-of-quoted-measure (definition part)
   "Warn if the form in PART, (name form), is quoted: the measure would be the form itself."
   (let ((name (quoted-name (second part))))
     (when (or (typep (second part) '(cons (eql quote) (cons cons null)))

@@ -50,12 +50,12 @@ variables hold weakly: the keys of a table" :writable))
 
 ;;; Parameters.
 
-(defun parameter-called (name)
+(defun parameter-of-variable (name)
   "Return the parameter whose variable is the symbol NAME, or NIL."
   (let ((parameter (find-parameter name nil)))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
-(defun parameters-with (settings clean)
+(defun parameter-values-with (settings clean)
   "Return a vector with a value for each parameter: the last one in SETTINGS, lists (name value);
 else the value without noise if CLEAN is true; else the manual's value."
   (cl:map 'simple-vector
@@ -104,7 +104,7 @@ else the value without noise if CLEAN is true; else the manual's value."
 
 ;;; Conditions.
 
-(defun condition-from (experiment settings case-name others clean parameters)
+(defun condition-from-settings (experiment settings case-name others clean parameters)
   "Return the condition of EXPERIMENT with SETTINGS: the settings of the case CASE-NAME, and OTHERS.
 PARAMETERS are lists (name value) for all conditions."
   (let ((robots (second (assoc :robots settings))))
@@ -117,7 +117,7 @@ PARAMETERS are lists (name value) for all conditions."
      :robots (if robots (ensure-list robots) (experiment-robots experiment))
      :thinking (second (or (assoc :thinking settings)
                            (list :thinking (experiment-thinking experiment))))
-     :parameters (parameters-with (append parameters settings) clean)
+     :parameters (parameter-values-with (append parameters settings) clean)
      :arguments (loop for name in (experiment-variables experiment)
                       collect (second (assoc name settings))))))
 
@@ -131,8 +131,8 @@ PARAMETERS are lists (name value) for all conditions."
 (defun all-conditions (experiment clean parameters)
   (loop for (case settings) in (or (experiment-cases experiment) '((nil ())))
         append (loop for others in (combinations (experiment-axes experiment))
-                     collect (condition-from experiment (append settings others) case others
-                                             clean parameters))))
+                     collect (condition-from-settings experiment (append settings others) case
+                                                      others clean parameters))))
 
 (defun find-by-name (text things name)
   "Return the THINGS whose name, as the function NAME returns it, is TEXT; if there are none, those
@@ -167,29 +167,29 @@ UNKNOWN-NAME."
   "Return the seed of the trial numbered TRIAL, the same under all conditions."
   (+ (experiment-seed experiment) trial))
 
-(defparameter *columns-before* '("experiment" "fingerprint" "condition")
+(defparameter *columns-before-factors* '("experiment" "fingerprint" "condition")
   "The columns of a table before the factors.")
-(defparameter *columns-between* '("seed" "trial" "outcome" "reason" "ticks")
+(defparameter *columns-before-measures* '("seed" "trial" "outcome" "reason" "ticks")
   "The columns of a table of rows between the factors and the measures.")
-(defparameter *columns-after* '("digest" "error")
+(defparameter *columns-after-measures* '("digest" "error")
   "The columns of a table of rows after the measures.")
-(defparameter *series-columns* '("seed" "trial" "tick")
+(defparameter *columns-before-values* '("seed" "trial" "tick")
   "The columns of a table of series between the factors and the recorded values.")
 
 (defun factor-columns (experiment)
   (append (and (experiment-cases experiment) (list "case"))
           (mapcar #'string-downcase (factor-names experiment))))
 
-(defun part-columns (parts)
+(defun names-as-columns (parts)
   (mapcar (lambda (part) (string-downcase (first part))) parts))
 
 (defun columns (experiment)
-  (append *columns-before* (factor-columns experiment) *columns-between*
-          (part-columns (experiment-measures experiment)) *columns-after*))
+  (append *columns-before-factors* (factor-columns experiment) *columns-before-measures*
+          (names-as-columns (experiment-measures experiment)) *columns-after-measures*))
 
 (defun series-columns (experiment)
-  (append *columns-before* (factor-columns experiment) *series-columns*
-          (part-columns (experiment-series experiment))))
+  (append *columns-before-factors* (factor-columns experiment) *columns-before-values*
+          (names-as-columns (experiment-series experiment))))
 
 ;;;; The question of an experiment
 

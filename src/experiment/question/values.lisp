@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(number-in))
+(export '(number-from-text))
 
 ;;; R, pandas and sqlite must read numbers as numbers. So floats have no Lisp exponent marker,
 ;;; ratios become floats, booleans are TRUE or FALSE, and lists are JSON.
 
 ;;; Reader and printer.
 
-(defun call-plainly (function &optional (package *package*))
+(defun call-with-trial-syntax (function &optional (package *package*))
   "Call FUNCTION with the reader and printer variables that every trial has, and PACKAGE as the
 current package."
   (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
@@ -55,7 +55,7 @@ that it is the same in each run."
   (let ((*read-default-float-format* (type-of number)))
     (prin1-to-string number)))
 
-(defun bare-text (object)
+(defun unquoted-text (object)
   "Return OBJECT, a symbol, string or character, in lower case, without package and quotes."
   (format nil "~(~A~)" (safe-text object :escape nil)))
 
@@ -63,15 +63,15 @@ that it is the same in each run."
   "True if VALUE is a finite real number."
   (and (realp value) (finite-p value)))
 
-(defun plain-part-p (value)
+(defun simple-table-value-p (value)
   (typecase value
     (number (finite-value-p value))
     ((or symbol string character) t)
-    (cons (and (proper-list-p value) (every #'plain-part-p value)))))
+    (cons (and (proper-list-p value) (every #'simple-table-value-p value)))))
 
-(defun value-p (value)
+(defun table-value-p (value)
   "True if VALUE may be in a table: a number, symbol, string, character, or a list of these."
-  (and (tree-p value) (plain-part-p value)))
+  (and (tree-p value) (simple-table-value-p value)))
 
 (defun integer-text (integer)
   (format nil "~D" integer))
@@ -89,7 +89,7 @@ that it is the same in each run."
     (number (number-in-words value))
     (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
     (string (quoted-text value))
-    (t (quoted-text (bare-text value)))))
+    (t (quoted-text (unquoted-text value)))))
 
 (defun quoted-text (text)
   (with-output-to-string (out) (write-json-string (plain-text text) out)))
@@ -99,7 +99,7 @@ that it is the same in each run."
     (number (number-in-words value))
     (cons (plain-text (json-text value)))
     (string (plain-text value))
-    (t (plain-text (bare-text value)))))
+    (t (plain-text (unquoted-text value)))))
 
 ;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
@@ -109,11 +109,11 @@ printer."
     ((t) "TRUE")
     ((nil) "FALSE")
     (:none "")
-    (t (call-plainly (lambda () (plain-value-text value))))))
+    (t (call-with-trial-syntax (lambda () (plain-value-text value))))))
 
 ;;; Back from a table.
 
-(defun number-in (text)
+(defun number-from-text (text)
   "Return the number that TEXT, a cell of a table, represents, or NIL."
   (and (csv-number-p text)
        (notany (lambda (char) (find char "/dDfFsS")) text)
@@ -124,7 +124,7 @@ printer."
          (and (realp value) value))))
 
 (defun text-before-p (a b)
-  (let ((number (number-in a)) (other (number-in b)))
+  (let ((number (number-from-text a)) (other (number-from-text b)))
     (cond ((and number other (/= number other)) (< number other))
           ((eq (null number) (null other)) (string< a b))
           (t number))))

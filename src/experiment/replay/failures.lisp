@@ -43,7 +43,7 @@ experiment that was run in this Lisp, or the experiment's name. Signals MISUSE a
         (directory-p (typep designator '(or string pathname))))
     (cond ((results-p designator) designator)
           ((and directory-p
-                (or (null experiment) (existing-path (rows-file (directory-called designator)))))
+                (or (null experiment) (existing-path (rows-file (directory-path designator)))))
            (read-results designator))
           (experiment
            (or (experiment-results experiment)
@@ -77,14 +77,14 @@ WRONG-ARGUMENT, DAMAGED-TABLE."
 
 ;;; Printing.
 
-(defun prompt-word (text)
+(defun prompt-argument (text)
   (if (find #\Space text) (format nil "\"~A\"" text) text))
 
 (defun example-text (group sample)
-  (format nil "trial ~A ~A ~D" (prompt-word (sample-experiment sample))
-          (prompt-word (sample-condition sample)) (first (first group))))
+  (format nil "trial ~A ~A ~D" (prompt-argument (sample-experiment sample))
+          (prompt-argument (sample-condition sample)) (first (first group))))
 
-(defun failure-words (group)
+(defun failure-description (group)
   (destructuring-bind (outcome reason error) (rest group)
     (format nil "~A~@[: ~A~]~@[; ~A~]" outcome
             (and (string/= "" reason) reason) (and (string/= "" error) error))))
@@ -96,7 +96,7 @@ WRONG-ARGUMENT, DAMAGED-TABLE."
     (dolist (group groups)
       (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (failure-count group)
               (* 100d0 (/ (failure-count group) (length (sample-trials sample))))
-              (failure-words group) (example-text group sample)))))
+              (failure-description group) (example-text group sample)))))
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))
@@ -130,8 +130,8 @@ way, and a line for the prompt that opens one of these trials. Return nothing."
   "Return the block in INDEX of the trial at index PLACE of SAMPLE; NIL if the trial has no lines.
 Signals MISUSE if lines are missing."
   (when (aref (sample-digests sample) place)
-    (or (complete-block (blocks-of index (row-key sample) (aref (sample-seeds sample) place)
-                                   (aref (sample-trials sample) place))
+    (or (complete-block (trial-blocks index (row-key sample) (aref (sample-seeds sample) place)
+                                      (aref (sample-trials sample) place))
                         (1+ (aref (sample-ticks sample) place)))
         (reject-use "trial-series: not all lines of trial ~D of ~A are in series.csv. Run the ~
                      experiment again with that directory: it runs such trials again."
@@ -145,7 +145,7 @@ Signals MISUSE if lines are missing."
        (loop for line in (block-lines block line-of)
              for (tick . texts) = (nthcdr (+ seed 2) (csv-texts (line-text line)))
              collect (cons (parse-integer tick)
-                           (loop for text in texts collect (value-in text shared)))))
+                           (loop for text in texts collect (value-from-text text shared)))))
      (list (block-file block)))))
 
 (addition trial-series)
@@ -162,8 +162,8 @@ MISUSE (no directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMEN
          (file (series-file (directory-of-series results)))
          (sample (designated-sample results condition))
          (place (trial-index sample trial))
-         (index (index-series (list file) (header-of file *series-layout*)))
+         (index (index-series (list file) (columns-of-file file *series-layout*)))
          (block (block-of-trial index sample place)))
     (and block
-         (call-plainly
+         (call-with-trial-syntax
           (lambda () (series-values block (seed-column (series-index-columns index))))))))

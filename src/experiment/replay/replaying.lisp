@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(run-again call-aside trial-words *trial-replayed* await-time row-of-trial
-          row-differences measure-values))
+(export '(run-again call-outside-trial trial-prompt-line *replayed-trial-line* await-time
+          row-of-trial row-differences measure-values))
 
 ;;; Workers run trials in their own threads, without output. Here a trial runs in your thread: you
 ;;; see its output and can stop it between two ticks. It takes the same course, as variables have
@@ -24,20 +24,20 @@
 
 (defvar *outside* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
-(defun call-aside (function)
+(defun call-outside-trial (function)
   "Call FUNCTION, which inspects the trial that this thread runs again. The variables *SURROUNDINGS*
 have their values from outside of the trial; keep the values that FUNCTION sets. Errors of FUNCTION
 are not errors of the trial."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
-      (let ((*aside-p* t))
+      (let ((*inspecting-p* t))
         (with-debugger-hook ((outside-hook outside))
           (unwind-protect (call-allowing-exits function)
             (drop-unsignalled *message-queue*)
             (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
 
 (defun call-from-outside (function)
-  "Call FUNCTION, which runs a trial and may use CALL-ASIDE."
+  "Call FUNCTION, which runs a trial and may use CALL-OUTSIDE-TRIAL."
   (let ((*outside* (make-outside (mapcar #'symbol-value *surroundings*) (debugger-hook))))
     (unwind-protect (funcall function)
       (mapc #'set *surroundings* (outside-values *outside*)))))
@@ -113,11 +113,11 @@ one."
 
 (defun asked-to-stop-p (step simulation)
   "Call STEP with SIMULATION, or ask the user if STEP is T. Return true if the trial must stop."
-  (call-aside (lambda ()
-                (if (functionp step)
-                    (eq :stop (funcall step simulation))
-                    (not (y-or-n-p "Tick ~D. Let the next tick pass?"
-                                   (simulation-tick simulation)))))))
+  (call-outside-trial (lambda ()
+                        (if (functionp step)
+                            (eq :stop (funcall step simulation))
+                            (not (y-or-n-p "Tick ~D. Let the next tick pass?"
+                                           (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
   "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. STOP is a function that
@@ -138,13 +138,13 @@ there is no such row."
   (let ((file (rows-file (existing-table directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (value-text trial)))
-    (check-beginning file (columns experiment))
+    (check-file-header file (columns experiment))
     (do-rows (texts file)
       (when (and (string= number (nth place texts))
                  (eq condition (condition-of-texts experiment texts)))
         (return-from row-of-trial texts)))
     (reject-use "There is no row of trial ~D of ~A in ~A." trial (condition-name condition)
-                (native-name (directory-called directory)))))
+                (native-name (directory-path directory)))))
 
 (defun row-differences (experiment result parts row directory)
   "Return a list of texts on how RESULT of EXPERIMENT differs from ROW, a row in DIRECTORY."
@@ -156,7 +156,7 @@ there is no such row."
                       (format nil "its code or configuration is different~@[; changed since: ~
                                    ~{~A~^, ~}~]"
                               (changes-since (result-condition result) parts
-                                             (directory-called directory)))
+                                             (directory-path directory)))
                       (format nil "~A is ~:[~A~;~*empty~], and ~:[~A~;~*empty~] in the row"
                               column (string= "" now) now (string= "" then) then))))
 
@@ -169,10 +169,10 @@ file, also save the journal there."
     (when (typep journal '(or string pathname)) (save-journal journal))
     (journal-up-to-now (current-simulation))))
 
-(defvar *trial-replayed* nil
+(defvar *replayed-trial-line* nil
   "The prompt line for the trial that REPLAY-TRIAL runs in this thread, or NIL.")
 
-(defun trial-words (experiment condition trial)
+(defun trial-prompt-line (experiment condition trial)
   "Return the prompt line that opens TRIAL of CONDITION of EXPERIMENT."
   (format nil "trial ~(~A~) ~D ~D" (experiment-name experiment)
           (1+ (position condition (experiment-conditions experiment)))
@@ -181,11 +181,12 @@ file, also save the journal there."
 (defun run-replaying (experiment condition trial until rate step journal then)
   "Run TRIAL of CONDITION of EXPERIMENT; the other arguments are those of REPLAY-TRIAL. Return the
 result, whether the trial was stopped, and its journal if JOURNAL is true."
-  (let ((*trial-replayed* (trial-words experiment condition trial)) (stopped-p nil) (kept nil))
+  (let ((*replayed-trial-line* (trial-prompt-line experiment condition trial))
+        (stopped-p nil) (kept nil))
     (labels ((look-around ()
-               (call-aside (lambda ()
-                             (setf kept (keep-journal journal))
-                             (funcall then))))
+               (call-outside-trial (lambda ()
+                                     (setf kept (keep-journal journal))
+                                     (funcall then))))
              (stop ()
                (let ((result (make-result condition trial 0)))
                  (note-final-state result)
@@ -205,13 +206,13 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
   (loop with shared = (make-hash-table :test 'equal)
         for (name) in (experiment-measures experiment)
         for text in (result-measures result)
-        collect (list name (value-in text shared))))
+        collect (list name (value-from-text text shared))))
 
 (defun recorded-series (result)
   "Return the series in RESULT: lists (tick value...)."
   (loop with shared = (make-hash-table :test 'equal)
         for (tick . texts) in (result-series result)
-        collect (cons tick (loop for text in texts collect (value-in text shared)))))
+        collect (cons tick (loop for text in texts collect (value-from-text text shared)))))
 
 (defun replaying-plist (experiment result stopped-p journal differences)
   (list :outcome (and (not stopped-p) (result-outcome result))

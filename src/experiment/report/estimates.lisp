@@ -10,7 +10,7 @@
 double-float."
   (if (finite-p number) (double number) number))
 
-(defun number-less (a b)
+(defun subtract-numbers (a b)
   "Return A minus B: a float if A or B is a float, unless the difference is too large for a float."
   (if (and (rationalp a) (rationalp b))
       (- a b)
@@ -77,7 +77,7 @@ of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addi
           ((some-value (lambda (value) (typep value 'boolean))) :rate)
           (t :nothing))))
 
-(defun tally (texts)
+(defun count-texts (texts)
   "Return an alist from the strings TEXTS to their counts, commonest first."
   (let ((counts (make-hash-table :test 'equal)))
     (cl:map nil (lambda (text) (incf (gethash text counts 0))) texts)
@@ -124,7 +124,7 @@ Return KIND."
   (multiple-value-bind (low high) (median-interval numbers :confidence confidence)
     (values (median numbers) low high)))
 
-(defun estimate-by (kind name values confidence &optional (left-out 0))
+(defun apply-statistic (kind name values confidence &optional (left-out 0))
   (multiple-value-bind (value low high)
       (if (zerop (length values))
           (values nil nil nil)
@@ -133,17 +133,18 @@ Return KIND."
                    :value value :low low :high high :left-out left-out
                    :beside (loop for (other) in *statistics*
                                  when (eq kind (statistic-option other :beside))
-                                   collect (estimate-by other name values confidence)))))
+                                   collect (apply-statistic other name values confidence)))))
 
 (defun estimate-of-values (name kind column confidence)
   (let ((values (remove :none column)))
     (ecase kind
       (:nothing (make-estimate name kind 0))
-      (:rate (estimate-by :rate name values confidence))
+      (:rate (apply-statistic :rate name values confidence))
       (:mean (let ((numbers (remove-if-not #'finite-value-p values)))
-               (estimate-by :mean name numbers confidence (- (length values) (length numbers)))))
+               (apply-statistic :mean name numbers confidence
+                                 (- (length values) (length numbers)))))
       (:texts (make-estimate name kind (length values)
-                             :texts (tally (cl:map 'list #'value-text values)))))))
+                             :texts (count-texts (cl:map 'list #'value-text values)))))))
 
 ;;;; Summaries of conditions
 
@@ -174,7 +175,7 @@ Return KIND."
 (defun count-outcomes (outcome sample)
   (count outcome (sample-outcomes sample) :test #'string=))
 
-(defun values-where (test sample values)
+(defun values-with-outcome (test sample values)
   "Return a vector of the elements of VALUES for trials of SAMPLE whose outcome passes TEST."
   (let ((outcomes (sample-outcomes sample)))
     (coerce (loop for value across values
@@ -204,15 +205,16 @@ look."
      :failures (count-outcomes "failure" sample) :limits (count-outcomes "limit" sample)
      :errors (count-outcomes "error" sample) :timeouts (count-outcomes "timeout" sample)
      :confidence confidence
-     :success (estimate-by :rate "success" (cl:map 'vector #'success-p (sample-outcomes sample))
-                           confidence)
-     :ticks (estimate-by :median "ticks" (values-where #'success-p sample (sample-ticks sample))
-                         confidence)
+     :success (apply-statistic :rate "success" (cl:map 'vector #'success-p (sample-outcomes sample))
+                               confidence)
+     :ticks (apply-statistic :median "ticks"
+                             (values-with-outcome #'success-p sample (sample-ticks sample))
+                             confidence)
      :measures (loop for name in names
                      for kind in kinds
                      for column in (sample-measures sample)
                      collect (estimate-of-values name kind column confidence))
-     :reasons (tally (values-where #'failed-p sample (sample-reasons sample))))))
+     :reasons (count-texts (values-with-outcome #'failed-p sample (sample-reasons sample))))))
 
 (addition summarize-results)
 (defun summarize-results (results)

@@ -39,7 +39,7 @@ the text for a sample and the index of a trial, or NIL."
 
 (defconstant +most-listed+ 5 "The most reasons or errors that are listed.")
 
-(defun where-text (occurrence)
+(defun conditions-text (occurrence)
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
 
 (defun write-occurrences (title results text-of stream)
@@ -53,7 +53,7 @@ a form that replays an example."
             for sample = (occurrence-sample one)
             repeat +most-listed+
             do (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
-                                      (and several-p (where-text one)))
+                                      (and several-p (conditions-text one)))
                               stream :first (format nil "  ~V@A  " width (occurrence-count one)))
                (write-wrapped (format nil "(replay-trial '~A ~A ~D)" (sample-experiment sample)
                                       (no-break-text (prin1-to-string (sample-condition sample)))
@@ -100,7 +100,7 @@ a form that replays an example."
          (format nil "~A: ~D value~:P that ~:*~[~;is no number is~:;are no numbers are~] left out."
                  (estimate-name (first estimates)) count))))
 
-(defun kinds-text (summaries)
+(defun interval-kinds-text (summaries)
   (flet ((kind-p (kind)
            (some (lambda (summary)
                    (find kind (summary-measures summary) :key #'estimate-kind))
@@ -110,7 +110,7 @@ a form that replays an example."
             (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
             (kind-p :mean))))
 
-(defun looks-text (width summaries)
+(defun interim-looks-text (width summaries)
   "Return sentences on the confidence of intervals of SUMMARIES, if trials were added until the
 intervals were WIDTH wide."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
@@ -128,13 +128,13 @@ intervals were WIDTH wide."
                                       (decimal-text (* 100 (confidence-at-look look)) 2)
                                       "95"))))))
 
-(defun write-notes (results summaries stream)
+(defun write-interval-notes (results summaries stream)
   (terpri stream)
-  (write-wrapped (kinds-text summaries) stream)
+  (write-wrapped (interval-kinds-text summaries) stream)
   (when (plusp (reduce #'+ summaries :key #'summary-errors))
     (write-wrapped "A trial that ended with an error counts as one that did not succeed." stream))
   (when (results-until results)
-    (write-wrapped (looks-text (results-until results) summaries) stream))
+    (write-wrapped (interim-looks-text (results-until results) summaries) stream))
   (dolist (text (apply #'mapcar (lambda (&rest estimates) (left-out-text estimates))
                        (mapcar #'summary-measures summaries)))
     (when text (write-wrapped text stream))))
@@ -151,19 +151,20 @@ are too large or too small for four digits."
           ((not (< 1/1000 largest 1e9)) nil)
           (t (max 0 (- 3 (power-of-ten (rational largest))))))))
 
-(defun number-writer-for (numbers)
+(defun number-formatter-for (numbers)
   (let ((decimals (decimals-for numbers)))
     (lambda (number)
       (if decimals (decimal-text number decimals) (figure-text number)))))
 
 ;;; Columns of estimates.
 
-(defun writer-for (estimates)
+(defun estimate-writer (estimates)
   (if (eq :rate (estimate-kind (first estimates)))
       (let ((trials (reduce #'max estimates :key #'estimate-count)))
         (lambda (share) (percent-text share trials)))
-      (number-writer-for (loop for reader in (list #'estimate-value #'estimate-low #'estimate-high)
-                               append (remove nil (mapcar reader estimates))))))
+      (number-formatter-for
+       (loop for reader in (list #'estimate-value #'estimate-low #'estimate-high)
+             append (remove nil (mapcar reader estimates))))))
 
 (defun aligned-texts (numbers writer)
   "Return NUMBERS, any of which may be NIL, as texts of equal length."
@@ -172,7 +173,7 @@ are too large or too small for four digits."
     (loop for text in texts collect (format nil "~V@A" width text))))
 
 (defun interval-texts (estimates)
-  (let ((writer (writer-for estimates)))
+  (let ((writer (estimate-writer estimates)))
     (flet ((texts (reader) (aligned-texts (mapcar reader estimates) writer)))
       (loop for estimate in estimates
             for value in (texts #'estimate-value)
@@ -225,7 +226,7 @@ page, else the condition's name."
                                          collect (nth place (summary-texts summary)))
                        collect (make-text-column name texts
                                                  :widest 40
-                                                 :anchor (if (every #'number-in texts)
+                                                 :anchor (if (every #'number-from-text texts)
                                                              :end
                                                              :start)))))
     (if (and columns (<= (reduce #'+ columns :key (lambda (column)
@@ -300,6 +301,6 @@ Conditions that the experiment no longer has, if known, are in a separate table.
            (write-tables results summaries stream)
            (write-reasons results stream)
            (write-errors results stream)
-           (write-notes results summaries stream))
+           (write-interval-notes results summaries stream))
           (t (format stream "There are no trials yet.~%"))))
   results)

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(call-on-page))
+(export '(call-with-page-width))
 
 (defconstant +page-width+ 100
   "The most characters of a line.")
 
 (defvar *page-width* +page-width+ "The most characters of a line now, as in a narrower window.")
 
-(defun call-on-page (function &optional (width +page-width+))
+(defun call-with-page-width (function &optional (width +page-width+))
   "Call FUNCTION, which writes tables, with pages WIDTH characters wide, but at least 60 and at most
 +PAGE-WIDTH+."
   (let ((*page-width* (max 60 (min width +page-width+))))

@@ -22,12 +22,12 @@ OTHERS, and its text in TEXTS."
   (let ((result nil) (stopped-p nil))
     (flet ((run (worker)
              (declare (ignore worker))
-             (call-in-silence
+             (call-without-output
               (lambda ()
-                (call-plainly
+                (call-with-trial-syntax
                  (lambda ()
-                   (setf result (run-guarded experiment condition trial
-                                             (lambda () stopped-p)))))))))
+                   (setf result (run-trial-in-worker experiment condition trial
+                                                     (lambda () stopped-p)))))))))
       (call-by-workers #'run 1 :stop (lambda () (setf stopped-p t))))
     result))
 
@@ -64,7 +64,7 @@ Check at least one, and more until SECONDS have passed."
 (defun part-name (part)
   (format nil "~(~A~) ~A" (first part) (second part)))
 
-(defun without-package (name)
+(defun name-without-package (name)
   (subseq name (1+ (or (position #\: name) -1))))
 
 (defun sharing-advice (changed condition)
@@ -79,13 +79,13 @@ variable or a function; else NIL."
                      (find variable (condition-variables condition)
                            :key (lambda (bound) (qualified-symbol-name (first bound)))
                            :test #'string=)
-                     (without-package variable) (without-package variable)))
+                     (name-without-package variable) (name-without-package variable)))
             (function
              (format nil "If trials replace ~A, or store data in it for other trials, keep the ~
                           data in a variable, which each trial binds."
-                     (without-package function)))))))
+                     (name-without-package function)))))))
 
-(defun check-unchanged (experiment parts directory)
+(defun check-code-unchanged (experiment parts directory)
   (loop for condition in (experiment-conditions experiment)
         for before in parts
         for weak = (condition-weak-parts condition)
@@ -110,15 +110,15 @@ variable or a function; else NIL."
 (defun call-noting-refusal (function directory)
   "Call FUNCTION. If FUNCTION signals MISUSE, record in DIRECTORY that the rows there were refused."
   (handler-bind ((misuse (lambda (condition)
-                           (note-refusal directory (princ-to-string condition)))))
+                           (record-refusal directory (princ-to-string condition)))))
     (funcall function)))
 
-(defun check-run-again (store parts seconds)
+(defun check-finished-run (store parts seconds)
   "Signal MISUSE if the experiment of STORE no longer has the fingerprint PARTS, or a trial gives
 another row now. SECONDS is the duration of the run; this check takes a twentieth of it, or one
 trial."
   (let ((experiment (store-experiment store)))
-    (check-unchanged experiment parts (store-path store))
+    (check-code-unchanged experiment parts (store-path store))
     (call-noting-refusal
      (lambda ()
        (check-rows-repeatable experiment

@@ -128,7 +128,7 @@ looks together is .95."
                                  stream)
                (run-round experiment (experiment-conditions experiment) trials presence shard
                           store workers time-limit stream))
-           (check-run-again store parts (seconds-since begun))))
+           (check-finished-run store parts (seconds-since begun))))
        experiment directory)
       (sort-tables experiment directory))))
 
@@ -156,12 +156,12 @@ looks together is .95."
 (defun run-and-read (experiment directory trials until shard workers time-limit stream)
   (flet ((run ()
            (run-in-directory experiment directory trials until shard workers time-limit stream)
-           (let ((results (results-in (rows-file directory))))
+           (let ((results (results-from-table (rows-file directory))))
              (setf (results-until results) until
                    (results-conditions results)
                    (mapcar #'condition-name (experiment-conditions experiment)))
              results)))
-    (call-with-directory (lambda () (call-plainly #'run)) directory)))
+    (call-with-directory (lambda () (call-with-trial-syntax #'run)) directory)))
 
 (addition run-experiment)
 (define-with-keywords run-experiment (name &key trials (workers (processors)) directory until shard

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(call-by-workers trial-under-way run-guarded))
+(export '(call-by-workers trial-under-way run-trial-in-worker))
 
 (addition processors)
 
@@ -162,7 +162,7 @@ unless the function STOPPING-P returns true."
         (unless (or returned-p *leaving-p* (funcall stopping-p))
           (return-from call t))))))
 
-(defun call-within (function seconds)
+(defun call-within-seconds (function seconds)
   "Call FUNCTION. If FUNCTION takes longer than SECONDS, leave it and return true. There is no limit
 if SECONDS is NIL."
   (block call
@@ -174,7 +174,7 @@ if SECONDS is NIL."
           (setf open-p nil))))
     nil))
 
-(defun run-guarded (experiment condition trial stopping-p &optional seconds)
+(defun run-trial-in-worker (experiment condition trial stopping-p &optional seconds)
   "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS, without a limit
 if that is NIL. Return the trial's result, even if the trial ends the thread, unless the function
 STOPPING-P returns true."
@@ -182,7 +182,7 @@ STOPPING-P returns true."
          (result (make-result condition trial seed)))
     (if (call-catching-thread-end
          (lambda ()
-           (setf late-p (call-within
+           (setf late-p (call-within-seconds
                          (lambda () (setf result (run-trial experiment condition trial)))
                          seconds)))
          stopping-p)
@@ -235,7 +235,7 @@ STOPPING-P returns true."
     (unless (queue-closed-p queue)
       (loop (multiple-value-bind (condition trial) (step-queue queue)
               (cond ((null condition) (return nil))
-                    ((not (present-p condition trial (queue-presence queue)))
+                    ((not (trial-present-p condition trial (queue-presence queue)))
                      (return (values condition trial)))))))))
 
 (defun count-in-shard (last shard)
@@ -247,21 +247,21 @@ STOPPING-P returns true."
   "Return the number of trials in QUEUE, of which none has been taken yet."
   (let ((last (queue-last queue)) (shard (queue-shard queue)))
     (loop for condition in (queue-conditions queue)
-          for bits = (bits-of condition (queue-presence queue))
+          for bits = (presence-bits condition (queue-presence queue))
           sum (- (count-in-shard last shard)
                  (loop for trial from 1 below (min (1+ last) (length bits))
                        count (and (plusp (aref bits trial)) (in-shard-p trial shard)))))))
 
 ;;; Running them.
 
-(defun run-and-keep (experiment condition trial queue store progress worker)
+(defun run-and-store-trial (experiment condition trial queue store progress worker)
   "Run TRIAL of CONDITION, from QUEUE, append its row to STORE, and update PROGRESS."
   (let ((begun (real-microseconds)))
     (setf (svref (progress-under-way progress) worker)
           (list condition trial begun (trial-seed experiment trial)))
-    (let ((result (run-guarded experiment condition trial (lambda () (queue-closed-p queue))
-                               (queue-time-limit queue))))
-      (keep-row store result (* 1000 (seconds-since begun)) worker))
+    (let ((result (run-trial-in-worker experiment condition trial (lambda () (queue-closed-p queue))
+                                       (queue-time-limit queue))))
+      (store-row store result (* 1000 (seconds-since begun)) worker))
     (setf (svref (progress-under-way progress) worker) nil)
     (atomic-incf (progress-done progress))))
 
@@ -269,10 +269,10 @@ STOPPING-P returns true."
   (flet ((work ()
            (loop (multiple-value-bind (condition trial) (next-trial queue)
                    (unless condition (return))
-                   (run-and-keep experiment condition trial queue store progress worker)))))
-    (call-in-silence
+                   (run-and-store-trial experiment condition trial queue store progress worker)))))
+    (call-without-output
      (lambda ()
-       (call-plainly (lambda () (call-with-own-lisps-dice #'work)))))))
+       (call-with-trial-syntax (lambda () (call-with-own-lisps-dice #'work)))))))
 
 (defun run-queue (experiment queue store progress workers)
   "Run the trials of QUEUE in WORKERS threads. After a non-local exit no more trials are started,

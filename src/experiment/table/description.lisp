@@ -71,7 +71,7 @@ fails, as outside of a work tree."
       (prin1-to-string form))))
 
 (defun repetition-text (experiment trials until)
-  (let* ((path (experiment-file experiment)) (file (and path (short-name path)))
+  (let* ((path (experiment-file experiment)) (file (and path (short-file-name path)))
          (name (experiment-name experiment)))
     (format nil "At a shell~:[, once its text is in a file~;~]:~%  ./cli/ars-magna experiment ~
                  ~:*~:[FILE~;~:*~A~] ~(~A~) ~:[--trials ~D~;--until ~:*~A~*~] --out DIRECTORY~%~
@@ -99,19 +99,19 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 
 ;;; The last line has a checksum of all lines before it.
 
-(defparameter *check-title* "Check sum: ")
+(defparameter *checksum-label* "Check sum: ")
 
-(defun check-line (text)
-  (format nil "~A~8,'0X~%" *check-title* (text-checksum text)))
+(defun checksum-line (text)
+  (format nil "~A~8,'0X~%" *checksum-label* (text-checksum text)))
 
 (defun description-text (directory)
   "Return the text of experiment.txt in DIRECTORY, or NIL if it cannot be read."
   (ignore-errors (file-text (description-file directory))))
 
 (defun intact-description-p (text)
-  (let ((place (and text (search *check-title* text :from-end t))))
+  (let ((place (and text (search *checksum-label* text :from-end t))))
     (and place
-         (string= (check-line (subseq text 0 place)) (subseq text place)))))
+         (string= (checksum-line (subseq text 0 place)) (subseq text place)))))
 
 (defun warn-if-damaged (directory)
   (let ((file (description-file directory)))
@@ -127,13 +127,13 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
   (let ((text (description-text directory)))
     (and text (uiop:split-string text :separator '(#\Newline)))))
 
-(defun until-described (directory)
+(defun recorded-until (directory)
   "Return the width of intervals given by --until in experiment.txt in DIRECTORY, or NIL."
   (let* ((command (find-if (lambda (line) (starts-with-subseq "  ./cli/ars-magna experiment" line))
                            (description-lines directory)))
          (place (and command (search "--until " command)))
          (start (and place (+ place (length "--until ")))))
-    (and start (number-in (subseq command start (position #\Space command :start start))))))
+    (and start (number-from-text (subseq command start (position #\Space command :start start))))))
 
 (defun save-description (experiment parts trials until directory)
   (let ((text (with-output-to-string (stream)
@@ -144,29 +144,29 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 (defun write-checked-text (text file)
   (write-file-anew (lambda (stream)
                      (write-string text stream)
-                     (write-string (check-line text) stream))
+                     (write-string (checksum-line text) stream))
                    file "the description" :remedy "remove it, or give another directory"))
 
 ;;; Refused rows. Later readers of the table must know about them.
 
-(defparameter *refusal-title* "Refused: ")
+(defparameter *refusal-label* "Refused: ")
 
-(defun refusal-in (directory)
+(defun recorded-refusal (directory)
   "Return the reason why the rows in DIRECTORY were refused after their run, or NIL."
-  (let ((line (find-if (lambda (line) (starts-with-subseq *refusal-title* line))
+  (let ((line (find-if (lambda (line) (starts-with-subseq *refusal-label* line))
                        (description-lines directory))))
-    (and line (subseq line (length *refusal-title*)))))
+    (and line (subseq line (length *refusal-label*)))))
 
-(defun note-refusal (directory reason)
+(defun record-refusal (directory reason)
   "Record in experiment.txt in DIRECTORY that the rows beside it were refused for REASON, a text."
   (let* ((text (description-text directory))
-         (place (and text (search *check-title* text :from-end t))))
+         (place (and text (search *checksum-label* text :from-end t))))
     (when place
-      (let ((text (format nil "~A~A~A~%" (subseq text 0 place) *refusal-title* (one-line reason))))
+      (let ((text (format nil "~A~A~A~%" (subseq text 0 place) *refusal-label* (one-line reason))))
         (write-checked-text text (description-file directory))))))
 
 (defun check-not-refused (directory)
-  (let ((reason (refusal-in directory)))
+  (let ((reason (recorded-refusal directory)))
     (when reason
       (reject-use "The rows in ~A were refused when they were run. Delete rows.csv there, or give ~
                    another directory. The reason was: ~A"
@@ -174,7 +174,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 
 ;;; What has changed.
 
-(defun parts-described (condition directory)
+(defun recorded-parts (condition directory)
   "Return the lines for the parts of the condition named CONDITION in experiment.txt in DIRECTORY;
 NIL if there are none."
   (let ((lines (description-lines directory))
@@ -183,7 +183,7 @@ NIL if there are none."
           while (starts-with-subseq "  " line)
           collect (string-trim " " line))))
 
-(defun form-described (directory)
+(defun recorded-form (directory)
   (loop for line in (member-if (lambda (line)
                                  (and (starts-with-subseq "(" line) (search "defexperiment" line)))
                                (description-lines directory))
@@ -198,14 +198,14 @@ NIL if there are none."
                                        (set-difference now before :test #'string=)))
                        :test #'string= :from-end t)))
 
-(defun conditions-described (directory)
+(defun recorded-conditions (directory)
   "Return the names of the conditions in experiment.txt in DIRECTORY, in order."
   (loop for line in (description-lines directory)
         when (starts-with-subseq "= " line) collect (subseq line 2)))
 
 (defun changes-since (condition parts directory)
   "Return a list of names of the PARTS of CONDITION that differ from experiment.txt in DIRECTORY."
-  (let ((before (parts-described (condition-name condition) directory)))
+  (let ((before (recorded-parts (condition-name condition) directory)))
     (and before (changed-parts before (mapcar #'part-text parts)))))
 
 (defun reject-foreign-rows (experiment condition parts directory)

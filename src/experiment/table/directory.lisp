@@ -22,7 +22,7 @@
 
 (defun ensure-store-directory (name)
   "Return the path of the directory NAME, created if necessary. Signals MISUSE."
-  (let ((path (directory-called name)))
+  (let ((path (directory-path name)))
     (handler-case (progn (make-directories path) path)
       (error () (reject-use "~A cannot be created. Give another directory." (native-name path))))))
 
@@ -35,7 +35,7 @@
            (reject-use "Another run writes to ~A. Wait for its end, or give another directory."
                        (native-name path))))
     (check-files-plain path)
-    (check-plain (lock-file path))
+    (check-plain-file (lock-file path))
     (unless (with-lock (*stores-lock*)
               (unless (member path *stores-in-use* :test #'equal)
                 (push path *stores-in-use*)))
@@ -54,9 +54,9 @@
 (defun call-with-temporary-directory (function)
   "Call FUNCTION with the path of a new directory, and delete that afterwards."
   (let ((path (loop for number from 0
-                    for path = (directory-called (format nil "~Atrials-~D-~D/"
-                                                         (native-name (uiop:temporary-directory))
-                                                         (process-number) number))
+                    for path = (directory-path (format nil "~Atrials-~D-~D/"
+                                                       (native-name (uiop:temporary-directory))
+                                                       (process-number) number))
                     when (make-new-directory path) return path)))
     (unwind-protect (funcall function path)
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
@@ -68,16 +68,17 @@
 Return true if FILE has lines left. If FILE is not a table with COLUMNS, leave FILE unchanged and
 signal DAMAGED-TABLE."
   (when (existing-path file)
-    (check-beginning file columns)
+    (check-file-header file columns)
     (let ((end (map-lines (constantly nil) file)))
       (unless (= end (file-size file))
-        (call-writing (lambda () (check-unprotected file) (truncate-file file end)) file))
+        (call-reporting-file-errors (lambda () (check-unprotected file) (truncate-file file end))
+                                    file))
       (plusp end))))
 
 (defun open-table (file columns)
   "Return a stream that appends to the table FILE. If FILE has no lines, COLUMNS are written first."
   (let ((new (not (remove-incomplete-line file columns)))
-        (stream (call-writing
+        (stream (call-reporting-file-errors
                  (lambda ()
                    (check-unprotected file)
                    (open file :direction :output :if-exists :append :if-does-not-exist :create
@@ -124,7 +125,7 @@ signal DAMAGED-TABLE."
                     (unwritten-reason condition)))))
 
 ;; The series is written first, so that a trial with a row has all of its series.
-(defun keep-row (store result milliseconds worker)
+(defun store-row (store result milliseconds worker)
   "Append the row and the series of RESULT to STORE, and finish output. The trial took MILLISECONDS
 in the worker numbered WORKER."
   (let* ((experiment (store-experiment store))
@@ -153,17 +154,17 @@ in the worker numbered WORKER."
 
 ;;; Existing rows. Their presence is a table from conditions to bits, one for each trial.
 
-(defun bits-of (condition presence)
+(defun presence-bits (condition presence)
   (or (gethash condition presence)
       (setf (gethash condition presence)
             (make-array 64 :element-type 'bit :adjustable t :initial-element 0))))
 
-(defun present-p (condition trial presence)
-  (let ((bits (bits-of condition presence)))
+(defun trial-present-p (condition trial presence)
+  (let ((bits (presence-bits condition presence)))
     (and (< trial (length bits)) (plusp (aref bits trial)))))
 
 (defun note-present (condition trial presence)
-  (let ((bits (bits-of condition presence)))
+  (let ((bits (presence-bits condition presence)))
     (when (>= trial (length bits))
       (setf bits (adjust-array bits (* 2 (1+ trial)) :initial-element 0)
             (gethash condition presence) bits))

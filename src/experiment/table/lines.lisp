@@ -21,7 +21,7 @@ from 1. Return the position after the last complete line."
   "Return the first line of FILE, as octets, and true if its end is missing; NIL if FILE is empty."
   (with-open-file (in file :external-format :latin-1) (read-line in nil nil)))
 
-(defun header-of (file &optional (layout *rows-layout*))
+(defun columns-of-file (file &optional (layout *rows-layout*))
   "Return the names of the columns of FILE, a table with LAYOUT. Signals DAMAGED-TABLE."
   (let ((line (first-line file)))
     (unless line (reject-table file nil "the file is empty. Delete this file."))
@@ -31,7 +31,7 @@ from 1. Return the position after the last complete line."
         (reject-table file 1 "this is no table of an experiment. Give another directory."))
       columns)))
 
-(defun check-beginning (file columns)
+(defun check-file-header (file columns)
   "Signal DAMAGED-TABLE unless FILE is empty, or its first line is COLUMNS, perhaps cut off."
   (multiple-value-bind (line cut-off-p) (first-line file)
     (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
@@ -46,7 +46,7 @@ from 1. Return the position after the last complete line."
 (defun map-rows (function file)
   "Call FUNCTION with the texts of each row of the table FILE, and the position and number of its
 line. Signals DAMAGED-TABLE."
-  (let ((columns (header-of file)))
+  (let ((columns (columns-of-file file)))
     (map-lines (lambda (line start number)
                  (when (> number 1)
                    (let ((texts (cells-of-line line columns file number)))
@@ -84,9 +84,9 @@ RANK is the position of this group among all groups."
 groups."
   (let ((groups (make-hash-table :test 'equal))
         (rows (make-array 1000 :adjustable t :fill-pointer 0))
-        (columns (header-of (first files))))
+        (columns (columns-of-file (first files))))
     (dolist (file files)
-      (unless (equal columns (header-of file))
+      (unless (equal columns (columns-of-file file))
         (reject-table file nil "its columns are not those of ~A" (native-name (first files))))
       (do-rows (texts file start number)
         (let* ((seed (seed-column columns))
@@ -131,14 +131,14 @@ value of each factor."
           (reject-use "There are rows of the experiments ~A and ~A, which do not belong together."
                       experiment its-experiment))
         (let ((other (shiftf (gethash condition conditions) (cons fingerprint texts))))
-          (when other (reject-groups condition fingerprint other texts)))
+          (when other (reject-inconsistent-groups condition fingerprint other texts)))
         (let ((other (shiftf (gethash fingerprint fingerprints) condition)))
           (when other
             (reject-use "The conditions ~A and ~A have the same fingerprint, ~A: one of the rows ~
                          has been changed."
                         other condition fingerprint)))))))
 
-(defun reject-groups (condition fingerprint other texts)
+(defun reject-inconsistent-groups (condition fingerprint other texts)
   (if (string= fingerprint (first other))
       (reject-use "Rows of the condition ~A differ in what varies: ~{~A~^, ~} and ~{~A~^, ~}. Some ~
                    have been changed."
@@ -153,8 +153,8 @@ value of each factor."
   "Call FUNCTION with a stream to a new file, then CHECK with the path of the new file; then replace
 the table FILE by the new file. If the new file cannot be written, signal DAMAGED-TABLE and leave
 FILE unchanged."
-  (call-writing (lambda () (call-replacing-file function file :check check))
-                file "the file cannot be replaced (~A). It is unchanged."))
+  (call-reporting-file-errors (lambda () (call-replacing-file function file :check check))
+                              file "the file cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
   "Call FUNCTION with a reader: a function that takes one of FILES and a position, and returns the
@@ -173,7 +173,7 @@ line there."
                           line)))))
       (loop for (stream) being the hash-values of streams do (close stream)))))
 
-(defun reject-conflict (row other)
+(defun reject-conflicting-rows (row other)
   (reject-table (indexed-file row) (indexed-number row)
                 "this row and line ~D of ~A are of the same trial and differ. Something outside of ~
                  the experiment affects its trials; no table can have both."
@@ -192,7 +192,7 @@ differ."
         for row across rows
         for line = (funcall line-of (indexed-file row) (indexed-start row))
         do (cond ((and last (not (row-before-p last row)))
-                  (unless (string= line last-line) (reject-conflict row last)))
+                  (unless (string= line last-line) (reject-conflicting-rows row last)))
                  (t (write-line (line-text line) out)
                     (incf count)))
            (setf last row last-line line)
@@ -206,7 +206,7 @@ unchanged."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)
-    (let ((columns (header-of (first files))) (count (length rows)))
+    (let ((columns (columns-of-file (first files))) (count (length rows)))
       (cond ((and (equal files (list file)) (sorted-rows-p rows))
              (funcall check file))
             (t (setf rows (stable-sort rows #'row-before-p))

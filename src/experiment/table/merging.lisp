@@ -9,13 +9,14 @@
   (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
         (own (description-file target)))
     (when (and file (not (equal file own)))
-      (call-writing (lambda () (check-unprotected own) (uiop:copy-file file own)) own))))
+      (call-reporting-file-errors (lambda () (check-unprotected own) (uiop:copy-file file own))
+                                  own))))
 
-(defun join-series (directories target rows)
+(defun merge-series (directories target rows)
   (let ((files (remove-if-not #'existing-path (mapcar #'series-file directories))))
     (when files (write-sorted-series files rows (series-file target)))))
 
-(defun join-machine-tables (directories target)
+(defun concatenate-machine-tables (directories target)
   "Write the concatenation of the files machine.csv in DIRECTORIES to machine.csv in TARGET."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
     (when files
@@ -47,13 +48,13 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
     (mapc #'check-not-refused sources)
     (call-with-directory
      (lambda ()
-       (call-plainly
+       (call-with-trial-syntax
         (lambda ()
           (write-sorted-rows (mapcar #'rows-file sources) (rows-file target)
-                             (remove-duplicates (mapcan #'conditions-described sources)
+                             (remove-duplicates (mapcan #'recorded-conditions sources)
                                                 :test #'string= :from-end t)
-                             (lambda (rows) (join-series sources target rows)))))
-       (join-machine-tables sources target)
+                             (lambda (rows) (merge-series sources target rows)))))
+       (concatenate-machine-tables sources target)
        (copy-description sources target))
      target)
     (read-results target)))
@@ -65,19 +66,19 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
 
 (defun shard-directory (directory index count)
   "Return the name of the directory of the shard INDEX of COUNT below DIRECTORY."
-  (native-name (file-in (directory-called directory)
+  (native-name (file-in (directory-path directory)
                         (format nil "shard-~D-of-~D/" index count))))
 
 (defun directories-with-rows (directory)
   "Return the names of directories that have rows: DIRECTORY, and the directories of shards below
 it."
-  (let* ((path (directory-called directory))
+  (let* ((path (directory-path directory))
          (shards (remove-if-not (lambda (path)
                                   (starts-with-subseq "shard-"
                                                       (car (last (pathname-directory path)))))
                                 (uiop:subdirectories path))))
     (loop for directory in (cons path (sort (mapcar #'native-name shards) #'string<))
-          for file = (existing-path (rows-file (directory-called directory)))
+          for file = (existing-path (rows-file (directory-path directory)))
           when (and file (plusp (count-whole-lines file)))
             collect (native-name directory))))
 
@@ -93,7 +94,7 @@ it."
   "Return the number of rows in DIRECTORY and the shards below it. A trial counts once for each
 table that has it."
   (loop for directory in (directories-with-rows directory)
-        sum (1- (count-whole-lines (rows-file (directory-called directory))))))
+        sum (1- (count-whole-lines (rows-file (directory-path directory))))))
 
 ;;; Existing and missing rows.
 
@@ -107,9 +108,9 @@ the condition, the trial's number, the fingerprint, the name of the directory, a
 series is complete. Tables with other columns are skipped."
   (let* ((columns (columns experiment)) (seed (seed-column columns)))
     (dolist (name (directories-with-rows directory))
-      (let* ((file (rows-file (directory-called name)))
-             (own-p (equal columns (header-of file)))
-             (series (and own-p (index-existing-series experiment (directory-called name)))))
+      (let* ((file (rows-file (directory-path name)))
+             (own-p (equal columns (columns-of-file file)))
+             (series (and own-p (index-existing-series experiment (directory-path name)))))
         (when own-p
           (do-rows (texts file)
             (let ((condition (condition-of-texts experiment texts)))
@@ -129,7 +130,7 @@ TRIALS trials of each condition of EXPERIMENT. Rows in DIRECTORY and in the shar
                            (note-present condition trial presence)))
                        experiment directory)
     (loop for trial from 1 to trials
-          do (unless (every (lambda (condition) (present-p condition trial presence))
+          do (unless (every (lambda (condition) (trial-present-p condition trial presence))
                             (experiment-conditions experiment))
                (setf (aref missing (mod trial count)) 1)))
     (loop for shard below count
@@ -140,10 +141,10 @@ TRIALS trials of each condition of EXPERIMENT. Rows in DIRECTORY and in the shar
 now, and DAMAGED-TABLE if they have other columns."
   (let ((parts (prepare-experiment experiment)))
     (dolist (name (directories-with-rows directory))
-      (check-beginning (rows-file (directory-called name)) (columns experiment)))
+      (check-file-header (rows-file (directory-path name)) (columns experiment)))
     (map-existing-rows (lambda (condition trial fingerprint name complete-p)
                          (declare (ignore trial complete-p))
                          (unless (string= fingerprint (condition-fingerprint condition))
                            (reject-foreign-rows experiment condition parts
-                                                (directory-called name))))
+                                                (directory-path name))))
                        experiment directory)))

@@ -83,18 +83,18 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 
 ;;; Reading.
 
-(defun value-in (text shared)
+(defun value-from-text (text shared)
   "Return the value of TEXT, a cell of a table. Equal strings are shared by the hash table SHARED."
   (cond ((string= text "") :none)
         ((string= text "TRUE") t)
         ((string= text "FALSE") nil)
-        ((number-in text))
+        ((number-from-text text))
         (t (shared-text text shared))))
 
 (defun shared-text (text shared)
   (or (gethash text shared) (setf (gethash text shared) text)))
 
-(defun digest-in (text)
+(defun digest-from-text (text)
   "Return the low 60 bits of the digest in TEXT, a cell of a table, or NIL if that is empty."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
 
@@ -108,8 +108,8 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                         (sample-ticks sample))
     (loop for column in (sample-measures sample)
           for text in rest
-          do (vector-push-extend (value-in text shared) column))
-    (vector-push-extend (digest-in (nth measures rest)) (sample-digests sample))
+          do (vector-push-extend (value-from-text text shared) column))
+    (vector-push-extend (digest-from-text (nth measures rest)) (sample-digests sample))
     (vector-push-extend (shared-text (nth (1+ measures) rest) shared) (sample-errors sample))))
 
 (defun row-key (sample)
@@ -127,7 +127,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 ;; A table is sorted unless the run that writes it continues, or was killed.
 (defun results-if-sorted (file)
   "Return the results in the table FILE; NIL if FILE is not sorted."
-  (let* ((columns (header-of file))
+  (let* ((columns (columns-of-file file))
          (results (%make-results columns))
          (seed (seed-column columns))
          (measures (length (measure-columns-of columns)))
@@ -146,22 +146,22 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
     (setf (results-samples results) (reverse samples))
     results))
 
-(defun results-in (file)
+(defun results-from-table (file)
   (or (results-if-sorted file)
       (call-with-temporary-directory
        (lambda (directory)
          (let ((copy (rows-file directory)))
            (write-sorted-rows (list file) copy
-                              (conditions-described (uiop:pathname-directory-pathname file)))
+                              (recorded-conditions (uiop:pathname-directory-pathname file)))
            (results-if-sorted copy))))))
 
-(note-kind-of-file :table (format nil "~{~A,~}" *columns-before*)
+(note-kind-of-file :table (format nil "~{~A,~}" *columns-before-factors*)
                    (format nil "it is the table of an experiment; (read-results DIRECTORY) reads ~
                                 the directory that it is in"))
 
 (defun existing-table (directory)
   "Return the path of DIRECTORY. Signals MISUSE unless DIRECTORY has a table."
-  (let ((path (directory-called directory)))
+  (let ((path (directory-path directory)))
     (check-files-plain path)
     (unless (existing-path (rows-file path))
       (let ((advice (file-advice (path-called directory) nil)))
@@ -169,9 +169,9 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))
     (warn-if-damaged path)
-    (when (refusal-in path)
+    (when (recorded-refusal path)
       (warn "The rows in ~A were refused when they were run: ~A" (native-name path)
-            (refusal-in path)))
+            (recorded-refusal path)))
     path))
 
 (addition read-results)
@@ -181,8 +181,8 @@ DIRECTORY has no results, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
   (let ((path (existing-table directory)))
-    (let ((results (call-plainly (lambda () (results-in (rows-file path))))))
+    (let ((results (call-with-trial-syntax (lambda () (results-from-table (rows-file path))))))
       (setf (results-directory results) path
-            (results-until results) (until-described path)
-            (results-conditions results) (conditions-described path))
+            (results-until results) (recorded-until path)
+            (results-conditions results) (recorded-conditions path))
       results)))

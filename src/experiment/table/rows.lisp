@@ -65,9 +65,9 @@ SERIES, the trial's lines, at the end."
 (defun reject-row (file number control &rest arguments)
   (reject-table file number "~? Delete the line; its trial will be run again." control arguments))
 
-(defun call-writing (function file
-                     &optional (trouble "the file cannot be written (~A). Is it, or its directory, ~
-                                         read-only?"))
+(defun call-reporting-file-errors
+    (function file
+     &optional (trouble "the file cannot be written (~A). Is it, or its directory, read-only?"))
   "Call FUNCTION, which opens or changes FILE. If the operating system refuses, signal DAMAGED-TABLE
 with the text TROUBLE and the reason."
   (handler-case (funcall function)
@@ -76,9 +76,9 @@ with the text TROUBLE and the reason."
 
 ;;; The header.
 
-(defparameter *rows-layout* (list *columns-between* *columns-after*)
+(defparameter *rows-layout* (list *columns-before-measures* *columns-after-measures*)
   "Two lists of columns of a table of rows: from the seed to the measures, and after the measures.")
-(defparameter *series-layout* (list *series-columns* '())
+(defparameter *series-layout* (list *columns-before-values* '())
   "Two lists of columns of a table of series: from the seed to the values, and after the values.")
 
 (defun table-columns-p (columns layout)
@@ -86,8 +86,8 @@ with the text TROUBLE and the reason."
   (destructuring-bind (between after) layout
     (let ((seed (position "seed" columns :test #'string=)))
       (and seed
-           (>= seed (length *columns-before*))
-           (equal *columns-before* (subseq columns 0 (length *columns-before*)))
+           (>= seed (length *columns-before-factors*))
+           (equal *columns-before-factors* (subseq columns 0 (length *columns-before-factors*)))
            (>= (- (length columns) seed) (+ (length between) (length after)))
            (equal between (subseq columns seed (+ seed (length between))))
            (equal after (last columns (length after)))))))
@@ -115,7 +115,7 @@ with the text TROUBLE and the reason."
   (and (<= 1 (length text) 16)
        (loop for char across text always (digit-char-p char 16))))
 
-(defun integer-in (text)
+(defun integer-from-text (text)
   "Return the integer that TEXT, a cell of a table, represents, or NIL."
   (and (plusp (length text))
        (every #'digit-char-p (string-left-trim "-" text))
@@ -133,12 +133,12 @@ with the text TROUBLE and the reason."
       (reject-row file number "This is no row: it has bytes that are not text."))
     (destructuring-bind (seed trial outcome reason ticks &rest rest) cells
       (declare (ignore reason))
-      (check (integer-in seed) "seed")
-      (check (typep (integer-in trial) `(integer 1 ,+largest+)) "trial")
+      (check (integer-from-text seed) "seed")
+      (check (typep (integer-from-text trial) `(integer 1 ,+largest+)) "trial")
       (check (member outcome '("success" "failure" "limit" "error" "timeout") :test #'string=)
              "outcome")
       ;; Earlier versions wrote 0 for a timeout.
-      (check (or (typep (integer-in ticks) `(integer 0 ,+largest+))
+      (check (or (typep (integer-from-text ticks) `(integer 0 ,+largest+))
                  (and (string= "" ticks) (string= "timeout" outcome)))
              "ticks")
       (let ((digest (first (last rest 2))))
@@ -174,7 +174,7 @@ with COLUMNS. Signals DAMAGED-TABLE."
 
 (defun lock-file (directory) (file-in directory ".lock"))
 
-(defun check-plain (file)
+(defun check-plain-file (file)
   "Signal DAMAGED-TABLE if FILE exists and is not a plain file."
   (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that does not exist")
                        ((and (probe-file file) (not (plain-file-p file)))
@@ -184,10 +184,10 @@ with COLUMNS. Signals DAMAGED-TABLE."
 
 (defun check-files-plain (directory)
   "Signal DAMAGED-TABLE if one of the files of DIRECTORY exists and is not a plain file."
-  (mapc #'check-plain (list (rows-file directory) (series-file directory) (machine-file directory)
-                            (description-file directory))))
+  (mapc #'check-plain-file (list (rows-file directory) (series-file directory)
+                                 (machine-file directory) (description-file directory))))
 
-(defun directory-called (name)
+(defun directory-path (name)
   "Return the absolute path of the directory NAME, a string or pathname."
   (uiop:ensure-directory-pathname
    (merge-pathnames (path-called name :directory t) (base-directory))))

@@ -28,7 +28,7 @@ start and end, and the number of the first line."
   (or (gethash key (series-index-groups index))
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
-(defun blocks-of (index key seed trial)
+(defun trial-blocks (index key seed trial)
   "Return the blocks in INDEX of TRIAL with SEED whose rows have the texts KEY before the seed."
   (let ((group (gethash key (series-index-groups index))))
     (and group
@@ -36,8 +36,8 @@ start and end, and the number of the first line."
 
 (defun blocks-of-row (index texts)
   (let ((seed (seed-column (series-index-columns index))))
-    (blocks-of index (subseq texts 0 seed) (parse-integer (nth seed texts))
-               (parse-integer (nth (1+ seed) texts)))))
+    (trial-blocks index (subseq texts 0 seed) (parse-integer (nth seed texts))
+                  (parse-integer (nth (1+ seed) texts)))))
 
 ;;; Lines.
 
@@ -70,7 +70,7 @@ start and end, and the number of the first line."
 (defun tick-in-line (line start)
   "Return the tick in the cell of LINE that begins at START, or NIL."
   (let ((end (position #\, line :start start)))
-    (and end (integer-in (subseq line start end)))))
+    (and end (integer-from-text (subseq line start end)))))
 
 ;;; Reading.
 
@@ -91,9 +91,9 @@ start and end, and the number of the first line."
 (defun check-series-cells (texts seed file number)
   "Signal DAMAGED-TABLE unless TEXTS, from SEED on, of line NUMBER of FILE, are valid."
   (loop for text in (nthcdr seed texts)
-        for column in *series-columns*
+        for column in *columns-before-values*
         for least in (list most-negative-fixnum 1 0)
-        unless (typep (integer-in text) `(integer ,least))
+        unless (typep (integer-from-text text) `(integer ,least))
           do (reject-row file number "~A cannot be the ~A of a trial." (plain-text text) column)))
 
 (defun begin-block (scan line start number)
@@ -126,7 +126,7 @@ start and end, and the number of the first line."
   "Return an index of FILES, tables of series with COLUMNS. Signals DAMAGED-TABLE."
   (let ((index (make-series-index columns)))
     (dolist (file files index)
-      (check-beginning file columns)
+      (check-file-header file columns)
       (let ((scan (make-series-scan index file)))
         (map-lines (lambda (line start number)
                      (when (> number 1) (note-series-line scan line start number)))
@@ -138,7 +138,7 @@ start and end, and the number of the first line."
 ;;; row with missing lines counts as missing: its trial is run again. Lines of trials without a row
 ;;; are dropped when the table is sorted.
 
-(defun count-expected (texts seed)
+(defun expected-line-count (texts seed)
   "Return the number of lines that the trial with the row TEXTS must have. SEED is the index of the
 seed's column. The number is 0 if the row has no digest, as after a timeout or the end of the
 thread."
@@ -152,7 +152,7 @@ thread."
 
 (defun block-of-row (index texts)
   (complete-block (blocks-of-row index texts)
-                  (count-expected texts (seed-column (series-index-columns index)))))
+                  (expected-line-count texts (seed-column (series-index-columns index)))))
 
 (defun index-existing-series (experiment directory)
   "Return the index of the series of EXPERIMENT in DIRECTORY; NIL if EXPERIMENT records no series.
@@ -165,7 +165,7 @@ Signals DAMAGED-TABLE."
   "True if INDEX has all lines of the trial with the row TEXTS, or if INDEX is NIL because there are
 no series."
   (or (null index)
-      (zerop (count-expected texts (seed-column (series-index-columns index))))
+      (zerop (expected-line-count texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))
 
 ;;; Lines.
@@ -252,7 +252,7 @@ Signals MISUSE if a trial has no block but other trials of its condition have bl
   "FILES are tables of series. Write their lines for the trials in the table ROWS to FILE, in the
 order of ROWS, each line once. FILE may be one of FILES. Signals DAMAGED-TABLE and MISUSE; after an
 error FILE is unchanged."
-  (let* ((columns (header-of (first files) *series-layout*))
+  (let* ((columns (columns-of-file (first files) *series-layout*))
          (index (index-series files columns)))
     (call-with-line-reader
      (lambda (line-of)

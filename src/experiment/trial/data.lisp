@@ -26,7 +26,7 @@ or other object of the simulator."
 (deftype plain-atom ()
   '(or number symbol character string bit-vector pathname))
 
-;; The contents of a weak table depend on garbage collection. See WEAK-NUMBERS.
+;; The contents of a weak table depend on garbage collection. See WEAK-DIGESTS.
 (deftype compound ()
   '(or cons array (and hash-table (not (satisfies weak-table-p))) (satisfies plain-structure-p)))
 
@@ -42,20 +42,22 @@ depths."
   (compounds +largest-data+ :type fixnum)
   (elements +most-elements+ :type fixnum))
 
-(defun mark-word (word walk)
+(defun digest-word-into (word walk)
   (digest-word (walk-digest walk) (ldb (byte 64 0) word)))
 
-(defun mark-text (text walk)
-  (mark-word (text-word text) walk))
+(defun digest-text-into (text walk)
+  (digest-word-into (text-word text) walk))
 
-(defun mark-atom (atom walk)
+(defun digest-atom-into (atom walk)
   (typecase atom
-    (fixnum (mark-word 1 walk) (mark-word atom walk))
-    (double-float (mark-word 2 walk) (mark-word (double-to-bits atom) walk))
-    (plain-atom (mark-text (prin1-to-string atom) walk))
+    (fixnum (digest-word-into 1 walk) (digest-word-into atom walk))
+    (double-float (digest-word-into 2 walk) (digest-word-into (double-to-bits atom) walk))
+    (plain-atom (digest-text-into (prin1-to-string atom) walk))
     ;; Not data: only the type counts.
-    (t (mark-text (prin1-to-string (if (functionp atom) 'function (class-name (class-of atom))))
-                  walk)))
+    (t (digest-text-into (prin1-to-string (if (functionp atom)
+                                              'function
+                                              (class-name (class-of atom))))
+                         walk)))
   (funcall (walk-atom walk) atom))
 
 (defun count-compound (walk)
@@ -67,12 +69,12 @@ depths."
 (defun walk-value (value depth walk)
   (if (and (typep value 'compound) (not (stringp value)) (not (bit-vector-p value)))
       (walk-compound value depth walk)
-      (mark-atom value walk)))
+      (digest-atom-into value walk)))
 
 (defun walk-compound (value depth walk)
   (let ((above (gethash value (walk-path walk))))
-    (cond (above (mark-word 3 walk) (mark-word (- depth above) walk))
-          ((> depth +deepest-data+) (mark-word 4 walk))
+    (cond (above (digest-word-into 3 walk) (digest-word-into (- depth above) walk))
+          ((> depth +deepest-data+) (digest-word-into 4 walk))
           ((consp value) (walk-list value depth walk))
           (t (count-compound walk)
              (setf (gethash value (walk-path walk)) depth)
@@ -80,26 +82,26 @@ depths."
                (array (walk-array value depth walk))
                (hash-table (walk-table value depth walk))
                ((or structure-object condition)
-                (mark-text (prin1-to-string (type-of value)) walk)
+                (digest-text-into (prin1-to-string (type-of value)) walk)
                 (dolist (part (structure-values value)) (walk-value part (1+ depth) walk))))
              (remhash value (walk-path walk))))))
 
 (defun walk-list (list depth walk)
   "Add the conses of LIST to WALK. All tails have the depth of LIST."
-  (mark-word 5 walk)
+  (digest-word-into 5 walk)
   (loop for rest = list then (cdr rest)
         while (and (consp rest) (not (gethash rest (walk-path walk))))
         do (count-compound walk)
            (setf (gethash rest (walk-path walk)) depth)
            (walk-value (car rest) (1+ depth) walk)
-        finally (if (consp rest) (mark-word 6 walk) (walk-value rest (1+ depth) walk)))
+        finally (if (consp rest) (digest-word-into 6 walk) (walk-value rest (1+ depth) walk)))
   (loop for rest = list then (cdr rest)
         while (and (consp rest) (remhash rest (walk-path walk)))))
 
 (defun walk-array (array depth walk)
-  (mark-word 7 walk)
-  (dolist (dimension (array-dimensions array)) (mark-word dimension walk))
-  (when (array-has-fill-pointer-p array) (mark-word (fill-pointer array) walk))
+  (digest-word-into 7 walk)
+  (dolist (dimension (array-dimensions array)) (digest-word-into dimension walk))
+  (when (array-has-fill-pointer-p array) (digest-word-into (fill-pointer array) walk))
   (decf (walk-elements walk) (array-total-size array))
   (count-compound walk)
   (dotimes (index (array-total-size array))
@@ -107,10 +109,10 @@ depths."
 
 (defun walk-table (table depth walk)
   "Add the hash TABLE to WALK, independent of the order of its entries."
-  (mark-text (prin1-to-string (hash-table-test table)) walk)
-  (dolist (number (sort (entry-numbers table depth walk) #'<)) (mark-word number walk)))
+  (digest-text-into (prin1-to-string (hash-table-test table)) walk)
+  (dolist (number (sort (entry-digests table depth walk) #'<)) (digest-word-into number walk)))
 
-(defun entry-numbers (table depth walk &optional (test (constantly t)))
+(defun entry-digests (table depth walk &optional (test (constantly t)))
   "Return a list with a number for each entry of the hash TABLE whose key passes TEST."
   (let* ((digest (walk-digest walk)) (before (digest-value digest)))
     (prog1 (loop for key being the hash-keys of table using (hash-value value)
@@ -128,17 +130,17 @@ depths."
 VALUE is too large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
-      (call-plainly (lambda () (walk-value value 0 walk)) (find-package :keyword))
+      (call-with-trial-syntax (lambda () (walk-value value 0 walk)) (find-package :keyword))
       (digest-value (walk-digest walk)))))
 
-(defun data-number (value)
+(defun data-digest (value)
   "Return a digest of VALUE, including the packages of symbols; NIL if VALUE is too large."
   (call-walking value #'identity))
 
 ;;; Weakly held objects can disappear at any time, so they are not data. But a trial can find what
 ;;; another trial added, unless its key was made in that trial.
 
-(defun weak-p (object)
+(defun weak-object-p (object)
   (or (weak-pointer-p object)
       (and (hash-table-p object) (weak-table-p object))))
 
@@ -146,10 +148,10 @@ VALUE is too large."
   "True if another trial can make an object that is the same key of the hash TABLE as KEY."
   (typecase key
     (symbol (symbol-package key))
-    ((or string cons) (and (not (member (hash-table-test table) '(eq eql))) (value-p key)))
-    (t (value-p key))))
+    ((or string cons) (and (not (member (hash-table-test table) '(eq eql))) (table-value-p key)))
+    (t (table-value-p key))))
 
-(defun weak-numbers (object atom)
+(defun weak-digests (object atom)
   "Return a list of digests of what OBJECT, a weak pointer or table, holds now. ATOM is called as by
 CALL-WALKING."
   (if (weak-pointer-p object)
@@ -157,10 +159,10 @@ CALL-WALKING."
         (and target (list (call-walking target atom))))
       (let ((walk (make-walk (make-digest) atom)))
         (catch 'too-large
-          (call-plainly (lambda ()
-                          (entry-numbers object 0 walk
-                                         (lambda (key) (lasting-key-p key object))))
-                        (find-package :keyword))))))
+          (call-with-trial-syntax (lambda ()
+                                    (entry-digests object 0 walk
+                                                   (lambda (key) (lasting-key-p key object))))
+                                  (find-package :keyword))))))
 
 (defun no-data-p (value)
   "True if VALUE is not data, or is NIL or an empty hash table. A variable that holds data later

@@ -75,10 +75,10 @@ FILE when it was loaded, or NIL."
   (when (first-visit-p function reach)
     (cond ((typep function 'generic-function)
            (dolist (method (code-references function)) (visit-function method name reach)))
-          (t (when name (note-origin function name reach))
+          (t (when name (note-source-file function name reach))
              (dolist (object (code-references function)) (visit object reach))))))
 
-(defun note-origin (function name reach)
+(defun note-source-file (function name reach)
   (multiple-value-bind (file written) (function-file function)
     (if file
         (note-file file written reach)
@@ -94,12 +94,12 @@ closures, and for functions that were set in another way, as by a trial."
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
                 (and (eq name own-name) (null values)))
-      (note-part :function (qualified-symbol-name name) (data-number values) reach))))
+      (note-part :function (qualified-symbol-name name) (data-digest values) reach))))
 
 (defun note-weak (object symbol reach)
   "Note in REACH what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
-  (when (and (weak-p object) (first-visit-p object reach))
-    (dolist (number (weak-numbers object (lambda (atom) (note-weak atom symbol reach))))
+  (when (and (weak-object-p object) (first-visit-p object reach))
+    (dolist (number (weak-digests object (lambda (atom) (note-weak atom symbol reach))))
       (setf (gethash (list :variable (qualified-symbol-name symbol) number)
                      (reach-weak-parts reach)) t))))
 
@@ -203,7 +203,7 @@ and an empty table are not noted, because a variable that holds data later often
 (defvar *digests-settled-p* nil
   "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
 
-(defun short-name (file)
+(defun short-file-name (file)
   (name-in-directory (native-path file)))
 
 (defun digest-of-file (file written)
@@ -222,12 +222,12 @@ was loaded. WRITTEN is the date at loading, or NIL."
 (defun file-parts (files)
   (let ((parts '()))
     (loop for (file written) in files
-          for part = (find (short-name file) parts :key #'second :test #'string=)
+          for part = (find (short-file-name file) parts :key #'second :test #'string=)
           for number = (digest-of-file file written)
           ;; Source files of Lisp itself do not exist here.
           do (cond ((zerop number))
                    (part (setf (third part) (ldb (byte 64 0) (+ number (third part)))))
-                   (t (push (list :file (short-name file) number) parts))))
+                   (t (push (list :file (short-file-name file) number) parts))))
     parts))
 
 (defun configuration-parts (experiment condition)
@@ -235,7 +235,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
         (list :experiment (string-downcase (experiment-name experiment))
               (form-digest (experiment-deciding experiment)))
         (list :condition (condition-name condition)
-              (data-number (list (condition-robots condition)
+              (data-digest (list (condition-robots condition)
                                  (condition-thinking condition)
                                  (coerce (condition-parameters condition) 'list)
                                  (condition-arguments condition))))))
@@ -293,7 +293,7 @@ REACH."
 
 (defun prepare-condition (experiment condition)
   "Set fingerprint and variables of CONDITION of EXPERIMENT. Return the parts of the fingerprint."
-  (call-plainly
+  (call-with-trial-syntax
    (lambda ()
      (multiple-value-bind (parts reach) (fingerprint-parts experiment condition)
        (set-reach condition reach)
@@ -303,7 +303,7 @@ REACH."
 (defun prepare-trials (experiment condition)
   "Set the variables of CONDITION of EXPERIMENT, but not its fingerprint, because its files may have
 changed."
-  (call-plainly
+  (call-with-trial-syntax
    (lambda ()
      (set-reach condition
                 (find-reach experiment condition (definitions-in-trial experiment condition))))))

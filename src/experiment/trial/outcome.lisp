@@ -57,7 +57,7 @@
                     (find-procedure value nil))))
     (when (and plan (or (eq plan value) (eq value (procedure-name plan))))
       (reject-use "The value of :run is the plan ~(~A~), which has not been run. Write ~A."
-                  (procedure-name plan) (run-plan-text (procedure-name plan))))))
+                  (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
 (defun error-in-plan (values)
   "Return the text of the Lisp error by which a plan failed, if VALUES are those of RUN-PLAN; else
@@ -73,13 +73,13 @@ an empty text."
 
 ;;;; Calling the forms of an experiment
 
-(defun call-form (function condition)
+(defun call-trial-form (function condition)
   (apply (the function function) (condition-arguments condition)))
 
-(defun checked-truth (clause function condition)
+(defun checked-form-value (clause function condition)
   "Return the value of FUNCTION, which evaluates the form of CLAUSE. Signals MISUSE if the value is
 a fluent or the failure of a plan."
-  (let ((value (call-form function condition)))
+  (let ((value (call-trial-form function condition)))
     (when (fluent-p value)
       (reject-use "The value of ~(~S~) is the fluent ~A itself, which is true whatever its value ~
                    is. Write (fluent-value ...)." clause (fluent-text value)))
@@ -92,34 +92,34 @@ a fluent or the failure of a plan."
 (defun text-of-measure (clause name function condition)
   "Return the text of the value of FUNCTION, the measure NAME in CLAUSE. Signals WRONG-ARGUMENT if a
 table cannot have that value."
-  (let ((value (call-form function condition)))
-    (unless (value-p value)
+  (let ((value (call-trial-form function condition)))
+    (unless (table-value-p value)
       (reject-argument clause name value "a number, symbol, string or list of them"))
     (value-text value)))
 
-(defvar *aside-p* nil
+(defvar *inspecting-p* nil
   "True while a stopped trial is inspected: errors are then not errors of the trial.")
 
 (defun call-until-error (function)
   "Call FUNCTION, which may not exit this Lisp. Return the error that ended the call, or NIL."
   (flet ((leave (condition)
-           (unless *aside-p*
+           (unless *inspecting-p*
              (when (and *break-on-user-error* (not (typep condition 'storage-condition)))
                (invoke-debugger condition))
              (return-from call-until-error condition))))
-    (let ((*aside-p* nil))
+    (let ((*inspecting-p* nil))
       (handler-bind (((or error storage-condition) #'leave))
         (call-refusing-exits function)))
     nil))
 
-(defun trouble-text (function)
+(defun error-text-of-call (function)
   "Call FUNCTION. Return the text of the error that ended the call, or NIL."
   (let ((trouble (catch 'broken-off
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
     (when (typep trouble 'condition) (regain-room trouble))
     (if (typep trouble 'condition)
-        (call-plainly (lambda () (text-of-condition trouble)))
+        (call-with-trial-syntax (lambda () (text-of-condition trouble)))
         trouble)))
 
 ;;;; What :each-tick records
@@ -169,7 +169,7 @@ table cannot have that value."
 SAMPLER keeps the first error."
   (let* ((text "")
          (condition (result-condition (sampler-result sampler)))
-         (trouble (trouble-text
+         (trouble (error-text-of-call
                    (lambda ()
                      (setf text (text-of-measure "each-tick" name function condition))))))
     (when (and trouble (null (sampler-trouble sampler)))

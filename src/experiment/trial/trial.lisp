@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(run-trial call-in-silence))
+(export '(run-trial call-without-output))
 
 ;;; A trial is a function of the code, its condition and its seed. So it begins with the manual's
 ;;; parameters, except where the experiment sets them, with CL:RANDOM seeded by the trial's seed,
@@ -10,7 +10,7 @@
 
 ;;; Ticks. A trial that asks for more than the limit is left by a THROW.
 
-(defun limit-gate (limit next)
+(defun tick-limit-gate (limit next)
   "Return a gate, a function that lets LIMIT ticks of a simulation pass and then leaves the trial.
 NEXT is another gate to call, or NIL."
   (lambda (simulation)
@@ -22,7 +22,7 @@ NEXT is another gate to call, or NIL."
 
 (defvar *null-output* (make-broadcast-stream) "A stream that discards the output of trials.")
 
-(defun call-in-silence (function)
+(defun call-without-output (function)
   "Call FUNCTION and discard its output. Entering the debugger is an error."
   (let* ((nobody (make-two-way-stream (make-concatenated-stream) *null-output*))
          (*standard-output* *null-output*) (*error-output* *null-output*)
@@ -41,7 +41,7 @@ NEXT is another gate to call, or NIL."
 to call besides the gate of the limit. If JOURNAL is true the simulation keeps a journal."
   (let ((seed (trial-seed experiment trial))
         (limit (experiment-limit experiment)))
-    (call-plainly
+    (call-with-trial-syntax
      (lambda ()
        (call-with-parameter-values
         (copy-seq (condition-parameters condition))
@@ -49,7 +49,7 @@ to call besides the gate of the limit. If JOURNAL is true the simulation keeps a
           (let ((*plan-limit* limit) (*realm* (fork-realm *realm*)))
             (call-with-simulation
              (lambda ()
-               (setf (simulation-gate (current-simulation)) (limit-gate limit gate))
+               (setf (simulation-gate (current-simulation)) (tick-limit-gate limit gate))
                (progv (mapcar #'first (condition-variables condition))
                    (mapcar #'second (condition-variables condition))
                  (funcall function)))
@@ -74,12 +74,12 @@ before :run has returned, and if it did not return."
 if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
   (catch 'out-of-ticks
     (return-from run-forms
-      (let ((values (multiple-value-list (call-form (experiment-run experiment) condition))))
+      (let ((values (multiple-value-list (call-trial-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
         (signal-trouble *message-queue*)
         (check-ticks-passed values)
         (when (experiment-until experiment)
-          (loop until (checked-truth :until (experiment-until experiment) condition)
+          (loop until (checked-form-value :until (experiment-until experiment) condition)
                 do (run-ticks 1))
           (setf values '(t)))
         values)))
@@ -102,7 +102,7 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
 :run gives. If only :run reports success, the trial fails with the reason only-believed."
   (let ((success (experiment-success experiment)))
     (cond ((null success) (values outcome reason))
-          ((checked-truth :success success condition) (values "success" ""))
+          ((checked-form-value :success success condition) (values "success" ""))
           ((string= outcome "success") (values "failure" "only-believed"))
           (t (values outcome reason)))))
 
@@ -117,7 +117,7 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
         (result-measures result) '()
         (result-error result) (plain-text text)))
 
-(defun outcome-so-far (experiment values)
+(defun outcome-of-run (experiment values)
   "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If VALUES are
 not from RUN-PLAN, and a plan waits for something that can never happen, the trial fails with the
 reason deadlock."
@@ -169,7 +169,7 @@ success."
          (failed '())
          (values (let ((*plan-failed* (lambda (task) (push task failed))))
                    (run-noting-failures experiment condition result))))
-    (multiple-value-bind (outcome reason) (outcome-so-far experiment values)
+    (multiple-value-bind (outcome reason) (outcome-of-run experiment values)
       (setf (values (result-outcome result) (result-reason result))
             (decide-trial experiment condition outcome reason))
       (add-error result (error-in-plan values))
@@ -183,7 +183,7 @@ success."
         (loop with condition = (result-condition result)
               for (name function) in (experiment-measures experiment)
               for text = ""
-              for trouble = (trouble-text
+              for trouble = (error-text-of-call
                              (lambda ()
                                (setf text (text-of-measure "measure" name function condition))))
               when trouble
@@ -191,7 +191,7 @@ success."
               collect text)))
 
 (defun call-noting-errors (function result)
-  (let ((trouble (trouble-text function)))
+  (let ((trouble (error-text-of-call function)))
     (when trouble (note-error result trouble))))
 
 (defun complete-trial (experiment result)
