@@ -299,7 +299,7 @@
 (test figures.go-between-their-comments
   (is (equal '("a" "<!-- table of x -->" "```" "1 2" "```" "<!-- end of table -->" "b"
                "<!-- table of y -->" "old" "<!-- end of table -->")
-             (ars-worlds::with-table
+             (ars-worlds::replace-table
               '("a" "<!-- table of x -->" "old" "older" "<!-- end of table -->" "b"
                 "<!-- table of y -->" "old" "<!-- end of table -->")
               'x '("```" "1 2" "```")))))
@@ -308,17 +308,17 @@
   (is (string= "96 % (94 to 97)" (ars-worlds::rate-text 479 500)))
   (is (equal '("Seed by seed, rollouts were in time 20 times where the short way was not,"
                "1 time the other way round: p < .001.")
-             (ars-worlds::paired-lines
+             (ars-worlds::paired-comparison-lines
               (append (make-list 20 :initial-element "failure") '("success" "success" "limit"))
               (append (make-list 20 :initial-element "success") '("failure" "success" "failure")))))
   (is (equal "0 times the other way round: p = 0.250."
-             (second (ars-worlds::paired-lines '("limit" "limit" "limit")
-                                               '("success" "success" "success"))))))
+             (second (ars-worlds::paired-comparison-lines '("limit" "limit" "limit")
+                                                          '("success" "success" "success"))))))
 
 (test figures.on-the-page-exist
   (let ((page (base:file-text (project-file "worlds/README.md"))) (shown 0))
     (is (search (ars-worlds::comment-line "table of choosing-by-rollouts") page))
-    (loop for (experiment . names) in ars-worlds::*pictures-kept*
+    (loop for (experiment . names) in ars-worlds::*page-pictures*
           do (is (search (ars-worlds::comment-line (format nil "table of ~A" experiment)) page))
              (dolist (name names)
                (let ((file (format nil "pictures/~(~A~)/~A.svg" experiment name)))
@@ -331,12 +331,12 @@
   "Those that take seconds. After a change of what pictures look like, run ./worlds/figures."
   (experiment::call-with-temporary-directory
    (lambda (directory)
-     (let ((ars-worlds::*figures* (uiop:ensure-directory-pathname directory)))
+     (let ((ars-worlds::*figures-directory* (uiop:ensure-directory-pathname directory)))
        (ars-worlds::save-quick-figures)
-       (let ((files (directory (merge-pathnames "**/*.svg" ars-worlds::*figures*))))
+       (let ((files (directory (merge-pathnames "**/*.svg" ars-worlds::*figures-directory*))))
          (is (= 7 (length files)))
          (dolist (file files)
-           (let ((name (enough-namestring file (truename ars-worlds::*figures*))))
+           (let ((name (enough-namestring file (truename ars-worlds::*figures-directory*))))
              (is (string= (base:file-text (project-file (format nil "worlds/~A" name)))
                           (base:file-text file))
                  "~A is older than the drawing" name))))))))

@@ -6,7 +6,7 @@
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
-(defun length-of (dx dy)
+(defun vector-length (dx dy)
   "Return the length of the vector (DX,DY)."
   (sqrt (+ (* dx dx) (* dy dy))))
 
@@ -18,17 +18,17 @@
   "Return the point in the middle of CELL."
   (list (+ (first cell) .5) (+ (second cell) .5)))
 
-(defun as-list (pt)
+(defun point-as-list (pt)
   "Return PT as a list (x y)."
   (list (pt-x pt) (pt-y pt)))
 
-(defun free-p (map x y)
+(defun free-of-walls-p (map x y)
   "True if (X,Y) is inside MAP and its cell has no wall."
   (not (wall-at-p map x y)))
 
 (defun doorway-at (map x y)
   "Return the place of MAP at (X,Y) if that is a doorway, or NIL."
-  (let ((place (and (free-p map x y)
+  (let ((place (and (free-of-walls-p map x y)
                     (ars-magna.world:cell-type (map-cell map x y)))))
     (and place
          (eq (ars-magna.world:place-type place) (find-place-type 'doorway))
@@ -39,37 +39,37 @@
 (defun direction-from (start end)
   "Return the direction from the point START to END as a step (dx dy), each -1, 0 or 1."
   (destructuring-bind (dx dy) (mapcar #'- end start)
-    (let ((length (length-of dx dy)))
+    (let ((length (vector-length dx dy)))
       (list (round dx length) (round dy length)))))
 
-(defun before-doorway (map door direction)
+(defun point-before-doorway (map door direction)
   "Return the point from which a robot should drive into the cell DOOR. DIRECTION, a step (dx dy),
 leads from DOOR to the side where the robot is."
   (destructuring-bind ((x y) (dx dy)) (list (middle-of door) direction)
     (let ((room (loop for length from 1 to 3
-                      while (free-p map (+ x (* length dx)) (+ y (* length dy)))
+                      while (free-of-walls-p map (+ x (* length dx)) (+ y (* length dy)))
                       finally (return length))))
       ;; The point keeps clear of the first wall.
       (list (+ x (* (max 1 (- room 1.5)) dx)) (+ y (* (max 1 (- room 1.5)) dy))))))
 
-(defun beyond-doorway (chart door goal)
+(defun point-beyond-doorway (chart door goal)
   "Return a point a metre beyond the cell DOOR, on the way to GOAL."
-  (let* ((middle (middle-of door)) (next (as-list (next-point chart middle goal)))
-         (length (apply #'length-of (mapcar #'- next middle))))
+  (let* ((middle (middle-of door)) (next (point-as-list (next-point chart middle goal)))
+         (length (apply #'vector-length (mapcar #'- next middle))))
     (if (< length 1)
         next
         (mapcar (lambda (from to) (+ from (/ (- to from) length))) middle next))))
 
-(defun well-placed-p (start door before)
+(defun placed-for-doorway-p (start door before)
   "True if a robot at START can drive straight into the cell DOOR, nearly as well as from BEFORE."
   (destructuring-bind (dx dy) (mapcar #'- before (middle-of door))
     (destructuring-bind (x y) (mapcar #'- start (middle-of door))
-      (let* ((length (length-of dx dy))
+      (let* ((length (vector-length dx dy))
              (along (/ (+ (* dx x) (* dy y)) length))
              (across (abs (/ (- (* dx y) (* dy x)) length))))
         (and (< .6 along (+ length 1)) (< across (max .4 (* .5 along))))))))
 
-(defun as-good-p (chart start point door goal)
+(defun straight-way-as-good-p (chart start point door goal)
   "True if the straight way from START to POINT on CHART costs no more than the way from START
 towards GOAL as far as the cell DOOR."
   (let ((cost (straight-cost chart start point)))
@@ -79,11 +79,11 @@ towards GOAL as far as the cell DOOR."
 (defun step-to-doorway (chart way door goal)
   "Return the first step of a robot on WAY, which ends in the doorway DOOR and leads on to GOAL."
   (let* ((start (first way))
-         (before (before-doorway (chart-map chart) door
-                                 (direction-from (middle-of door) (first (last way 2))))))
-    (cond ((well-placed-p start door before)
-           (list :door door (beyond-doorway chart door goal)))
-          ((as-good-p chart start before door goal) (list :drive before))
+         (before (point-before-doorway (chart-map chart) door
+                                       (direction-from (middle-of door) (first (last way 2))))))
+    (cond ((placed-for-doorway-p start door before)
+           (list :door door (point-beyond-doorway chart door goal)))
+          ((straight-way-as-good-p chart start before door goal) (list :drive before))
           (t (list :drive (second way))))))
 
 (defun next-step (chart start goal)
@@ -95,7 +95,7 @@ towards GOAL as far as the cell DOOR."
          (start (nearest-free-point chart start))
          (goal (nearest-free-point chart goal))
          (way (and start goal
-                   (mapcar #'as-list
+                   (mapcar #'point-as-list
                            (find-way chart start goal :until 'doorway))))
          (end (and way (cell-of (first (last way))))))
     (cond ((null way) nil)

@@ -33,7 +33,7 @@ code or NIL, and ROBOT. The codes:
 - :INSUFFICIENT-STRENGTH after three things that were too heavy.
 - :INSUFFICIENT-CAPACITY if BIN has no room. The hand then still holds the thing.
 - :INTERRUPT if another command took over a part or the robot."
-  (find-target (make-errand :robot robot :asked (asked-so-far robot)
+  (find-target (make-errand :robot robot :asked (commands-received robot)
                             :description description :continuation continuation
                             :camera (robot-camera robot camera)
                             :hand (robot-hand robot hand)
@@ -49,23 +49,23 @@ already."
     (setf (errand-over errand) #t)
     (funcall (errand-continuation errand) err (errand-robot errand))))
 
-(defun set-back (errand err step)
+(defun step-after-setback (errand err step)
   "Take STEP, a function of ERRAND, after the setback ERR. End ERRAND if no patience is left."
   (cond ((errand-over errand) nil)
-        ((over-p errand err) (end-errand errand :interrupt))
+        ((must-end-p errand err) (end-errand errand :interrupt))
         ((zerop (decf (errand-patience errand))) (end-errand errand :gave-up))
         (t (funcall step errand))))
 
-(defun go-on (errand err next otherwise &rest harmless)
+(defun take-next-step (errand err next otherwise &rest harmless)
   "Take the step NEXT of ERRAND if ERR is NIL or one of HARMLESS, else the step OTHERWISE."
-  (if (and (member err (cons nil harmless)) (not (over-p errand err)))
+  (if (and (member err (cons nil harmless)) (not (must-end-p errand err)))
       (funcall next errand)
-      (set-back errand err otherwise)))
+      (step-after-setback errand err otherwise)))
 
-(defun unless-interrupted (errand err step)
+(defun call-unless-interrupted (errand err step)
   "Call STEP, a function of no arguments, whether the command succeeded or not. If ERR or the state
 of the robot shows that another program took over the robot, end ERRAND instead."
-  (if (over-p errand err)
+  (if (must-end-p errand err)
       (end-errand errand :interrupt)
       (funcall step)))
 
@@ -76,28 +76,30 @@ of the robot shows that another program took over the robot, end ERRAND instead.
 elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
-      (cond ((over-p errand err) (end-errand errand :interrupt))
+      (cond ((must-end-p errand err) (end-errand errand :interrupt))
             (designator (track-target errand designator))
-            ((eq err :already-tracking) (free-camera errand #'find-target))
-            (t (set-back errand err #'look-elsewhere))))))
+            ((eq err :already-tracking) (stop-camera-track errand #'find-target))
+            (t (step-after-setback errand err #'look-elsewhere))))))
 
 (defun look-elsewhere (errand)
   "Turn the camera by its field of view. After every eight turns, search beside the robot too."
   (let ((camera (errand-camera errand)))
     (camera-turn camera (camera-field-of-view camera)
       (continuation (err camera angle)
-        (go-on errand err
-               (if (zerop (mod (incf (errand-looks errand)) 8)) #'check-target #'find-target)
-               #'find-target)))))
+        (take-next-step errand err
+                        (if (zerop (mod (incf (errand-looks errand)) 8))
+                            #'check-target
+                            #'find-target)
+                        #'find-target)))))
 
-(defun free-camera (errand next)
+(defun stop-camera-track (errand next)
   "Stop the camera's track, if any, and take the step NEXT."
   (camera-untrack (errand-camera errand)
-    (continuation (err camera) (go-on errand err next next :not-tracking))))
+    (continuation (err camera) (take-next-step errand err next next :not-tracking))))
 
 ;;; Going there.
 
-(defun track-then (errand designator next otherwise)
+(defun track-and-continue (errand designator next otherwise)
   "Track DESIGNATOR and take the step NEXT when the track has begun, or OTHERWISE if it cannot
 begin."
   (let ((begun #f))
@@ -106,32 +108,32 @@ begin."
         ;; It is called again when the track ends; a command that needs the track fails by itself.
         (cond (begun nil)
               (t (setf begun #t)
-                 (go-on errand err next otherwise)))))))
+                 (take-next-step errand err next otherwise)))))))
 
 (defun track-target (errand designator)
-  (track-then errand designator #'go-to-target #'find-target))
+  (track-and-continue errand designator #'go-to-target #'find-target))
 
 (defun go-to-target (errand)
   "Drive to what the camera tracks. If something blocks the way, check whether the tracked thing is
 near enough."
   (robot-goto-designator (robot-to-command errand) (errand-camera errand)
     (continuation (err robot camera designator)
-      (unless-interrupted errand err
+      (call-unless-interrupted errand err
         (lambda ()
-          (free-camera errand
-                       (lambda (errand)
-                         (go-on errand err #'check-target #'find-target
-                                :goto-local :robot-blocked))))))))
+          (stop-camera-track errand
+                             (lambda (errand)
+                               (take-next-step errand err #'check-target #'find-target
+                                               :goto-local :robot-blocked))))))))
 
 (defun turn-aside (errand)
   "Turn aside, drive on for two ticks, and search again."
   (robot-turn (robot-to-command errand) (if (evenp (errand-patience errand)) 1.3 -1.3)
     (continuation (err robot angle)
-      (unless-interrupted errand err
+      (call-unless-interrupted errand err
         (lambda ()
           (robot-go-forward (robot-to-command errand) 2
             (continuation (err robot)
-              (go-on errand err #'find-target #'find-target :robot-blocked))))))))
+              (take-next-step errand err #'find-target #'find-target :robot-blocked))))))))
 
 ;;; Checking. Cameras often misread colours, so only a thing that fits in three looks is taken.
 
@@ -145,50 +147,50 @@ instead."
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
-        (cond ((over-p errand err) (end-errand errand :interrupt))
+        (cond ((must-end-p errand err) (end-errand errand :interrupt))
               ((zerop wanted) (funcall next errand designator))
-              ((zerop looks) (set-back errand err otherwise))
+              ((zerop looks) (step-after-setback errand err otherwise))
               (t (look-closely-at errand (- looks 1) wanted next otherwise)))))))
 
 ;;; Grasping and stowing.
 
 (defun grasp-target (errand designator)
-  (track-then errand designator
-              (lambda (errand) (grasp-tracked errand designator))
-              #'check-target))
+  (track-and-continue errand designator
+                      (lambda (errand) (grasp-tracked errand designator))
+                      #'check-target))
 
 (defun grasp-tracked (errand designator)
   "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, it may be the wrong thing:
 leave it."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
-      (unless-interrupted errand err
+      (call-unless-interrupted errand err
         (lambda ()
-          (free-camera errand
-                       (lambda (errand)
-                         (if (eq err :insufficient-strength)
-                             (leave-heavy errand)
-                             (go-on errand err #'open-for-target #'check-target
-                                    :hand-grasping)))))))))
+          (stop-camera-track errand
+                             (lambda (errand)
+                               (if (eq err :insufficient-strength)
+                                   (leave-heavy errand)
+                                   (take-next-step errand err #'open-for-target #'check-target
+                                                   :hand-grasping)))))))))
 
 (defun leave-heavy (errand)
   "Look for something lighter. End ERRAND after three heavy things."
   (if (= 3 (incf (errand-too-heavy errand)))
       (end-errand errand :insufficient-strength)
-      (set-back errand :insufficient-strength #'turn-aside)))
+      (step-after-setback errand :insufficient-strength #'turn-aside)))
 
 (defun open-for-target (errand)
   (storage-bin-open (errand-bin errand)
     (continuation (err bin)
-      (go-on errand err #'insert-target #'open-for-target :bin-open))))
+      (take-next-step errand err #'insert-target #'open-for-target :bin-open))))
 
 (defun insert-target (errand)
   "Put the hand into the bin; try again if the hand bumps. End ERRAND if the bin has no room."
   (hand-insert-bin (errand-hand errand) (errand-bin errand)
     (continuation (err hand bin)
-      (if (and (eq err :insufficient-capacity) (not (over-p errand err)))
+      (if (and (eq err :insufficient-capacity) (not (must-end-p errand err)))
           (end-errand errand err)
-          (go-on errand err #'drop-target #'open-for-target)))))
+          (take-next-step errand err #'drop-target #'open-for-target)))))
 
 (defun drop-target (errand)
   "Drop the thing inside the bin. If the hand is empty, the thing was lost on the way: search
@@ -196,17 +198,17 @@ again."
   (hand-ungrasp (errand-hand errand)
     (continuation (err hand)
       (let ((lost (eq err :not-grasping)))
-        (unless-interrupted errand err
+        (call-unless-interrupted errand err
           (lambda ()
             (hand-remove hand
               (continuation (err hand)
                 (if (and lost (not (eq err :interrupt)))
-                    (set-back errand :not-grasping #'find-target)
-                    (go-on errand err #'close-on-target #'close-on-target))))))))))
+                    (step-after-setback errand :not-grasping #'find-target)
+                    (take-next-step errand err #'close-on-target #'close-on-target))))))))))
 
 (defun close-on-target (errand)
   "Close the bin, try again if it jams, and end ERRAND."
   (storage-bin-close (errand-bin errand)
     (continuation (err bin part)
-      (go-on errand err (lambda (errand) (end-errand errand nil)) #'close-on-target
-             :bin-closed))))
+      (take-next-step errand err (lambda (errand) (end-errand errand nil)) #'close-on-target
+                      :bin-closed))))

@@ -6,30 +6,30 @@
 
 (in-package :ars-worlds)
 
-(defparameter *pictures-kept*
+(defparameter *page-pictures*
   '((fetching-against-motion-noise "success" "survival")
     (fetching-against-blindness-and-kicks "success")
     (three-ways-of-searching "success" "difference-in-success-by-way"))
   "Lists (experiment picture...): the names of the pictures that the page shows.")
 
-(defparameter *ways-shown*
+(defparameter *page-ways*
   '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
     (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20 nil))
   "Lists (experiment condition trials part): the trials whose ways the page shows, and the part of
 the map to draw; NIL is the whole map.")
 
-(defparameter *figures* (asdf:system-relative-pathname "ars-magna" "worlds/")
+(defparameter *figures-directory* (asdf:system-relative-pathname "ars-magna" "worlds/")
   "The directory of the pictures and the page. Tests bind this variable to another directory.")
 
-(defun in-worlds (name)
+(defun worlds-path (name)
   "Return the path of the file NAME in worlds/. Create the directory of the file if there is none."
-  (ensure-directories-exist (merge-pathnames name *figures*)))
+  (ensure-directories-exist (merge-pathnames name *figures-directory*)))
 
 (defun pictures-of (experiment)
   "Return the directory of the pictures of EXPERIMENT."
-  (in-worlds (format nil "pictures/~(~A~)/" experiment)))
+  (worlds-path (format nil "pictures/~(~A~)/" experiment)))
 
-(defun save-pictures-kept (experiment results names)
+(defun save-page-pictures (experiment results names)
   "Save the pictures named NAMES of the RESULTS of EXPERIMENT, and no others."
   (dolist (file (save-result-pictures results (pictures-of experiment)))
     (unless (member (pathname-name file) names :test #'string=)
@@ -40,7 +40,7 @@ the map to draw; NIL is the whole map.")
 (defun comment-line (what)
   (format nil "<!-- ~(~A~) -->" what))
 
-(defun with-table (lines experiment table)
+(defun replace-table (lines experiment table)
   "Return LINES of a page with the table of EXPERIMENT replaced by TABLE, a list of lines."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
@@ -66,7 +66,7 @@ the map to draw; NIL is the whole map.")
         (continuation (err camera designator)
           (when designator (camera-track camera designator nil))))
       (run-ticks 20))
-    (save-picture robbie (in-worlds "watson.svg") :layers (cons :wedges *picture-layers*))))
+    (save-picture robbie (worlds-path "watson.svg") :layers (cons :wedges *picture-layers*))))
 
 (defun save-layers ()
   "Save a picture of DOT in TINY that shows the layers of pictures."
@@ -82,7 +82,7 @@ the map to draw; NIL is the whole map.")
         (run-ticks 12))
       (camera-view camera)
       (run-ticks 4))
-    (save-picture dot (in-worlds "pictures/worlds/tiny-layers.svg")
+    (save-picture dot (worlds-path "pictures/worlds/tiny-layers.svg")
                   :layers '(:names :places :grid :wedges :rays :trail :designators :coordinates
                             :legend :scale-bar :title))))
 
@@ -94,7 +94,7 @@ the map to draw; NIL is the whole map.")
     (leave-trolleys)
     (save-projection-picture (project 'carry-messages :arguments '(:first)
                                                       :trials 25 :horizon 1200)
-                             (in-worlds "pictures/looking-ahead/ways.svg")
+                             (worlds-path "pictures/looking-ahead/ways.svg")
                              :part '(28 2 100 46))))
 
 ;;; One fetch.
@@ -104,13 +104,13 @@ the map to draw; NIL is the whole map.")
   (with-simulation (marvin :seed 7 :journal t)
     (let ((*trace-plans* t))
       (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((109 24)))
-      (save-plan-timeline (in-worlds "pictures/fetch/timeline.svg")))
-    (save-run-picture (in-worlds "pictures/fetch/run.svg")
+      (save-plan-timeline (worlds-path "pictures/fetch/timeline.svg")))
+    (save-run-picture (worlds-path "pictures/fetch/run.svg")
                       :title "marvin fetches a globe across the office")))
 
 ;;; Choosing by rollouts: what it is worth, and how good forecasts are.
 
-(defparameter *ways-of-choosing*
+(defparameter *choosing-labels*
   '("always the short way" "always the long way" "either, at random" "chosen by rollouts")
   "The labels of the conditions of CHOOSING-BY-ROLLOUTS on the page, in order.")
 
@@ -132,7 +132,7 @@ the map to draw; NIL is the whole map.")
             (/ (reduce #'+ (sample-measure results sample 'miss)) trials)
             (* rate (- 1 rate)))))
 
-(defun paired-lines (firsts bests)
+(defun paired-comparison-lines (firsts bests)
   "Return the lines that compare two vectors of outcomes, seed by seed: BESTS with rollouts, and
 FIRSTS by the short way."
   (let* ((more (count t (map 'list (lambda (first best)
@@ -154,12 +154,12 @@ FIRSTS by the short way."
                                the forecasts | of the mean rate |"
                           (length (sample-trials (first samples))))
                   "|---|---|---|---|")
-            (loop for name in *ways-of-choosing*
+            (loop for name in *choosing-labels*
                   for sample in samples
                   collect (choosing-row name results sample))
             (list "")
-            (paired-lines (sample-outcomes (first samples))
-                          (sample-outcomes (first (last samples)))))))
+            (paired-comparison-lines (sample-outcomes (first samples))
+                                     (sample-outcomes (first (last samples)))))))
 
 ;;; The command.
 
@@ -167,7 +167,7 @@ FIRSTS by the short way."
   "Save the pictures that take only seconds. Tests compare the shipped pictures with these."
   (save-watson)
   (save-layers)
-  (draw-ward (in-worlds "floors/"))
+  (draw-ward (worlds-path "floors/"))
   (save-ways-ahead)
   (save-fetch))
 
@@ -175,15 +175,15 @@ FIRSTS by the short way."
   "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
 and save their pictures."
   (save-quick-figures)
-  (let* ((page (in-worlds "README.md"))
-         (lines (with-table (uiop:read-file-lines page :external-format :utf-8)
+  (let* ((page (worlds-path "README.md"))
+         (lines (replace-table (uiop:read-file-lines page :external-format :utf-8)
                   'choosing-by-rollouts
                   (choosing-lines (run-experiment 'choosing-by-rollouts)))))
-    (loop for (experiment . names) in *pictures-kept*
+    (loop for (experiment . names) in *page-pictures*
           do (let ((results (run-experiment experiment)))
-               (setf lines (with-table lines experiment (results-lines results)))
-               (save-pictures-kept experiment results names)))
-    (loop for (experiment condition trials part) in *ways-shown*
+               (setf lines (replace-table lines experiment (results-lines results)))
+               (save-page-pictures experiment results names)))
+    (loop for (experiment condition trials part) in *page-ways*
           do (save-ways-picture experiment condition
                                 (merge-pathnames "ways.svg" (pictures-of experiment))
                                 :trials trials :part part))

@@ -17,7 +17,7 @@
 ;;; may be waiting for a camera when another program, or STOP, commands the robot. So a CLAIM
 ;;; compares how many commands the robot has received with how many the program itself has issued.
 
-(defun asked-so-far (robot) (ars-magna.time:resource-asked robot))
+(defun commands-received (robot) (ars-magna.time:resource-asked robot))
 
 (defstruct (claim (:constructor nil) (:copier nil))
   "A program's claim on a robot: the robot, and how many commands it should have received by now. If
@@ -32,9 +32,9 @@ the robot has received more commands, another program has taken it over."
 
 (defun taken-over-p (claim)
   "True if another program has taken over the robot of CLAIM."
-  (/= (claim-asked claim) (asked-so-far (claim-robot claim))))
+  (/= (claim-asked claim) (commands-received (claim-robot claim))))
 
-(defun over-p (claim err)
+(defun must-end-p (claim err)
   "True if the program with CLAIM has to end: ERR, the error code of its last command, is
 :INTERRUPT, or another program has taken over its robot."
   (or (eq err :interrupt) (taken-over-p claim)))
@@ -52,7 +52,7 @@ obstacles after which the journey ends."
   (steps 300 :type fixnum)
   (patience 40 :type fixnum))
 
-(defun goal-near (chart x y)
+(defun free-goal-near (chart x y)
   "Return the point (X,Y), a list, or the nearest point that is free on CHART. Signals
 WRONG-ARGUMENT."
   (let ((point (nearest-free-point chart (list x y))))
@@ -61,9 +61,9 @@ WRONG-ARGUMENT."
                                       (format nil "the coordinates of a point of ~A, within five ~
                                                    cells of a free cell"
                                               (chart-map chart))))
-    (as-list point)))
+    (point-as-list point)))
 
-(defun check-going (robot x y continuation start tolerance patience)
+(defun check-go-to-arguments (robot x y continuation start tolerance patience)
   "Signal WRONG-ARGUMENT for the first argument that ROBOT-GO-TO cannot use."
   (check-arguments 'robot-go-to
                    (list (typep robot 'robot) "robot" robot "a robot")
@@ -72,7 +72,7 @@ WRONG-ARGUMENT."
                    (list (ars-magna.base:argument-of-type-p continuation 'continuation)
                          "continuation" continuation
                          (ars-magna.base:argument-type-text 'continuation))
-                   (list (or (null start) (numbers-p start 3)) ":start" start
+                   (list (or (null start) (number-list-p start 3)) ":start" start
                          "a list (x y heading) of numbers, or NIL"))
   (check-limits 'robot-go-to tolerance patience))
 
@@ -86,14 +86,14 @@ end CONTINUATION, unless it is NIL, is called once with an error code or NIL, an
 - :GAVE-UP after PATIENCE obstacles, or 300 steps.
 - :INTERRUPT if another command took over the robot or the camera, or the run ended or was rewound.
 Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid."
-  (check-going robot x y continuation start tolerance patience)
+  (check-go-to-arguments robot x y continuation start tolerance patience)
   (let* ((me (begin-reckoning (or start (here robot)) robot))
-         (goal (goal-near (reckoning-chart me) x y)))
+         (goal (free-goal-near (reckoning-chart me) x y)))
     (grab-resource robot (robot-simulation robot))
-    (go-on-journey (make-journey :robot robot :asked (asked-so-far robot) :me me :goal goal
-                                 :tolerance tolerance :patience patience
-                                 :camera (widest-of robot)
-                                 :continuation continuation))
+    (continue-journey (make-journey :robot robot :asked (commands-received robot) :me me :goal goal
+                                    :tolerance tolerance :patience patience
+                                    :camera (widest-of robot)
+                                    :continuation continuation))
     (values)))
 
 (defun end-journey (journey err)
@@ -102,15 +102,15 @@ Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid
   (when (journey-continuation journey)
     (funcall (journey-continuation journey) err (journey-robot journey))))
 
-(defun after-command (journey err next otherwise)
+(defun continue-after-command (journey err next otherwise)
   "Call NEXT, a function of no arguments, if a command ended without an error code ERR, else
 OTHERWISE. If the command was interrupted or another program took over the robot, end JOURNEY
 instead."
-  (cond ((over-p journey err) (end-journey journey :interrupt))
+  (cond ((must-end-p journey err) (end-journey journey :interrupt))
         (err (funcall otherwise))
         (t (funcall next))))
 
-(defun go-on-journey (journey)
+(defun continue-journey (journey)
   "Take the next step of JOURNEY, or end JOURNEY: at the goal, without a way, or after too many
 steps."
   (let* ((me (journey-me journey)) (goal (journey-goal journey))
@@ -121,14 +121,14 @@ steps."
           ((eq :door (first step))
            (face-point journey (middle-of (second step))
                        (lambda () (look-for-doorway journey (second step) (third step)))))
-          (t (drive-to-point journey (second step) #'go-on-journey)))))
+          (t (drive-to-point journey (second step) #'continue-journey)))))
 
 ;;; Driving.
 
 (defun face-point (journey point next)
   "Turn the robot of JOURNEY to face POINT, then call NEXT."
   (robot-turn (robot-to-command journey) (angle-towards (journey-me journey) point)
-    (continuation (err robot angle) (after-command journey err next next))))
+    (continuation (err robot angle) (continue-after-command journey err next next))))
 
 (defun drive-to-point (journey point next)
   "Drive the robot of JOURNEY straight to POINT, then call NEXT, a function of JOURNEY."
@@ -142,7 +142,7 @@ CONTINUATION gets an error code or NIL, and the robot."
   (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
     (robot-set-speed (robot-to-command claim) (/ metres ticks)
       (continuation (err robot speed)
-        (if (over-p claim err)
+        (if (must-end-p claim err)
             (funcall continuation :interrupt robot)
             (robot-go-forward (robot-to-command claim) ticks continuation))))))
 
@@ -152,9 +152,9 @@ CONTINUATION gets an error code or NIL, and the robot."
       (funcall next journey)
       (drive-metres journey distance driving-speed*
         (continuation (err robot)
-          (after-command journey err
-                         (lambda () (funcall next journey))
-                         (lambda () (note-obstacle journey)))))))
+          (continue-after-command journey err
+                                  (lambda () (funcall next journey))
+                                  (lambda () (note-obstacle journey)))))))
 
 ;;; Obstacles.
 
@@ -163,15 +163,15 @@ CONTINUATION gets an error code or NIL, and the robot."
 the cells of a thing. Every third time, turn away and drive two metres first."
   (let ((me (journey-me journey)))
     (reckon me)
-    (unless (correct-by-wall me) (bar-ahead me))
+    (unless (correct-by-wall me) (bar-cell-ahead me))
     (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
           ((zerop (mod (journey-patience journey) 3))
            (robot-turn (robot-to-command journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
              (continuation (err robot angle)
-               (after-command journey err
-                              (lambda () (drive-straight journey 2 #'go-on-journey))
-                              (lambda () (go-on-journey journey))))))
-          (t (go-on-journey journey)))))
+               (continue-after-command journey err
+                                       (lambda () (drive-straight journey 2 #'continue-journey))
+                                       (lambda () (continue-journey journey))))))
+          (t (continue-journey journey)))))
 
 ;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 
@@ -185,12 +185,12 @@ BEYOND."
              (camera-get-all-place-designators (journey-camera journey) 'doorway
                (continuation (err camera designators)
                  (let ((doorway (nearest-ahead designators)))
-                   (if (and doorway (not (over-p journey err)))
+                   (if (and doorway (not (must-end-p journey err)))
                        (go-to-doorway journey doorway beyond)
-                       (after-command journey err #'blindly #'blindly)))))))
+                       (continue-after-command journey err #'blindly #'blindly)))))))
     (if (journey-camera journey)
         (camera-align-robot (journey-camera journey)
-          (continuation (err camera angle) (after-command journey err #'look #'look)))
+          (continuation (err camera angle) (continue-after-command journey err #'look #'look)))
         (blindly))))
 
 (defun go-to-doorway (journey doorway beyond)
@@ -201,14 +201,14 @@ BEYOND."
         ;; It is called again when the track ends.
         (unless begun
           (setf begun t)
-          (when (taken-over-p journey) (free-from-track journey doorway))
-          (after-command journey err
-                         (lambda () (follow-to-doorway journey doorway beyond))
-                         (lambda () (note-obstacle journey))))))))
+          (when (taken-over-p journey) (untrack-doorway journey doorway))
+          (continue-after-command journey err
+                                  (lambda () (follow-to-doorway journey doorway beyond))
+                                  (lambda () (note-obstacle journey))))))))
 
 ;; In a doorway the camera may lose its track before a CAMERA-UNTRACK begins, which then would fail.
 ;; After the run has ended nothing is tracked, and no command can be issued.
-(defun free-from-track (journey doorway)
+(defun untrack-doorway (journey doorway)
   "If the camera of JOURNEY tracks the designator DOORWAY, stop this track without a message."
   (let ((camera (journey-camera journey)) (run (robot-simulation (journey-robot journey))))
     (when (and (eq doorway (camera-tracks camera))
@@ -220,39 +220,39 @@ BEYOND."
   (robot-set-speed (robot-to-command journey) driving-speed*
     (continuation (err robot speed)
       (flet ((follow () (go-to-tracked journey doorway beyond)))
-        (when (over-p journey err) (free-from-track journey doorway))
-        (after-command journey err #'follow #'follow)))))
+        (when (must-end-p journey err) (untrack-doorway journey doorway))
+        (continue-after-command journey err #'follow #'follow)))))
 
 (defun go-to-tracked (journey doorway beyond)
   "Drive the robot of JOURNEY, whose speed is set, to the designator DOORWAY."
   (robot-goto-designator (robot-to-command journey) (journey-camera journey)
     (continuation (err robot camera designator)
-      (free-from-track journey doorway)
-      (after-command journey err
-                     (lambda () (leave-doorway journey beyond))
-                     (lambda ()
-                       (if (eq err :robot-blocked)
-                           (note-obstacle journey)
-                           (leave-doorway journey beyond)))))))
+      (untrack-doorway journey doorway)
+      (continue-after-command journey err
+                              (lambda () (leave-doorway journey beyond))
+                              (lambda ()
+                                (if (eq err :robot-blocked)
+                                    (note-obstacle journey)
+                                    (leave-doorway journey beyond)))))))
 
 (defun leave-doorway (journey beyond)
   "Correct the reckoning of JOURNEY if the robot senses a doorway, and drive on to BEYOND."
-  (flet ((on () (drive-to-point journey beyond #'go-on-journey)))
+  (flet ((on () (drive-to-point journey beyond #'continue-journey)))
     (robot-place (robot-to-command journey)
       (continuation (err robot type)
         (let ((cell (doorway-nearby (journey-me journey))))
-          (if (and cell (eq type 'doorway) (not (over-p journey err)))
-              (take-place journey cell #'on)
-              (after-command journey err #'on #'on)))))))
+          (if (and cell (eq type 'doorway) (not (must-end-p journey err)))
+              (correct-in-doorway journey cell #'on)
+              (continue-after-command journey err #'on #'on)))))))
 
-(defun take-place (journey cell next)
+(defun correct-in-doorway (journey cell next)
   "Correct position and heading in the reckoning of JOURNEY, whose robot is in the doorway CELL."
   (let ((me (journey-me journey)))
     (correct-by-cell me cell)
     (robot-align-place (robot-to-command journey)
       (continuation (err robot angle)
-        (after-command journey err
-                       (lambda ()
-                         (correct-by-direction me cell)
-                         (funcall next))
-                       next)))))
+        (continue-after-command journey err
+                                (lambda ()
+                                  (correct-by-direction me cell)
+                                  (funcall next))
+                                next)))))

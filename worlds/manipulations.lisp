@@ -20,12 +20,12 @@
   "True if THING and HAND are in the same container, or both in none."
   (in-location thing (or (part-location hand) :floor)))
 
-(defun lid-trouble (container hand)
+(defun lid-error-code (container hand)
   "Return the error code if HAND cannot move the lid of CONTAINER, else #F."
   (cond ((not (beside-hand-p container hand)) :out-of-reach)
         ((get-attribute container :locked) :locked)))
 
-(defun key-trouble (container key hand)
+(defun key-error-code (container key hand)
   "Return the error code if HAND cannot turn KEY in the lock of CONTAINER, else #F."
   (cond ((not (in-location key hand)) :key-not-in-hand)
         ((not (beside-hand-p container hand)) :out-of-reach)
@@ -39,7 +39,7 @@
 (defmanipulation open (container - ((:capacity (.01 100000)) (:closed #t)) :by hand - HAND)
     (:success .98 :delay 2)
   (let ((trouble (cond ((hand-holding hand) :hand-full)
-                       (t (lid-trouble container hand)))))
+                       (t (lid-error-code container hand)))))
     (unless trouble (set-attribute container :closed #f))
     (values trouble hand)))
 
@@ -49,7 +49,7 @@
 (defmanipulation close (container - ((:capacity (.01 100000)) (:closed #f)) :by hand - HAND)
     (:success .98 :delay 2)
   ;; A hand that holds something can close a lid, too.
-  (let ((trouble (lid-trouble container hand)))
+  (let ((trouble (lid-error-code container hand)))
     (unless trouble (set-attribute container :closed #t))
     (values trouble hand)))
 
@@ -59,7 +59,7 @@
                        key - ((:type :key) (:lock-id ?id))
                        :by hand - HAND)
     (:success .95 :delay 3)
-  (let ((trouble (key-trouble container key hand)))
+  (let ((trouble (key-error-code container key hand)))
     (unless trouble (set-attribute container :locked #t))
     (values trouble hand)))
 
@@ -67,7 +67,7 @@
                          key - ((:type :key) (:lock-id ?id))
                          :by hand - HAND)
     (:success .95 :delay 3)
-  (let ((trouble (key-trouble container key hand)))
+  (let ((trouble (key-error-code container key hand)))
     (unless trouble (set-attribute container :locked #f))
     (values trouble hand)))
 

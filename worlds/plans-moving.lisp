@@ -50,7 +50,7 @@ nothing is ahead any more."
   (rpl-robot-goto-wall)
   (if (wait-for robot-stopped* :timeout 12)
       (cond ((null (fluent-value robot-movement-error*)) (reckon me) (correct-by-wall me) :wall)
-            (t (bar-ahead me) :thing))
+            (t (bar-cell-ahead me) :thing))
       (seq (stand-still)
            (reckon me)
            nil)))
@@ -178,7 +178,7 @@ for a thing to move away; every third time turn and drive off."
              (drive-by (+ 1 (mod trouble 3)))))
     (reckon me)))
 
-(defun numbers-p (value count)
+(defun number-list-p (value count)
   "True if VALUE is a list of COUNT numbers."
   (and (listp value) (eql count (list-length value)) (every #'realp value)))
 
@@ -191,7 +191,7 @@ OPERATOR cannot use."
 (defun check-points (plan name points)
   "Signal WRONG-ARGUMENT unless POINTS, the argument NAME of PLAN, is a list of points."
   (check-arguments plan (list (and (listp points) (list-length points)
-                                   (every (lambda (point) (numbers-p point 2)) points))
+                                   (every (lambda (point) (number-list-p point 2)) points))
                               name points "a list of points (x y), such as ((3 4) (5 6))")))
 
 (defun check-limits (operator tolerance patience)
@@ -209,7 +209,7 @@ PATIENCE obstacles or 300 steps, or at once if there is no way. Fails with WRONG
 argument is invalid."
   (check-arguments 'travel-to
                    (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
-                   (list (numbers-p point 2) "point" point "a list (x y) of numbers of metres"))
+                   (list (number-list-p point 2) "point" point "a list (x y) of numbers of metres"))
   (check-limits 'travel-to tolerance patience)
   (evap-protect (travel-step-by-step me point tolerance patience camera)
                 (show-way me '())))

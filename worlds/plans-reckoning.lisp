@@ -32,7 +32,7 @@ start."
                                   reckoning-6 reckoning-7 reckoning-8)
   "The names of the odometers of reckonings.")
 
-(defun name-for-reckoning (robot)
+(defun next-odometer-name (robot)
   "Return the name of the odometer for the next reckoning of ROBOT."
   (let ((taken (remove-if-not (lambda (name) (member name *reckoning-names*))
                               (mapcar #'odometer-name (robot-odometers robot)))))
@@ -45,7 +45,7 @@ heading). The last eight reckonings of a robot can be used side by side; older r
 longer valid."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
-                    (ars-magna.robot:make-odometer robot (name-for-reckoning robot))
+                    (ars-magna.robot:make-odometer robot (next-odometer-name robot))
                     x y heading)))
 
 (defun check-reckoning (me)
@@ -70,12 +70,12 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
     (incf (reckoning-x me) (- (* cos (pt-x moved)) (* sin (pt-y moved))))
     (incf (reckoning-y me) (+ (* sin (pt-x moved)) (* cos (pt-y moved))))
     (incf (reckoning-heading me) turned)
-    (incf (reckoning-driven me) (length-of (pt-x moved) (pt-y moved)))
+    (incf (reckoning-driven me) (vector-length (pt-x moved) (pt-y moved)))
     (list (reckoning-x me) (reckoning-y me))))
 
 (defun distance-left (me point)
   "Return the estimated distance of the robot of the reckoning ME from POINT, in metres."
-  (apply #'length-of (mapcar #'- point (reckon me))))
+  (apply #'vector-length (mapcar #'- point (reckon me))))
 
 (defun angle-towards (me point)
   "Return the angle by which the robot of the reckoning ME has to turn to face POINT, in radians."
@@ -112,7 +112,7 @@ of at most 90 for each cell. Remove the shown way, because it may no longer be t
                  (push (list cell cost) sums)))
     (free-all-cells chart)
     (loop for (cell cost) in sums
-          when (apply #'free-p (chart-map chart) cell)
+          when (apply #'free-of-walls-p (chart-map chart) cell)
             do (bar-cell chart cell cost))))
 
 (defun bar-cells (me point cost until)
@@ -125,19 +125,19 @@ of at most 90 for each cell. Remove the shown way, because it may no longer be t
                           (reckoning-barred me))))
   (bar-on-chart me))
 
-(defun bar-ahead (me)
+(defun bar-cell-ahead (me)
   "Remember for 200 ticks that something stands directly ahead of the robot of the reckoning ME."
   (bar-cells me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
 
-(defun chart-now (me)
+(defun current-chart (me)
   "Return the chart of ME. Cells that were barred until a past tick are free again."
-  (flet ((over-p (entry) (< (third entry) (simulation-tick))))
-    (when (some #'over-p (reckoning-barred me))
-      (setf (reckoning-barred me) (remove-if #'over-p (reckoning-barred me)))
+  (flet ((must-end-p (entry) (< (third entry) (simulation-tick))))
+    (when (some #'must-end-p (reckoning-barred me))
+      (setf (reckoning-barred me) (remove-if #'must-end-p (reckoning-barred me)))
       (bar-on-chart me)))
   (reckoning-chart me))
 
-(defun shown-to-p (me end)
+(defun way-shown-to-p (me end)
   "True if pictures show a way of the robot of the reckoning ME that leads to the point END."
   (let ((point (first (last (robot-planned-way (robot-of me))))))
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
@@ -146,14 +146,14 @@ of at most 90 for each cell. Remove the shown way, because it may no longer be t
   "Show in pictures the way of the robot of the reckoning ME on CHART to GOAL, unless pictures show
 this way already."
   (let ((end (nearest-free-point chart goal)))
-    (when (and end (not (shown-to-p me end)))
+    (when (and end (not (way-shown-to-p me end)))
       (let ((start (nearest-free-point chart (reckon me))))
         (show-way me (and start (find-way chart start end)))))))
 
 (defun next-step-of (me goal)
   "Return the next step of the robot of the reckoning ME to GOAL, as NEXT-STEP does. Show the way in
 pictures."
-  (let ((chart (chart-now me)))
+  (let ((chart (current-chart me)))
     (show-way-to me chart goal)
     (next-step chart (reckon me) goal)))
 
@@ -162,7 +162,7 @@ pictures."
 (defun wall-crossed (map from to)
   "Return the axis (0 for x, 1 for y) and the coordinate of the face of a wall between the points
 FROM and TO, which are close together; NIL if there is none."
-  (when (and (apply #'free-p map from) (not (apply #'free-p map to)))
+  (when (and (apply #'free-of-walls-p map from) (not (apply #'free-of-walls-p map to)))
     (loop for axis in '(0 1)
           for a = (floor (nth axis from)) and b = (floor (nth axis to))
           when (/= a b) do (return (values axis (max a b))))))
@@ -193,7 +193,7 @@ within 2.5 metres."
       (loop for dx from -3 to 3
             do (loop for dy from -3 to 3
                      for cell = (cell-of (list (+ x dx) (+ y dy)))
-                     for distance = (apply #'length-of (mapcar #'- (middle-of cell) (list x y)))
+                     for distance = (apply #'vector-length (mapcar #'- (middle-of cell) (list x y)))
                      when (and (< distance least)
                                (doorway-at (chart-map (reckoning-chart me))
                                            (first cell) (second cell)))

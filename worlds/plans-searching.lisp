@@ -20,15 +20,15 @@
 
 ;;; Where to go next. LEFT are those of PLACES that were not visited in this round.
 
-(defun draw-place (me places left dice)
+(defun random-place (me places left dice)
   "Return a random one of PLACES, drawn from DICE."
   (declare (ignore me left))
   (roll-element places dice))
 
-(defun way-to (me place)
+(defun cost-of-way-to (me place)
   "Return the cost of the way from the robot of the reckoning ME to PLACE, about its length in
 metres; NIL if there is no way."
-  (let* ((chart (chart-now me))
+  (let* ((chart (current-chart me))
          (start (nearest-free-point chart (reckon me))))
     (and start (way-cost chart start place))))
 
@@ -41,7 +41,7 @@ if the robot can reach none."
       ;; Finding ways takes long, and none is shorter than the straight line: skip places too far.
       (dolist (place (sort (copy-list left) #'< :key #'straight) nearest)
         (let ((way (if (or (null least) (< (- (straight place) 2) least))
-                       (way-to me place))))
+                       (cost-of-way-to me place))))
           (if (and way (or (null least) (< way least)))
               (setf nearest place least way)))))))
 
@@ -145,7 +145,7 @@ for each of PLACES. Return the estimated metres driven. Fails with :NOT-FOUND."
 something that fits DESCRIPTION. Stop next to the thing. There are at most ROUNDS visits for each of
 PLACES. START is the robot's position, a list (x y heading); the default is the true position.
 Return the estimated metres driven. Fails with :NOT-FOUND."
-  (search-places description places #'draw-place 'go-and-look rounds start camera))
+  (search-places description places #'random-place 'go-and-look rounds start camera))
 
 (def-interp-proc search-nearest (description places
                                  &key (rounds 10) start (camera (widest-camera)))

@@ -19,7 +19,7 @@ current world."
   "True if the cell of MAP at (X,Y) and its neighbours have no wall and nothing that blocks robots."
   (loop for dx from -1 to 1
         always (loop for dy from -1 to 1
-                     always (and (free-p map (+ x dx) (+ y dy))
+                     always (and (free-of-walls-p map (+ x dx) (+ y dy))
                                  (notany #'thing-obsmove-p
                                          (things-at *world* (+ x dx) (+ y dy)))))))
 
@@ -53,7 +53,7 @@ PROBABILITY of 0 ends the pushes."
   "True if THING is on the floor, less than DISTANCE metres from POINT, a list (x y)."
   (multiple-value-bind (x y) (thing-position thing)
     (and (eq :floor (thing-location thing))
-         (< (apply #'length-of (mapcar #'- point (list x y))) distance))))
+         (< (apply #'vector-length (mapcar #'- point (list x y))) distance))))
 
 (defun beside-p (robot thing)
   "True if THING is on the floor and local to ROBOT, so that ROBOT could grasp it."

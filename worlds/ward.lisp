@@ -26,7 +26,7 @@ wall.")
   (destructuring-bind (x0 y0 x1 y1) box
     (and (<= x0 x x1) (<= y0 y y1))))
 
-(defun in-wall-of-p (x y room)
+(defun in-wall-of-room-p (x y room)
   "True if the pixel (X, Y) is in a wall of ROOM; walls are two pixels thick."
   (destructuring-bind (x0 y0 x1 y1) room
     (and (in-box-p x y room)
@@ -37,7 +37,7 @@ wall.")
   (flet ((at-p (box) (in-box-p x y box)))
     (or (some #'at-p *ward-furniture*)
         (and (notany #'at-p *ward-doors*)
-             (some (lambda (room) (in-wall-of-p x y room)) *ward-rooms*)))))
+             (some (lambda (room) (in-wall-of-room-p x y room)) *ward-rooms*)))))
 
 (defun ward-seen-p (x y)
   "True if the scanner has seen the pixel (X, Y), which is neither behind walls nor in the

@@ -45,7 +45,7 @@ rounded."
   "Return a function that takes a number of DIFFERENCE and returns its text, without a unit."
   (cond ((eq :rate (paired-kind difference))
          (lambda (value) (percent-text value (paired-trials difference))))
-        ((plusp (or (paired-rounding difference) 0)) #'number-in-words)
+        ((plusp (or (paired-rounding difference) 0)) #'exact-number-text)
         (t (let ((decimals (if (paired-first difference) (useful-decimals difference) 0)))
              (lambda (value) (mean-text value decimals))))))
 

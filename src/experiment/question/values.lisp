@@ -76,7 +76,7 @@ that it is the same in each run."
 (defun integer-text (integer)
   (format nil "~D" integer))
 
-(defun number-in-words (number)
+(defun exact-number-text (number)
   (etypecase number
     (integer (integer-text number))
     (ratio (float-text (float number 1d0)))
@@ -86,7 +86,7 @@ that it is the same in each run."
 (defun json-text (value)
   (typecase value
     (boolean (if value "true" "false"))
-    (number (number-in-words value))
+    (number (exact-number-text value))
     (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
     (string (quoted-text value))
     (t (quoted-text (unquoted-text value)))))
@@ -96,7 +96,7 @@ that it is the same in each run."
 
 (defun plain-value-text (value)
   (typecase value
-    (number (number-in-words value))
+    (number (exact-number-text value))
     (cons (plain-text (json-text value)))
     (string (plain-text value))
     (t (plain-text (unquoted-text value)))))
