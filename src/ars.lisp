@@ -8,8 +8,8 @@
 (fill-faces)
 
 (define-user-package :ars-user
-  (:documentation "The package to work in: Common Lisp, ARS and NISP; XLIB is our canvas. What is
-defined in it is the user's."))
+  (:documentation "The package to work in. It uses Common Lisp, ARS and NISP; XLIB is a nickname of
+the simulator's canvas package. Definitions in this package belong to the user."))
 
 ;;; What is defined from here on is the users'.
 (lock-packages)

@@ -1,6 +1,7 @@
 ;;;; base.lisp -- the package in which programs find what the lowest four layers have.
 
 (uiop:define-package :ars-magna.base
-  (:documentation "Names for programs that add kinds of objects, parameters or commands. The layers
-of the simulator use the four packages of which this one consists.")
+  (:documentation "Names for programs that add kinds of objects, parameters or commands. This
+package exports all names of the four lowest packages. The simulator's own layers use those four
+packages directly.")
   (:use-reexport :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying))

@@ -6,18 +6,18 @@
 ;;; object's window: a list of strings, (:value object) for what can be looked into, and (:newline).
 
 (defparameter *servers* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
-  "The packages in which the function may be.")
+  "The packages of SLIME and SLY that may contain the inspector's generic function.")
 
 (defun inspectors ()
-  "Return the symbols of the generic functions that the inspectors of the servers that are loaded
-ask. Two of the names may be those of one package."
+  "Return a list of the names of the generic functions that the inspectors of the loaded editor
+servers call."
   (remove-duplicates
    (loop for server in *servers*
          for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
          when (and symbol (fboundp symbol)) collect symbol)))
 
 (defun joined-p (inspector)
-  "True if the generic function INSPECTOR asks us already."
+  "True if the generic function INSPECTOR already has the simulator's method."
   (find-method (fdefinition inspector) '(:around) (list (find-class 'structure-object)) nil))
 
 (defun fact-line (label text)
@@ -28,7 +28,8 @@ ask. Two of the names may be those of one package."
         '(:newline)))
 
 (defun window-of (object)
-  "Return what an inspector is to show of OBJECT: what people want to know of it, then its slots."
+  "Return the contents of the inspector's window for OBJECT: its properties, as of FACTS, then its
+slots."
   (append (list (prin1-to-string object) '(:newline))
           (loop for (label text) in (facts object) append (fact-line label text))
           (loop for (title . slots) in (slots-to-show object)
@@ -36,15 +37,15 @@ ask. Two of the names may be those of one package."
                               (loop for slot in slots append (apply #'slot-line slot))))))
 
 (defun known-object-p (object)
-  "True if there is more to say of OBJECT than what its slots are called."
+  "True if the simulator can describe OBJECT: it is of a kind, or has FACTS."
   (and (or (kind-of object) (facts object)) t))
 
 (addition join-editors)
 (defun join-editors ()
-  "Let the inspectors of SLIME and SLY, as far as their servers SWANK and SLYNK are loaded, show
-robots, things, maps and the like as DESCRIBE does, with what their slots mean. That is done when
-the simulator is loaded; say it again where a server was loaded later. Return the packages of those
-that were found."
+  "Make the inspectors of SLIME and SLY show robots, things, maps and the like as DESCRIBE does,
+with descriptions of their slots. Loading the simulator calls this function. Call it again if a
+server, SWANK or SLYNK, was loaded later. Return a list of the names of the servers' packages that
+were found."
   (loop for inspector in (inspectors)
         collect (package-name (symbol-package inspector))
         unless (joined-p inspector)
@@ -57,7 +58,7 @@ that were found."
 ;;; that of a window, in which what the server binds for its own is unbound.
 
 (defun serves-editor-p (server)
-  "True if an editor is connected to the server in the package called SERVER."
+  "True if an editor is connected to SERVER, the name of a server's package."
   (let* ((package (find-package server))
          (own (and package (find-symbol "*EMACS-CONNECTION*" package)))
          (default (and package (find-symbol "DEFAULT-CONNECTION" package))))
@@ -65,23 +66,25 @@ that were found."
         (and default (fboundp default) (funcall default) t))))
 
 (defun editor-server ()
-  "Return the name of the package of the server that an editor is connected to, or NIL."
+  "If an editor is connected to a server, return the name of the server's package; else NIL."
   (find-if #'serves-editor-p '("SWANK" "SLYNK")))
 
 (defun call-as-in-buffer (server function)
-  "Call FUNCTION as from a buffer of the editor that is connected to SERVER."
+  "Call FUNCTION with the current package and readtable, as if from a buffer of the editor that is
+connected to SERVER."
   (progv (list (find-symbol "*BUFFER-PACKAGE*" server) (find-symbol "*BUFFER-READTABLE*" server))
       (list *package* *readtable*)
     (funcall function)))
 
 (addition inspect-in-editor)
 (defun inspect-in-editor (object)
-  "Show OBJECT in the inspector of the editor, SLIME or SLY, that is connected; any thread may say
-so. Return nothing. Signals MISUSE where no editor is."
+  "Show OBJECT in the inspector of the connected editor, SLIME or SLY. Any thread may call this
+function. Return nothing. Signals MISUSE if no editor is connected."
   (let ((server (editor-server)))
     (unless server
-      (reject-use "No editor is connected. In Emacs, M-x slime-connect or sly-connect connects it ~
-                   to a server that has been started here. INSPECT and DESCRIBE need none."))
+      (reject-use "No editor is connected. In Emacs, M-x slime-connect or sly-connect connects ~
+                   Emacs to a server that was started in this Lisp. INSPECT and DESCRIBE work ~
+                   without an editor."))
     (call-as-in-buffer server (lambda ()
                                 (funcall (find-symbol "INSPECT-IN-EMACS" server) object))))
   (values))
@@ -89,7 +92,8 @@ so. Return nothing. Signals MISUSE where no editor is."
 ;;; INSPECT, Lisp's own, shows slots as they print. Those of a map would fill many screens.
 
 (defun inspect-briefly (inspect object)
-  "Call INSPECT, Lisp's function, with OBJECT, and let it show long arrays and lists in part."
+  "Call INSPECT, the function of Common Lisp, with OBJECT, and make it abridge long arrays and
+lists."
   (let ((*print-length* (or *print-length* 10))
         (*print-level* (or *print-level* 2))
         (*print-lines* (or *print-lines* 2)))
@@ -104,13 +108,13 @@ so. Return nothing. Signals MISUSE where no editor is."
 ;;; An editor may go while its debugger asks how something of ours goes on.
 
 (defun own-connection-p (connection)
-  "True if what this thread does is for CONNECTION, of an editor."
+  "True if this thread works for CONNECTION, a connection of an editor."
   (loop for server in '("SWANK" "SLYNK")
         for own = (and (find-package server) (find-symbol "*EMACS-CONNECTION*" server))
         thereis (and own (boundp own) (eq connection (symbol-value own)))))
 
 (defun editor-gone-p ()
-  "True if *DEBUGGER-HOOK* is that of a server to which no editor is connected."
+  "True if *DEBUGGER-HOOK* belongs to an editor's server to which no editor is connected."
   (and *debugger-hook*
        (not (editor-server))
        (loop for server in '("SWANK" "SLYNK")
@@ -124,11 +128,11 @@ so. Return nothing. Signals MISUSE where no editor is."
 (setf *editor-gone-p* 'editor-gone-p)
 
 (defun note-editor-gone (connection)
-  "Let those threads go on otherwise that wait for an answer by CONNECTION, which is closed."
+  "Make threads that wait for an answer from CONNECTION, which is closed, continue in another way."
   (end-inquiries (lambda () (own-connection-p connection))))
 
 (defun watch-editors (&rest ignored)
-  "See to it that we are told when a connection of an editor is closed."
+  "Make the editors' servers call NOTE-EDITOR-GONE when a connection is closed."
   (declare (ignore ignored))
   (dolist (server '("SWANK" "SLYNK"))
     (let ((hooks (and (find-package server) (find-symbol "*CONNECTION-CLOSED-HOOK*" server))))

@@ -1,14 +1,16 @@
 ;;;; faces.lisp -- the packages that users see: ARS, NISP and ARS-USER.
 
 (defpackage :ars-magna.faces
-  (:documentation "Gathers the layers' symbols into the three packages that the manual knows.")
+  (:documentation "Defines the packages for users, ARS, NISP and ARS-USER, which export symbols of
+all layers.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:export #:cli #:define-user-package #:join-editors #:inspect-in-editor #:editor-server))
 
 (in-package :ars-magna.faces)
 
 (defun tell-addition (symbol)
-  "Let each documentation of SYMBOL say that it is an addition to the manual."
+  "Append the remark that SYMBOL is an addition to the manual to all documentation strings of
+SYMBOL."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (when text
@@ -18,27 +20,28 @@
 ;;; function can be set and is not marked as SETTABLE, a face has its own symbol for it.
 
 (defun only-read-p (symbol)
-  "True if users may call the function called SYMBOL, but not SETF it, as layers do."
+  "True if users may call the function named SYMBOL but not SETF it. (The simulator's layers may.)"
   (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
 
 (defun reject-setting (symbol)
-  "Return a function that signals MISUSE, for a SETF of SYMBOL."
+  "Return a function that signals MISUSE, because SYMBOL cannot be set. It becomes the SETF
+function."
   (lambda (value object)
     (declare (ignore value object))
-    (reject-use "~(~A~) cannot be set. What belongs to a run is changed by commands, and by ~
-                 functions such as PLACE-ROBOT, MOVE-THING and SET-ATTRIBUTE, which its journal ~
-                 notes."
+    (reject-use "~(~A~) cannot be set. To change a run, use commands, or functions such as ~
+                 PLACE-ROBOT, MOVE-THING and SET-ATTRIBUTE, which the journal records."
                 symbol)))
 
 (defun own-symbol-in (face name)
-  "Return the symbol called NAME whose home is the package FACE."
+  "Return the symbol named NAME whose home is the package FACE."
   (let ((present (find-symbol name face)))
     (unless (or (null present) (eq (find-package face) (symbol-package present)))
       (unintern present face))
     (intern name face)))
 
 (defun reader-in (symbol face)
-  "Return a symbol of FACE that names the function of SYMBOL, and cannot be set."
+  "Return a symbol, whose home is the package FACE, that names the same function as SYMBOL. Users
+cannot SETF it."
   (let ((reader (own-symbol-in face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)
@@ -46,34 +49,37 @@
     reader))
 
 (defun show (symbol face)
-  "Let the package FACE export SYMBOL, or one that names the same function and cannot be set."
+  "Make the package FACE export SYMBOL. If users must not SETF the function SYMBOL, export a symbol
+of FACE that names the same function."
   (when (addition-p symbol) (tell-addition symbol))
   (let ((shown (if (only-read-p symbol) (reader-in symbol face) symbol)))
     (shadowing-import (list shown) face)
     (export (list shown) face)))
 
 (defun ensure-face (face documentation)
-  "Return the package FACE, with DOCUMENTATION; it uses no other."
+  "Return the package FACE, with DOCUMENTATION. It uses no other package."
   (let ((package (or (find-package face) (make-package face :use '()))))
     (setf (documentation package t) documentation)
     package))
 
 (defparameter *faces*
-  '((:ars . "The simulator as the manual describes it. It shadows CL:EQUAL and CL:MAP by
-extensions.")
-    (:nisp . "The Nisp dialect, which shadows CL:LET, CL:LOOP and CL:IF by extensions, and the plan
-language."))
-  "The packages that export what is marked for them, and their documentation.")
+  '((:ars . "The simulator as the manual describes it. It replaces CL:EQUAL and CL:MAP by extended
+versions.")
+    (:nisp . "The Nisp dialect and the plan language. It replaces CL:LET, CL:LOOP and CL:IF by
+extended versions."))
+  "The packages for users, with their documentation. Each exports the symbols that are marked for
+it.")
 
 (defun fill-all-faces ()
-  "Let each face export what is marked for it."
+  "Make the packages ARS and NISP export the symbols that are marked for them."
   (loop for (face . documentation) in *faces*
         do (unlock-package (ensure-face face documentation))
            (dolist (symbol (public-symbols face))
              (show symbol face))))
 
 (defmacro fill-faces ()
-  "Define the faces ARS and NISP: they export what is marked by now (see PUBLIC). See reading 29."
+  "Define the packages ARS and NISP. They export the symbols that are marked when this form is
+evaluated (see PUBLIC). See reading 29."
   '(eval-when (:compile-toplevel :load-toplevel :execute)
      (fill-all-faces)))
 
@@ -83,11 +89,11 @@ language."))
 (defparameter *open-packages*
   '("ARS-MAGNA.SLOTS" "ARS-MAGNA.BUILD" "ARS-MAGNA.TESTS" "ARS-MAGNA.CLI" "ARS-MAGNA.CLIM"
     "ARS-MAGNA.FIVEAM" "ARS-MAGNA.MANUAL")
-  "Packages of the project that are not locked: nobody's names lead there.")
+  "Packages of the project that are not locked, because users' packages do not use them.")
 
 (defun our-packages ()
-  "Return the faces and the layers' packages, but not that which slot accessors are interned in,
-nor those of tools."
+  "Return a list of the packages to lock: ARS, NISP and the packages of the layers. The packages of
+slot accessors and of tools are not locked."
   (remove-if-not (lambda (package)
                    (let ((name (package-name package)))
                      (or (member name '("ARS" "NISP") :test #'string=)
@@ -96,12 +102,13 @@ nor those of tools."
                  (list-all-packages)))
 
 (defun lock-packages ()
-  "Keep users from redefining what is ours, and what they define from looking so."
+  "Lock the simulator's packages, so that users cannot redefine its functions. Later definitions are
+not marked as the simulator's."
   (setf *marking-p* nil)
   (mapc #'lock-package (our-packages)))
 
 (defun unlock-packages ()
-  "Let what is ours be redefined, as when the system is loaded again."
+  "Unlock the simulator's packages, so that the system can be loaded again."
   (setf *marking-p* t)
   (mapc #'unlock-package (our-packages)))
 

@@ -7,33 +7,35 @@
 ;;; the originals do where those make sense.
 
 (defun option-values (key options)
-  "Return all that OPTIONS, as of DEFPACKAGE, say under KEY, a list."
+  "Return a list of all arguments of the options KEY in OPTIONS, options of DEFPACKAGE."
   (loop for (name . values) in options when (eq name key) append values))
 
 (defun used-packages (definition names)
-  "Return the packages called NAMES, which DEFINITION is to use."
+  "Return a list of the packages named NAMES, which the package of DEFINITION uses. Signals
+MALFORMED-DEFINITION if one does not exist."
   (let ((missing (remove-if #'find-package names)))
     (when missing
       (reject-clause definition (cons :use names)
-                     (format nil "packages that there are; load what defines ~{~A~^, ~} first"
+                     (format nil "packages that exist; first load the system that defines ~{~A~^,
+~}"
                              missing))))
   (mapcar #'find-package names))
 
 (defun standard-named (name)
-  "Return the symbol of Common Lisp called NAME, or NIL."
+  "Return the symbol of Common Lisp named NAME, or NIL."
   (multiple-value-bind (symbol status) (find-symbol name :cl)
     (and (eq status :external) symbol)))
 
 (defun extensions-in (package)
-  "Return the names under which PACKAGE exports something else than Common Lisp does."
+  "Return a list of the names for which PACKAGE exports another symbol than Common Lisp does."
   (let ((names '()))
     (do-external-symbols (symbol package names)
       (unless (member (standard-named (symbol-name symbol)) (list nil symbol))
         (push (symbol-name symbol) names)))))
 
 (defun shadowing-options (packages settled)
-  "Return options of DEFPACKAGE by which the extensions in PACKAGES win, those in the last of them
-if there are several of a name; not those under the names SETTLED."
+  "Return options of DEFPACKAGE that import the extensions in PACKAGES in place of Common Lisp's
+symbols. If several packages extend a name, the last one is used. The names SETTLED are left out."
   (loop for package in (reverse packages)
         for names = (set-difference (extensions-in package) settled :test #'string=)
         when names
@@ -41,13 +43,14 @@ if there are several of a name; not those under the names SETTLED."
         do (setf settled (append names settled))))
 
 (defun settled-names (options)
-  "Return the names for which OPTIONS themselves say which symbol is meant."
+  "Return a list of the names for which OPTIONS, options of DEFPACKAGE, choose a symbol."
   (append (option-values :shadow options)
           (loop for (key nil . names) in options
                 when (eq key :shadowing-import-from) append names)))
 
 (defun clashes (packages settled)
-  "Return the names that mean different symbols in some of PACKAGES, but for the names SETTLED."
+  "Return a list of the names under which PACKAGES export different symbols, without the names
+SETTLED."
   (let ((symbols (make-hash-table :test #'equal)))
     (dolist (package packages)
       (do-external-symbols (symbol package)
@@ -58,21 +61,23 @@ if there are several of a name; not those under the names SETTLED."
           #'string<)))
 
 (defun package-exporting (name packages)
-  "Return the first of PACKAGES that exports a symbol called NAME."
+  "Return the first of PACKAGES that exports a symbol named NAME."
   (find-if (lambda (package) (eq :external (nth-value 1 (find-symbol name package)))) packages))
 
 (defun check-clashes (definition packages settled)
-  "Signal MALFORMED-DEFINITION if names outside of SETTLED mean different symbols in PACKAGES."
+  "Signal MALFORMED-DEFINITION if PACKAGES export different symbols under a name that is not in
+SETTLED."
   (let ((names (clashes packages settled)))
     (when names
       (let ((package (package-exporting (first names) packages)))
         (reject-clause definition (cons :use (mapcar #'package-name packages))
-                       (format nil "an option that says whose ~{~A~^, ~} you mean, such as ~
+                       (format nil "an option that chooses the package of ~{~A~^, ~}, such as ~
                                     (:shadowing-import-from :~(~A #:~A~))"
                                names (package-name package) (first names)))))))
 
 (defun clash-options (definition options)
-  "Return options of DEFPACKAGE that settle the clashes of what OPTIONS use with Common Lisp."
+  "Return options of DEFPACKAGE that resolve the conflicts between Common Lisp and the packages that
+OPTIONS use."
   (let* ((packages (used-packages definition (option-values :use options)))
          (settled (settled-names options))
          (added (when (member (find-package :cl) packages)
@@ -97,17 +102,19 @@ if there are several of a name; not those under the names SETTLED."
     (reject-clause "define-user-package" name "a name, such as :my-house, for the package")))
 
 (defun package-form (name options environment)
-  "Return the form, no macro, that defines the package NAME with OPTIONS of DEFINE-USER-PACKAGE."
+  "Return the macroexpanded form that defines the package NAME with OPTIONS, options of
+DEFINE-USER-PACKAGE."
   (macroexpand-1 `(defpackage ,name
                     ,@(user-package-options (title "define-user-package" name) options))
                  environment))
 
 (addition define-user-package)
 (define-user-macro define-user-package (&whole form name &rest options &environment environment)
-  "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. Unless they contain
-(:use ...), it uses CL, ARS and NISP; what its packages export under a name of Common Lisp's, such
-as ARS:EQUAL or NISP:LOOP, wins over that unless OPTIONS say otherwise. In it XLIB is our canvas:
-ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Return the package. See reading 213."
+  "Define the package NAME, ready to work in, as DEFPACKAGE does with OPTIONS. If OPTIONS do not
+contain (:use ...), the package uses CL, ARS and NISP. If a used package extends a function of
+Common Lisp, such as ARS:EQUAL or NISP:LOOP, the new package has the extension, unless OPTIONS
+choose otherwise. XLIB is a local nickname of ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Return
+the package. See reading 213."
   (check-package-name name)
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      ,(expand-definition form environment
@@ -117,7 +124,7 @@ ARS-MAGNA.CANVAS. Signals MALFORMED-DEFINITION. Return the package. See reading 
 ;;; At a REPL.
 
 (defun greet ()
-  "Say how to begin, if somebody has typed the form by which the system was loaded."
+  "If a user has typed the form that loaded the system, print how to begin."
   (when (and (null *load-truename*) (null *compile-file-truename*) (debugger-p))
     (format t "~&; ARS MAGNA is loaded. To begin, type (in-package :ars-user), then (in-readtable ~
                :nisp).~%; (ars:define-user-package :mine) makes a package of your own.~%")))

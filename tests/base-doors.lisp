@@ -23,7 +23,7 @@
                                       (base:native-path "/no/such/directory/x") "the picture")
     (base:misuse (condition)
       (is (string= (format nil "The picture cannot be written to /no/such/directory/x: there is ~
-                                no such directory. What was there is as before; give the name of ~
+                                no such directory. An existing file is unchanged; give the name of ~
                                 a file that you may write.")
                    (princ-to-string condition))))
     (:no-error (path) (is (null path)))))
@@ -33,7 +33,7 @@
   (dolist (name '("a*b" "no/such/x?" "a[b" "a?[b"))
     (handler-case (base:write-file-anew (lambda (out) (write-string "x" out)) name "the picture")
       (base:misuse (condition)
-        (is (search (format nil "written to ~A: its name stands for many files; write" name)
+        (is (search (format nil "written to ~A: its name has wildcards; in a Lisp string" name)
                     (princ-to-string condition))))
       (:no-error (path) (is (null path))))))
 
@@ -179,7 +179,7 @@
        (sb-posix:chmod file #o444)
        (handler-case (write-word file)
          (base:misuse (trouble)
-           (is (search "it is write-protected. What was there is as before; give the name"
+           (is (search "it is write-protected. An existing file is unchanged; give the name"
                        (princ-to-string trouble))))
          (:no-error (path) (is (null path))))
        (sb-posix:chmod file #o644)

@@ -119,7 +119,7 @@
 
 (test run-until.says-that-its-limit-has-a-keyword
   (is-true (has-words-p (warning-about '(lambda () (run:run-until #'identity 40)))
-                        "40 stands where a keyword should" ":limit"))
+                        "40 stands in the place of a keyword" ":limit"))
   (is (string= "" (warning-about '(lambda () (run:run-until #'identity :limit 40)))))
   (is (string= "" (warning-about '(lambda (keyword) (run:run-until #'identity keyword 40))))))
 
@@ -211,6 +211,6 @@
                    (warning-about `(command:defmanipulation hop-on (it - () :by hand) ()
                                      ,@body))))))
     (dolist (text (told '(lambda () (setf *level* 1))))
-      (is-true (has-words-p text "which is made and never called"
-                            "Write what is in it alone: (setf *level* 1)")))
+      (is-true (has-words-p text "which is never called"
+                            "Write only the body of the function: (setf *level* 1)")))
     (is (equal '("" "") (told '(mapc (lambda (each) each) '()) nil)))))

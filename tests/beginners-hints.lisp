@@ -25,10 +25,10 @@
   (setf (symbol-function (intern "PARK-CAR" :ars-user)) #'identity)
   (dolist (name '("PARKED-CAR" "ROBOT-STOPPED*" "*PLAN-LIMIT*"))
     (is-true (has-words-p (hint-to-variable (stranger name))
-                          "ARS-USER has it: say (in-package :ars-user) first.")
+                          "ARS-USER has it: type (in-package :ars-user) first.")
              "~A" name))
   (is-true (has-words-p (hint-to (lambda () (funcall (stranger "PARK-CAR"))))
-                        "ARS-USER has it: say (in-package :ars-user) first."))
+                        "ARS-USER has it: type (in-package :ars-user) first."))
   (is-true (has-words-p (hint-to-variable (stranger "DOT")) "There is ars-worlds:dot."))
   (is (not (search "ARS" (hint-to-variable (stranger "NOBODYS-NAME"))))))
 
@@ -99,11 +99,11 @@
 
 (test schedule.says-where-the-delay-stands
   (loop for (form . words)
-          in '(((time:schedule 10 (base:out "ten" t)) "say (schedule (nil :timer 10) ...)")
+          in '(((time:schedule 10 (base:out "ten" t)) "write (schedule (nil :timer 10) ...)")
                ((time:schedule (:timer 10) (base:out "ten" t)) "(schedule (nil :timer 10) ...)")
-               ((time:schedule (lambda () 1) 10) "the code is the body" "(nil :timer 10)")
-               ((time:schedule rover 1) "say (schedule (rover :timer 1) ...)")
-               ((time:schedule (rover 10) 1) "say (schedule (rover :timer 10) ...)")
+               ((time:schedule (lambda () 1) 10) "the code to run is the body" "(nil :timer 10)")
+               ((time:schedule rover 1) "write (schedule (rover :timer 1) ...)")
+               ((time:schedule (rover 10) 1) "write (schedule (rover :timer 10) ...)")
                ((time:schedule (nil :timr 10) 1) "did you mean :timer?"))
         do (is-true (apply #'complains-p form words))))
 

@@ -18,12 +18,12 @@
   (is-true (has-words-p (told-of-code '(member code '(:robot-blocked :no-cornr)))
                         ":no-cornr. Did you mean :no-corner?"))
   (is-true (has-words-p (told-of-code '(eq code 'robot-blocked))
-                        "robot-blocked is no error code: they are keywords. Write :robot-blocked."))
+                        "robot-blocked is no error code, because error codes are keywords."))
   (is-true (has-words-p (told-of-code '(case code ((robot-blocked) 1) (t 2)))
                         "Write :robot-blocked."))
   (is-true (has-words-p (told-of-code '(equal code "robot-blocked")) "Write :robot-blocked."))
   (is-true (has-words-p (told-of-code '(equal :done code))
-                        ":done: its error code is NIL if it succeeds"))
+                        ":done: the error code of a command that succeeds is NIL"))
   (dolist (test '((eq code :robot-blocked) (case code (:interrupt 1) (t 2)) (eq other :blocked)
                   (eq code :spilt-the-milk) (eq code 'blocked) '(eq code :blocked)
                   (member code codes) (eq code . :blocked)))
@@ -36,7 +36,7 @@
     (is-true (has-words-p (told '(eq driver:robot-movement-error* :robot-bloked))
                           "Did you mean :robot-blocked?"))
     (is-true (has-words-p (told '(eql (rpl:fluent-value (nisp:vref driver:camera-error* 0)) :ok))
-                          "its error code is NIL"))
+                          "the error code of a command that succeeds is NIL"))
     (is-true (has-words-p (told '(case driver:robot-movement-error* (:blocked 1) (:no-cornr 2)))
                           "Did you mean :robot-blocked?" "Did you mean :no-corner?"))
     (dolist (test '((eq driver:robot-movement-error* :robot-blocked) (eq robot :blocked)
@@ -286,7 +286,7 @@
 
 (test experiments.warn-of-quoted-runs
   (is-true (has-words-p (told-of-experiment t ''(driver:run-plan 'only-waits 5))
-                        ":run" "is data" "Write the form alone")))
+                        ":run" "is data" "Write only the form")))
 
 (test experiments.tell-of-plans-that-failed-on-the-way
   (flet ((told (run)
@@ -311,7 +311,7 @@
                           "No ticks have passed in the trial" "robot-turn"))))
 
 (test experiments.warn-of-quoted-functions
-  (is-true (has-words-p (told-of-experiment ''turn-it) "Write the form alone: (turn-it)"))
+  (is-true (has-words-p (told-of-experiment ''turn-it) "Write only the form: (turn-it)"))
   (is-true (has-words-p (warning-about '(experiment:defexperiment idle (:robots rover) (:run t)
                                          (:measure (x 'robot:robot-x))))
                         "measure x is quoted" "robot-x ...)")))

@@ -16,7 +16,7 @@
     (is-true (has-words-p (warning-about `(lambda () (time:schedule (:r :when ,form) (print 1))))
                           "schedule, :when:" "which always counts as true"))
     (is-true (has-words-p (warnings-of-procedure 'robot `(rpl:wait-until ,form))
-                          "wait-until:" "which always counts as true. Write the form alone")))
+                          "wait-until:" "which always counts as true. Write only the form")))
   (is-true (has-words-p (warning-about '(world:defkicker idly (thing)
                                          (:test (lambda () (list thing)))))
                         "defkicker idly, :test:" "(list thing)"))
@@ -94,7 +94,7 @@
 
 (test continuations.without-parameters-are-refused-or-warned-of
   (is-true (complains-p '(nisp:continuation (print "turned" t))
-                        "parameters before what is to be done"
+                        "parameters before the body"
                         "(continuation (err &rest results) (print \"turned\" t))"))
   (is-true (has-words-p (warning-about '(nisp:continuation (print err))) "nothing is done"
                         "(continuation (err &rest results) (print"))

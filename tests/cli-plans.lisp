@@ -164,7 +164,7 @@
              (cli::plan-lines (cli::parse-options '("--plan" "fetch 1" "--plan=b"))))))
 
 (rpl:def-interp-proc ars-user::mumble (fail-p)
-  "Fail, or return, with what cannot be printed."
+  "Fail, or return, with an object that cannot be printed."
   (if fail-p
       (rpl:fail :class :mumbled :words (make-speechless))
       (make-speechless)))
@@ -176,8 +176,9 @@
     (rpl:wait-time 1)))
 
 (test plan.what-cannot-be-printed-is-no-trouble
-  (is-true (has-words-p (complaint "plan mumble t") "mumble failed" ":MUMBLED :WORDS what cannot"))
-  (is (equal '("mumble succeeded: what cannot be printed") (type-batch "plan mumble nil"))))
+  (is-true (has-words-p (complaint "plan mumble t") "mumble failed" ":MUMBLED :WORDS an object"))
+  (is (equal '("mumble succeeded: an object that cannot be printed")
+             (type-batch "plan mumble nil"))))
 
 (test plan.handles-its-own-errors-where-nobody-answers-a-debugger
   (let ((base:*break-on-user-error* t))

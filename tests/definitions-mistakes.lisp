@@ -28,7 +28,7 @@
                ((world:defmap m (9 9) (wall '(1 1) (3 1) bricks 2)) . "Write it without quotes")
                ((world:defmap m (9 9) . 7) . "a form that is a proper list")
                ((world:defsubstance marble)
-                . "defsubstance marble: nothing, or NIL, is where there should be a number as the ")
+                . "defsubstance marble: there is nothing, or NIL, in place of a number as the ")
                ((command:defmanipulation m (x - () :by hand - HAND) (:delay 1 :delay 2))
                 . "each option only once")
                ((world:defmap) . "(defmap name &optional size")

@@ -90,8 +90,8 @@
             (stack (driver:run-plan (rpl:interp-lambda ()
                                       (rpl:wait-time 1)
                                       (labels ((dig (n) (1+ (dig n)))) (dig 1))))))))
-  (let ((stack (format nil "The stack has overflowed: functions call each other too deeply, or ~
-                            lists stand too deeply in lists. Mend what has no end.")))
+  (let ((stack (format nil "The stack has overflowed: calls or lists are nested too deeply. Look ~
+                            for a recursion that does not end.")))
     (is (equal (list "The value TYPE is not a number." "The value FAR is not a list." stack)
                (mapcar #'sixth (rows-of (experiment:run-experiment 'question :trials 1
                                                                              :stream nil)))))))
@@ -126,7 +126,7 @@
                 "simple-error, whose report fails"))
         do (is-true (apply #'has-words-p (error-text-of form) words) "~A" (error-text-of form))
            (is (not (search "{1" (error-text-of form))) "an address is another each time"))
-  (is (string= "this what cannot be printed (speechless: This cannot be printed) here"
+  (is (string= "this an object that cannot be printed (speechless: This cannot be printed) here"
                (base:message-text
                 (definitions::make-message :message (list "this " (make-speechless) " here")))))
   (is-true (tells-p "The gripper said... (half-said, whose report fails: no number 7)"

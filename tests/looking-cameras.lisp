@@ -87,7 +87,7 @@
       (is (near (- (* 2 pi) 7) angle))
       (is (near (* 2 pi) (robot:camera-angle (eye)))))
     (destructuring-bind (doubt . texts) (queued-texts)
-      (is-true (has-words-p doubt "7 radians are 1.1 whole turns"))
+      (is-true (has-words-p doubt "7 radians are 1.1 full turns"))
       (is (equal '("camera-turn: Camera 0 turned 7.00"
                    "camera-align-robot: Camera 0 turned -0.72")
                  texts)))))

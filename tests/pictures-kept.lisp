@@ -35,5 +35,5 @@
                           (base:native-name link))
         (handler-case (progn (display:save-picture robot link) (fail "It was saved."))
           (base:misuse (condition)
-            (is (mentions-p (princ-to-string condition) "a link to a file that there is not"))))
+            (is (mentions-p (princ-to-string condition) "a link to a file that does not exist"))))
         (sb-posix:unlink (base:native-name link))))))

@@ -37,14 +37,14 @@
                             (error "no ~A" (make-string 100000 :initial-element #\x))))))
 
 (test telling.what-cannot-be-printed
-  (is-true (tells-p "what cannot be printed"
+  (is-true (tells-p "an object that cannot be printed"
                     (rpl:interp-lambda () (rpl:fail :class :full :of (make-speechless)))))
   (is-true (tells-p "whose report fails"
                     (rpl:interp-lambda () (error "no ~A" (make-speechless)))))
   (multiple-value-bind (texts state)
       (told-of (rpl:interp-lambda () (rpl:wait-for (fluent* (make-speechless)))))
     (is (eq :deadlock state))
-    (is-true (search "waits for what cannot be printed" (third texts))))
+    (is-true (search "waits for an object that cannot be printed" (third texts))))
   (is (stringp (prin1-to-string (rpl:make-valve (make-speechless))))))
 
 (defun fluent* (name &optional value) (rpl:create-fluent name value))

@@ -215,8 +215,8 @@ shown at once."
 
 (test errors.of-live-runs-are-shown-as-they-happen
   (let ((lines (lines-of (echo :error '("slip") :cause t))))
-    (is (equal '("*ERROR* -> slip" "*ERROR* -> slip (10 times by now)"
-                 "*ERROR* -> slip (100 times by now)")
+    (is (equal '("*ERROR* -> slip" "*ERROR* -> slip (10 times so far)"
+                 "*ERROR* -> slip (100 times so far)")
                lines)))
   (is-true (has-words-p (echo :error '("blocked")) "blocked") "the robot fails, no code")
   (is (string= "" (echo :error '("blocked") :told-p t)) "a continuation was told")

@@ -218,7 +218,7 @@ output."
                 (robot:place-robot rover 5 9 7.5)
                 (run:run-ticks 1))))
     (is (= 3 (length (lines-of text))) "~A" text)
-    (is-true (has-words-p text "robot-turn: 90 radians are 14.3 whole turns" "(* 90 (/ pi 180))"
+    (is-true (has-words-p text "robot-turn: 90 radians are 14.3 full turns" "(* 90 (/ pi 180))"
                           "camera-turn: -30" "place-robot: 7.50 radians")))
   (is (string= "" (rover-writes ()
                     (command:robot-turn rover (* 4 pi))

@@ -203,7 +203,7 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
         (*print-length* length) (*print-level* level) (*print-base* 10) (*print-radix* nil))
     (cut (substitute #\Space #\Newline
                      (handler-case (object-text form)
-                       ((or error storage-condition) () "what cannot be printed")))
+                       ((or error storage-condition) () "an object that cannot be printed")))
          width)))
 
 (defmethod print-object ((node node) stream)

@@ -20,7 +20,8 @@
   (:documentation "The root of all errors that ARS MAGNA signals."))
 
 (defmethod print-object :around ((condition ars-magna-error) stream)
-  "Write no terminal control characters to STREAM; what a failing report has written is kept."
+  "Print CONDITION to STREAM without terminal control characters. If the report fails, print the
+part written so far."
   (if *print-escape*
       (call-next-method)
       (let ((out (make-string-output-stream)))
@@ -48,7 +49,7 @@
   (error 'wrong-argument :operator operator :name name :value value :expected expected))
 
 (defmacro check-argument (operator place test expected)
-  "Signal WRONG-ARGUMENT unless TEST holds; EXPECTED says in words what PLACE should be."
+  "Signal WRONG-ARGUMENT unless TEST is true. The text EXPECTED says what values PLACE can have."
   `(unless ,test (reject-argument ',operator ',place ,place ,expected)))
 
 (addition malformed-definition)
@@ -60,8 +61,8 @@
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase) (*print-circle* nil)
                    (clause (malformed-definition-clause condition)))
-               (format stream "~A~@[ (~A)~]: ~:[nothing, or NIL, is where there should be ~*~;~
-                               cannot use the clause~%  ~S;~%expected ~]~A"
+               (format stream "~A~@[ (~A)~]: ~:[there is nothing, or NIL, in place of ~*~;cannot ~
+                               use the clause~%  ~S;~%expected ~]~A"
                        (malformed-definition-definition condition)
                        (malformed-definition-place condition)
                        clause
@@ -70,13 +71,14 @@
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has an invalid clause."))
 
 (setf (documentation 'malformed-definition-definition 'function)
-      "Return the definition, in words or as read."
+      "Return the definition that has the invalid clause: a text such as \"defmap yard\", or a
+form."
       (documentation 'malformed-definition-place 'function)
-      "Return the file and line of the invalid clause, a string, or NIL if it was typed."
+      "Return the file and line of the invalid clause, as a string; NIL if the clause was typed."
       (documentation 'malformed-definition-clause 'function)
-      "Return the invalid clause, as read; NIL where something is missing."
+      "Return the invalid clause, a form; NIL if the clause is missing."
       (documentation 'malformed-definition-expected 'function)
-      "Return in words what should be there instead.")
+      "Return a text that describes a valid clause.")
 
 (addition definition-warning definition-warning-text)
 (define-condition definition-warning (warning)
@@ -90,8 +92,8 @@
 
 (define-condition definition-doubt (definition-warning style-warning)
   ()
-  (:documentation "A definition needs what is not yet defined, or has what it does not need, in a
-file that is compiled. Compiling must not fail for that."))
+  (:documentation "A definition in a compiled file may be mistaken: it refers to something
+undefined, or has an unused part. This is a style warning, so compiling does not fail."))
 
 (defun text-for-author (control arguments)
   (printing-words ()
@@ -102,8 +104,8 @@ file that is compiled. Compiling must not fail for that."))
   (warn 'definition-warning :text (text-for-author control arguments)))
 
 (defun doubt-definition (control &rest arguments)
-  "Do as WARN-OF-DEFINITION, for a definition that may be intended: in a compiled file the warning
-is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
+  "Warn, as WARN-OF-DEFINITION does, of a definition that may be intended. In a compiled file the
+warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts are not compiled.)"
   (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
         :text (text-for-author control arguments)))
 
@@ -112,7 +114,7 @@ is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
   (if (symbolp name) (string-downcase name) name))
 
 (defun names-to-show (names)
-  "Return NAMES as text, at most the first dozen of them."
+  "Return a list of texts: the first 12 of NAMES, and how many more there are."
   (let ((more (- (length names) 12)))
     (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
             (when (plusp more) (list (format nil "and ~D more" more))))))
@@ -139,11 +141,11 @@ is a STYLE-WARNING. Scripts, which do not show those, are not compiled."
                          (and nearest (plain-name nearest))
                          (names-to-show known)
                          remedy)))))
-  (:documentation "No definition or object of that kind has the given name."))
+  (:documentation "No definition or object of the requested kind has the given name."))
 
 (defun reject-name (kind name known &optional (meant known))
-  "Signal UNKNOWN-NAME: nothing of KIND (a string) among the names KNOWN is called NAME. Suggests
-one of the names MEANT."
+  "Signal UNKNOWN-NAME, because nothing of KIND (a string) has the name NAME. The error lists the
+names KNOWN and suggests the most similar of the names MEANT."
   (error 'unknown-name :kind kind :name name :known known
                        :nearest (and (typep name '(or symbol string))
                                      (nearest-name name meant))))
@@ -169,10 +171,10 @@ one of the names MEANT."
 ;;;; Refusing to exit a Lisp that is shared with other code
 
 (defvar *refusal* nil
-  "The text of the refusal, a string, while code may not end this Lisp; else NIL.")
+  "The text of the error that EXIT signals, while code must not exit this Lisp; else NIL.")
 
 (defun refuse-exit (function &rest arguments)
-  "Apply FUNCTION, which ends this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."
+  "Apply FUNCTION, which exits this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."
   (when *refusal*
     (reject-use "~A" *refusal*))
   (apply function arguments))
@@ -181,16 +183,16 @@ one of the names MEANT."
 
 (defun call-refusing-exits (function &optional (text "EXIT would end the whole program here. ~
                                                         Signal an error instead, or return."))
-  "Call FUNCTION; EXIT in it signals MISUSE, with TEXT."
+  "Call FUNCTION. Within FUNCTION, EXIT signals MISUSE with TEXT."
   (let ((*refusal* (format nil text))) (funcall function)))
 
 (defun refuse-exits (text)
-  "Let EXIT signal MISUSE with TEXT in all threads of this Lisp, unless overridden; with NIL, let it
-end this Lisp again."
+  "Make EXIT signal MISUSE with TEXT in all threads of this Lisp, except within CALL-ALLOWING-EXITS.
+If TEXT is NIL, let EXIT exit again."
   (setf (global-value '*refusal*) text))
 
 (defun call-allowing-exits (function)
-  "Call FUNCTION; EXIT in it ends this Lisp, even if exits are refused outside."
+  "Call FUNCTION. Within FUNCTION, EXIT exits this Lisp even if the caller refuses exits."
   (let ((*refusal* nil)) (funcall function)))
 
 ;;;; Limits of numbers
@@ -212,7 +214,7 @@ end this Lisp again."
 
 (declaim (inline within-p within-reason-p quantity-p))
 (defun within-p (value limit)
-  "True if VALUE is a number from -LIMIT to LIMIT, an integer."
+  "True if VALUE is a number from -LIMIT to LIMIT. LIMIT is an integer."
   (if (typep value 'double-float)
       (and (finite-double-p value)
            (<= (double (- limit)) value (double limit)))
@@ -227,7 +229,7 @@ end this Lisp again."
   (within-p value +largest-quantity+))
 
 (defun amount-p (value)
-  "True if VALUE is a quantity not below 0."
+  "True if VALUE is a number from 0 to 1e15."
   (and (quantity-p value) (not (minusp value))))
 
 (defun probability-p (value)
@@ -247,18 +249,19 @@ end this Lisp again."
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn of an unknown keyword, or a number in place of one, in OPTIONS of a call of OPERATOR."
+  "Warn if the OPTIONS in a call of OPERATOR have an unknown keyword, or a number in place of a
+keyword."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
                                    operator key known)
         when (realp key)
-          do (doubt-definition "~(~A~): ~S stands where a keyword should. Write one before it: ~
-                                ~{~(~S~)~^, ~}." operator key known)))
+          do (doubt-definition "~(~A~): ~S stands in the place of a keyword. Write a keyword ~
+                                before ~:*~S: ~{~(~S~)~^, ~}." operator key known)))
 
 (defun with-options (lambda-list)
-  "Return LAMBDA-LIST with any keywords allowed, the variable of all options, the known ones, and
-the number of arguments before them."
+  "Return four values: LAMBDA-LIST with any keywords allowed; the variable that holds all options;
+the known keywords; and the number of arguments before the options."
   (multiple-value-bind (required optional rest keys) (parse-ordinary-lambda-list lambda-list)
     (declare (ignore optional))
     (let ((options (or rest (gensym "OPTIONS"))) (place (position '&key lambda-list)))
@@ -270,8 +273,8 @@ the number of arguments before them."
 
 (defmacro define-with-keywords (name lambda-list documentation &body body)
   "Define the function NAME like DEFUN, with a LAMBDA-LIST that has keywords and no optional
-parameters. A call with an unknown keyword signals UNKNOWN-NAME, which lists the known ones; the
-compiler warns of such a call."
+parameters. A call with an unknown keyword signals UNKNOWN-NAME, which lists the known keywords. The
+compiler warns of a call with an unknown keyword."
   (multiple-value-bind (all options known count) (with-options lambda-list)
     (multiple-value-bind (forms declarations) (parse-body body)
       `(progn

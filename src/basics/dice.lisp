@@ -23,7 +23,7 @@
 
 (declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
 (define-record (dice (:constructor %make-dice (state)))
-  "A stream of random numbers. Two dice in the same state roll the same numbers for ever."
+  "A stream of random numbers. Two dice in the same state roll the same sequence of numbers."
   (state 0 word "the state of the dice, an integer of 64 bits" :writable :export))
 (declaim-final dice)
 
@@ -33,7 +33,7 @@
 
 (declaim (inline characters-word))
 (defun characters-word (string code)
-  "Return a 64-bit hash (FNV-1a) of STRING. The function CODE returns the number of a character."
+  "Return a 64-bit hash (FNV-1a) of STRING. The function CODE maps each character to a number."
   (let ((word #xCBF29CE484222325))
     (declare (type word word))
     (flet ((add (char)
@@ -47,7 +47,7 @@
       word)))
 
 (defun text-word (text)
-  "Return a 64-bit word that depends on the characters of TEXT, a string designator, only."
+  "Return a 64-bit hash of the characters of TEXT, a string designator."
   (declare #.*hot*)
   (characters-word (string text) #'char-code))
 
@@ -60,12 +60,13 @@
           (t (char-code (char-upcase char))))))
 
 (defun name-word (name)
-  "Return a 64-bit word that depends only on NAME, a string designator, in upper case."
+  "Return a 64-bit hash of NAME, a string designator, in upper case."
   (declare #.*hot*)
   (characters-word (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
-  "Return dice for PURPOSE (a string designator) that depend on it and on the integer SEED only."
+  "Return dice for PURPOSE, a string designator. Their state depends only on PURPOSE and on the
+integer SEED."
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
 
@@ -81,7 +82,7 @@
 
 (addition chance)
 (defun chance (probability dice)
-  "True with PROBABILITY. Certain outcomes (0 or less, 1 or more) roll nothing. Signals
+  "True with PROBABILITY. A PROBABILITY of 0 or less, or of 1 or more, rolls no dice. Signals
 WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
   (check-argument chance probability (quantity-p probability) "a probability, from 0 to 1")
   (let ((probability (double probability)))
@@ -91,8 +92,8 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
 
 (addition roll-between)
 (defun roll-between (low high dice)
-  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless both are numbers from
--1e15 to 1e15."
+  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless LOW and HIGH are
+numbers from -1e15 to 1e15."
   (check-argument roll-between low (quantity-p low) "a number from -1e15 to 1e15")
   (check-argument roll-between high (quantity-p high) "a number from -1e15 to 1e15")
   (let ((low (double low)) (high (double high)))
@@ -101,7 +102,7 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
 (addition roll-within)
 (defun roll-within (range dice)
   "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0. Signals WRONG-ARGUMENT unless
-that is a number from -1e15 to 1e15."
+RANGE is a number from -1e15 to 1e15."
   (check-argument roll-within range (quantity-p range) "a number from -1e15 to 1e15")
   (let ((range (double range)))
     (if (zerop range) 0d0 (roll-between (- range) range dice))))
@@ -109,20 +110,21 @@ that is a number from -1e15 to 1e15."
 (addition roll-index)
 (defun roll-index (count dice)
   "Return an integer uniform in [0, COUNT). Signals WRONG-ARGUMENT unless COUNT is an integer from 1
-to 2^53, where double-floats begin to leave some out."
+to 2^53, the range in which every integer is a double-float."
   (check-argument roll-index count (whole-p count 1 #.(expt 2 53)) "an integer from 1 to 2^53")
   (values (floor (* (roll dice) count))))
 
 (addition roll-element)
 (defun roll-element (sequence dice)
-  "Return an element of SEQUENCE, each as likely as another. Signals WRONG-ARGUMENT if it has none."
+  "Return a random element of SEQUENCE; all elements are equally likely. Signals WRONG-ARGUMENT if
+SEQUENCE is empty."
   (check-argument roll-element sequence (and (typep sequence 'sequence) (plusp (length sequence)))
                   "a sequence that is not empty")
   (elt sequence (roll-index (length sequence) dice)))
 
 (addition roll-gaussian)
 (defun roll-gaussian (mean deviation dice)
-  "Return a normally distributed double-float. A DEVIATION of 0 returns MEAN and rolls nothing.
+  "Return a normally distributed double-float. If DEVIATION is 0, return MEAN and roll no dice.
 Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15."
   (check-argument roll-gaussian mean (quantity-p mean) "a number from -1e15 to 1e15")
   (check-argument roll-gaussian deviation (quantity-p deviation) "a number from -1e15 to 1e15")
@@ -137,7 +139,7 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
 (define-record (digest (:constructor make-digest ()
                          "Return a digest to which nothing has been added."))
   "A hash of data, in order (FNV-1a, 64 bits)."
-  (value #xCBF29CE484222325 word "the digest's sum so far, 64 bits" :writable :export))
+  (value #xCBF29CE484222325 word "the hash of all data added so far, 64 bits" :writable :export))
 
 (declaim (inline digest-word))
 (defun digest-word (digest word)
@@ -146,11 +148,12 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
         (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
 (defgeneric digest-mention (object digest)
-  (:documentation "Add to DIGEST what identifies OBJECT, or else its contents. Return DIGEST."))
+  (:documentation "Add to DIGEST the data that identify OBJECT; if there are none, the contents of
+OBJECT. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their
-elements, all functions alike, other objects by what identifies them. Return DIGEST."
+elements. All functions count as equal. Other objects are added by DIGEST-IDENTITY. Return DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
     (null (digest-word digest (load-time-value (name-word nil))))
@@ -180,5 +183,6 @@ elements, all functions alike, other objects by what identifies them. Return DIG
   digest)
 
 (defun text-checksum (text &optional (before 0))
-  "Return a checksum of 32 bits of the characters of TEXT, and of BEFORE, another checksum."
+  "Return a 32-bit checksum of the characters of TEXT, combined with BEFORE, the checksum of the
+text before TEXT."
   (ldb (byte 32 0) (mix-word (logxor before (text-word text)))))

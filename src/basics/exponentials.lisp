@@ -8,22 +8,22 @@
 
 (define-constant +powers+ (doubles-table 128 #'power-row)
   :test #'equalp
-  :documentation "2^(K/128), and what its rounding left out, as a share of it.")
+  :documentation "For each K from 0 to 127: 2^(K/128), rounded, and its relative rounding error.")
 
 (define-parts (+step-1+ +step-2+) (round (fixed-logarithm 2) 128) 36)
 (define-constant +steps+ (/ 128 (nearest-double (fixed-logarithm 2)))
-  :documentation "How many steps of +POWERS+ a factor of e is.")
+  :documentation "The number of steps in the table +POWERS+ that multiply a value by e.")
 
 ;; Inline, as a call would return a box.
 (declaim (inline overflow))
 (defun overflow (number)
-  "Signal FLOATING-POINT-OVERFLOW, or return infinity where that is masked; NUMBER is above 700."
+  "Signal FLOATING-POINT-OVERFLOW, or return infinity if that trap is masked. NUMBER is above 700."
   (declare (type double-float number))
   (* number most-positive-double-float))
 
 (declaim (inline scaled))
 (defun scaled (number exponent)
-  "Return NUMBER 2^EXPONENT, which may be subnormal, or too large."
+  "Return NUMBER times 2^EXPONENT. The result may be subnormal, or may overflow."
   (declare (type double-float number) (type (integer -1100 1100) exponent))
   (cond ((< exponent -1021) (* number (power-of-two (+ exponent 200)) #.(power-of-two -200)))
         ((> exponent 1023) (* number (power-of-two (- exponent 200)) #.(power-of-two 200)))
@@ -50,13 +50,14 @@
 
 (define-constant +logarithms+ (doubles-table 128 #'logarithm-row)
   :test #'equalp
-  :documentation "C, which has 10 bits, and -log C in a part of 42 binary places and the rest.")
+  :documentation "For each row: C, a number with 10 bits; and -log C as a sum of two numbers, the
+first with 42 binary places.")
 
 (define-parts (+log-2-1+ +log-2-2+) (fixed-logarithm 2) 42)
 
 (declaim (inline logarithm-parts))
 (defun logarithm-parts (number)
-  "Return R and the part of it that its rounding left out, then two parts of log (2^K / C)."
+  "Return four values: R, the rounding error of R, and two numbers whose sum is log (2^K / C)."
   (declare (type (double-float (0d0)) number))
   (let* ((small-p (< number #.(power-of-two -1022)))
          (bits (ldb (byte 63 0) (double-to-bits (if small-p
@@ -84,7 +85,8 @@
 
 (declaim (inline %logarithm))
 (defun %logarithm (number)
-  "Return the logarithm of NUMBER as LOGARITHM does, inline: 10 ns less, and 500 bytes of code."
+  "Return the logarithm of NUMBER, computed inline. It takes 10 ns less than LOGARITHM, but 500
+bytes of code."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
     (with-parts (high low) ((+ base r))
@@ -108,7 +110,7 @@
 
 (declaim (inline long-logarithm))
 (defun long-logarithm (number)
-  "Return two parts of the logarithm of NUMBER, with some 68 bits."
+  "Return two numbers whose sum is the logarithm of NUMBER, to some 68 bits."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
     (let ((r-head (upper-half r)))
@@ -144,22 +146,23 @@
 
 (addition exponential)
 (defun exponential (number)
-  "Return e to the power NUMBER, with the same bits on every machine; CL:EXP differs. Signals
-WRONG-ARGUMENT, and FLOATING-POINT-OVERFLOW above 709.78."
+  "Return e to the power NUMBER, with the same bits on every machine; CL:EXP differs between
+machines. Signals WRONG-ARGUMENT unless NUMBER is a real number, and FLOATING-POINT-OVERFLOW if
+NUMBER is above 709.78."
   (check-number exponential number)
   (in-cells put-exponential (double number)))
 
 (addition logarithm)
 (defun logarithm (number)
-  "Return the natural logarithm of NUMBER, with the same bits on every machine; CL:LOG differs.
-Signals WRONG-ARGUMENT unless NUMBER is above 0."
+  "Return the natural logarithm of NUMBER, with the same bits on every machine; CL:LOG differs
+between machines. Signals WRONG-ARGUMENT unless NUMBER is above 0."
   (check-number logarithm number)
   (in-cells put-logarithm (double number)))
 
 (defun power (base exponent)
   "Return BASE to the power EXPONENT as a double-float, with the same bits on every machine; CL:EXPT
-differs. Signals FLOATING-POINT-OVERFLOW, and WRONG-ARGUMENT unless BASE is above 0, or is 0 and
-EXPONENT not below 0."
+differs between machines. Signals FLOATING-POINT-OVERFLOW. Signals WRONG-ARGUMENT if BASE is
+negative, or if BASE is 0 and EXPONENT is negative."
   (check-number power base)
   (check-number power exponent)
   (in-cells put-power (double base) (double exponent)))

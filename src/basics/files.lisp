@@ -18,8 +18,8 @@
       "Return the number of the first line that is not valid UTF-8.")
 
 (defun file-text (path)
-  "Return the text of the file PATH, without a byte order mark. Signals an error if it is no regular
-file, and ILLEGIBLE-FILE if it is not valid UTF-8."
+  "Return the text of the file PATH, without a byte order mark. Signals an error if PATH is not a
+regular file, and ILLEGIBLE-FILE if the text is not valid UTF-8."
   (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
   (let* ((text (decoded (read-file-into-string path :external-format :latin-1)))
          (illegible (position +illegible+ text)))
@@ -34,8 +34,8 @@ file, and ILLEGIBLE-FILE if it is not valid UTF-8."
 (defvar *kinds-of-files* '() "Lists (kind beginning advice).")
 
 (defun note-kind-of-file (kind beginning advice)
-  "Register that files of KIND, a keyword, begin with BEGINNING; ADVICE says in words what such a
-file is and what reads it."
+  "Register that files of KIND, a keyword, begin with the text BEGINNING. The text ADVICE says what
+a file of KIND is and which function reads it."
   (pushnew (list kind beginning advice) *kinds-of-files* :test #'equal))
 
 (dolist (beginning '("(in-package" "(def"))
@@ -51,21 +51,22 @@ file is and what reads it."
       ""))
 
 (defun known-beginning (path)
-  "Return the list (kind beginning advice) of the file PATH, or NIL."
+  "Return the list (kind beginning advice) that fits the file PATH, or NIL if none fits."
   (let ((text (beginning-of-file path)))
     (find-if (lambda (beginning) (starts-with-subseq beginning text))
              *kinds-of-files* :key #'second)))
 
 (defun file-advice (path kind)
-  "Return in words what is in the file PATH and what reads it, if it is of another kind than KIND, a
-keyword; else NIL."
+  "If the file PATH is of another known kind than KIND, a keyword, return a text that says what the
+file is and which function reads it; else return NIL."
   (let ((entry (known-beginning path)))
     (and entry
          (not (eq kind (first entry)))
          (third entry))))
 
 (defun foreign-file-p (file kind)
-  "True if FILE exists and is neither empty nor of KIND, whole or damaged, or if that is unknown."
+  "True if FILE exists, is not empty and does not begin like a file of KIND, or if FILE cannot be
+read."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
@@ -74,19 +75,20 @@ keyword; else NIL."
                         (eq kind (first (known-beginning path))))))))))
 
 (defun check-not-foreign (file kind what)
-  "Signal MISUSE if FILE exists and is neither empty nor of KIND, called WHAT in the message."
+  "Signal MISUSE if FILE exists, is not empty and is not of KIND. The text WHAT names KIND in the
+message."
   (when (foreign-file-p file kind)
-    (reject-use "~A is no ~A, and is left as it is. Give another name." (shown-name file) what)))
+    (reject-use "~A is no ~A, and remains unchanged. Give another name." (shown-name file) what)))
 
 ;;;; Replacing a file, or explaining why that is impossible
 
 (defun new-file-for (file)
-  "Return the absolute path to write for FILE, or the target of a link. Signals an error if that
-cannot become a regular file, or may not be written."
+  "Return the absolute path of FILE, for writing; if FILE is a link, that of its target. Signals an
+error if the path cannot be that of a regular file, or is write-protected."
   (when (many-files-p file) (error *many-files-text*))
   (check-name-legible file)
   (when (dangling-link-p file)
-    (error "it is a link to a file that there is not"))
+    (error "it is a link to a file that does not exist"))
   (let ((path (or (probe-file file)
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
     (when (and (probe-file path) (not (plain-file-p path)))
@@ -98,10 +100,10 @@ cannot become a regular file, or may not be written."
 
 (defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
   "Call FUNCTION with a stream to a new UTF-8 file, which replaces FILE atomically when FUNCTION has
-returned. If anything fails, FILE is unchanged. Return its truename. FILE keeps its permissions.
-Printer variables have their standard values. With the EXTERNAL-FORMAT :LATIN-1 each character is an
-octet. CHECK is called with the path of the complete new file; if it signals an error, FILE is
-unchanged."
+returned. If anything fails, FILE is unchanged. Return the truename of FILE. FILE keeps its
+permissions. Printer variables have their standard values. With the EXTERNAL-FORMAT :LATIN-1 each
+character is an octet. CHECK is called with the path of the complete new file; if CHECK signals an
+error, FILE is unchanged."
   (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
     (remove-abandoned-files directory)
     ;; The new file's name is random. The caller's random state must not change.
@@ -118,8 +120,8 @@ unchanged."
     (truename path)))
 
 (defun unwritten-reason (trouble)
-  "Return in words why a file could not be written, from the error TROUBLE: the system's own words,
-without Lisp's streams and names that users do not know."
+  "Return a text that says why a file could not be written, from the error TROUBLE. The text has the
+system's words, without the names of Lisp streams and temporary files."
   (let* ((text (one-line-text trouble))
          (end (search ": " text :from-end t))
          (words (and end (subseq text (+ 2 end)))))
@@ -130,17 +132,17 @@ without Lisp's streams and names that users do not know."
 (defun write-file-anew (function file what
                         &key (check #'identity) kind
                           (remedy "give the name of a file that you may write"))
-  "Do as CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE, with the REMEDY, if
-WHAT, such as \"the run\", cannot be written there, or if FILE exists and is not of KIND, see
-NOTE-KIND-OF-FILE. FILE is then unchanged."
+  "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE, with the text REMEDY, if
+WHAT, such as \"the run\", cannot be written to FILE, or if FILE is of another known kind than KIND
+(see NOTE-KIND-OF-FILE). FILE is then unchanged."
   (let ((advice (file-advice file kind)))
     (when advice
-      (reject-use "~@(~A~) is not written to ~A: ~A. It is left as it is; give another name."
+      (reject-use "~@(~A~) is not written to ~A: ~A. The file is unchanged; give another name."
                   what (shown-name file) advice)))
   (handler-case (call-replacing-file function file :check check)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)
-      (reject-use "~@(~A~) cannot be written to ~A: ~A. What was there is as before; ~A."
+      (reject-use "~@(~A~) cannot be written to ~A: ~A. An existing file is unchanged; ~A."
                   what (cut (princ-to-string (shown-name file)) 200)
                   (cut (unwritten-reason trouble) 200)
                   remedy))))

@@ -8,7 +8,7 @@
 ;;; same results on every machine. After the simulator is loaded, this is used only for angles
 ;;; beyond a million radians.
 
-(defvar *places* 256 "How many binary places fixed-point numbers have.")
+(defvar *places* 256 "The number of binary places of fixed-point numbers.")
 
 (defun fixed (number)
   (values (round (ash (numerator number) *places*) (denominator number))))
@@ -29,20 +29,23 @@
     (* (coerce digits 'double-float) (power-of-two (- shift *places*)))))
 
 (defun double-parts (fixed &rest bits)
-  "Return double-floats whose sum is FIXED: one for each number of significant BITS, and a rest."
+  "Return a list of double-floats whose sum is FIXED: for each of BITS, one with that many
+significant bits, and then the remainder."
   (if (null bits)
       (list (nearest-double fixed))
       (let ((head (nearest-double fixed (first bits))))
         (cons head (apply #'double-parts (- fixed (fixed (rational head))) (rest bits))))))
 
 (defun doubles-table (count row)
-  "Return a vector of the double-floats in the lists that ROW returns for 0, 1, 2 ... below COUNT."
+  "Call the function ROW with 0, 1, 2 ... below COUNT. Return a vector of the double-floats in the
+lists that ROW returns."
   (coerce (loop for k below count append (funcall row k)) '(simple-array double-float (*))))
 
 ;;; Power series. Each is summed until its terms are less than one unit.
 
 (defun sum-series (first next)
-  "Return the sum of FIRST and the terms that NEXT returns of the term before and K = 1, 2, 3 ..."
+  "Return the sum of a series that begins with the term FIRST. Each further term is the value of
+NEXT, called with the previous term and K = 1, 2, 3 ..."
   (loop for k from 1
         for term = first then (funcall next term (1- k))
         until (zerop term)
@@ -77,7 +80,7 @@
                     (- (round (fixed-times term square) (* n (1- n)))))))))
 
 (defun fixed-pi ()
-  "Return pi, by Machin's formula of 1706."
+  "Return pi as a fixed-point number, by Machin's formula of 1706."
   (* 4 (- (* 4 (fixed-arctangent 1/5)) (fixed-arctangent 1/239))))
 
 ;;; The rows of the tables, lists of double-floats.
@@ -88,15 +91,16 @@
           (double-parts (sum-alternating (/ k 128) 0) 53)))
 
 (defun power-row (k)
-  "Return 2^(K/128), and the rounding error of that as a share of it."
+  "Return a list of 2^(K/128), rounded, and its relative rounding error."
   (let ((parts (double-parts (fixed-exponential (round (* k (fixed-logarithm 2)) 128)) 53)))
     (list (first parts) (/ (second parts) (first parts)))))
 
 (defconstant +least-mantissa+ #x3FE6000000000000
-  "The bits of 0.6875. Mantissas are taken from there to 1.375, so that 2^K is 1 around 1.")
+  "The bits of 0.6875, the least mantissa. Mantissas go from 0.6875 to 1.375, so that the exponent K
+is 0 for numbers near 1.")
 
 (defun row-center (row)
-  "Return the middle of the mantissas for which ROW of +LOGARITHMS+ is."
+  "Return the middle of the range of mantissas that ROW of the table +LOGARITHMS+ covers."
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
     (/ (+ (bound row) (bound (1+ row))) 2)))
 
@@ -129,7 +133,8 @@
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
 (defmacro in-cells (function &rest numbers)
-  "Return the double-float that FUNCTION puts after NUMBERS, in the last cell of a vector."
+  "Call FUNCTION with a vector of NUMBERS and one more cell. Return the double-float that FUNCTION
+stores in that last cell."
   (with-gensyms (cells)
     (let ((count (length numbers)))
       `(let ((,cells (make-array ,(1+ count) :element-type 'double-float)))
@@ -139,7 +144,8 @@
          (aref ,cells ,count)))))
 
 (defmacro define-put (name (&rest arguments) &body body)
-  "Define NAME, which puts the value of BODY into a vector, after the cells that hold ARGUMENTS."
+  "Define the function NAME of a vector whose cells hold ARGUMENTS. It stores the value of BODY in
+the last cell."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))
@@ -149,30 +155,33 @@
          nil))))
 
 (define-constant +number-text+ "a real number, from -1.7e308 to 1.7e308" :test #'string=
-  :documentation "In words, the range of double-floats.")
+  :documentation "The range of double-floats, as a text for messages.")
 
 (defmacro check-number (operator place)
-  "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be made one. The
-functions that PUT results check double-floats: inline, that would box them."
+  "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be converted to a
+double-float. Functions of DEFINE-CELL-FUNCTION reject infinities themselves, because an inline
+check would box the double-float."
   `(check-argument ,operator ,place (or (typep ,place 'double-float) (finite-p ,place))
                    +number-text+))
 
 (defmacro polynomial (x &rest coefficients)
-  "Return the polynomial of X with COEFFICIENTS, numbers, from the constant one on (Horner)."
+  "Return the value at X of the polynomial with the numbers COEFFICIENTS, the constant term first
+(Horner's method)."
   (let ((first (coerce (first coefficients) 'double-float)))
     (if (rest coefficients)
         `(+ ,first (* ,x (polynomial ,x ,@(rest coefficients))))
         first)))
 
 (defmacro with-parts ((high low) ((operator a b)) &body body)
-  "Run BODY with HIGH bound to A OPERATOR B, and LOW to its rounding error. A is larger than B."
+  "Run BODY with HIGH bound to (OPERATOR A B), rounded, and LOW bound to the rounding error. A must
+be larger than B."
   (once-only (a b)
     `(let* ((,high (,operator ,a ,b)) (,low (,operator (- ,a ,high) ,b)))
        (declare (type double-float ,high ,low))
        ,@body)))
 
 (defmacro with-difference ((high low) (a b) &body body)
-  "Run BODY with HIGH bound to A - B, and LOW to its rounding error (Knuth)."
+  "Run BODY with HIGH bound to A - B, rounded, and LOW bound to the rounding error (Knuth)."
   (once-only (a b)
     (with-gensyms (back)
       `(let* ((,high (- ,a ,b)) (,back (- ,high ,a))
@@ -189,7 +198,7 @@ functions that PUT results check double-floats: inline, that would box them."
 
 (declaim (inline product-error))
 (defun product-error (a b product)
-  "Return A B - PRODUCT, exactly; PRODUCT is A B, rounded (Dekker)."
+  "Return the exact difference between A times B and PRODUCT, which is A times B, rounded (Dekker)."
   (declare (type double-float a b product))
   (let* ((a-head (upper-half a)) (a-tail (- a a-head))
          (b-head (upper-half b)) (b-tail (- b b-head)))
@@ -199,15 +208,17 @@ functions that PUT results check double-floats: inline, that would box them."
              (- (* a-head b-head) product))))))
 
 (defconstant +shift+ 6755399441055744d0
-  "To add and subtract 1.5 2^52 rounds double-floats up to 2^51 to whole numbers.")
+  "1.5 times 2^52. Adding and then subtracting this constant rounds a double-float up to 2^51 to a
+whole number.")
 
 (declaim (inline whole))
 (defun whole (number)
-  "Return NUMBER, a double-float up to 2^51, rounded to a whole one."
+  "Return NUMBER, a double-float up to 2^51, rounded to a whole number."
   (declare (type double-float number))
   (- (+ number +shift+) +shift+))
 
 (defmacro define-parts (names fixed &rest bits)
-  "Define constants NAMES: double-floats whose sum is FIXED, with so many BITS."
+  "Define the constants NAMES as double-floats whose sum is FIXED; BITS are their numbers of
+significant bits."
   `(progn ,@(loop for name in names for k from 0
                   collect `(define-constant ,name (nth ,k (double-parts ,fixed ,@bits))))))

@@ -10,8 +10,9 @@
 (define-condition broken-line (ars-magna-error)
   ((line :initarg :line :reader broken-line-text))
   (:report (lambda (condition stream)
-             (format stream "No row of a table: ~A" (cut (broken-line-text condition) 200))))
-  (:documentation "A line of a table cannot be parsed."))
+             (format stream "This line is no row of a table: ~A"
+                     (cut (broken-line-text condition) 200))))
+  (:documentation "A line of a CSV table cannot be parsed."))
 
 (setf (documentation 'broken-line-text 'function)
       "Return the line that cannot be parsed.")
@@ -21,13 +22,13 @@
 ;;; be taken for a marked one. Reading removes the mark.
 
 (defun formula-p (text)
-  "True if TEXT begins like a spreadsheet formula, perhaps after one or more '."
+  "True if TEXT begins like a spreadsheet formula, perhaps after one or more quotes (')."
   (declare (type simple-string text))
   (let ((first (find #\' text :test #'char/=)))
     (and first (find first "=+-@") t)))
 
 (defun csv-number-p (text)
-  "True if TEXT is a number as Lisp writes it, which no name looks like."
+  "True if TEXT is a number as Lisp prints it, so that TEXT cannot be a name."
   (declare (type simple-string text))
   (let ((place 0) (length (length text)))
     (declare (type fixnum place))
@@ -47,13 +48,13 @@
                   (= place length))))))
 
 (defun escaped (text)
-  "Return TEXT with a mark if a spreadsheet would execute it."
+  "Return TEXT, preceded by a quote (') if a spreadsheet would execute TEXT as a formula."
   (if (and (formula-p text) (not (csv-number-p text)))
       (concatenate 'string "'" text)
       text))
 
 (defun unescaped (text)
-  "Undo ESCAPED."
+  "Return TEXT without the quote that MARK-FORMULA has put before it."
   (declare (type simple-string text))
   (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
       (subseq text 1)
@@ -74,7 +75,7 @@
       text))
 
 (defun csv-line (texts)
-  "Return TEXTS, strings, as a CSV line, with its end."
+  "Return a CSV line, with its newline, of the strings TEXTS."
   (let* ((texts (mapcar (lambda (text) (quoted (escaped text))) texts))
          (line (make-string (loop for text in texts sum (1+ (length (the string text))))))
          (place 0))
@@ -98,7 +99,7 @@
         do (setf start (1+ comma))))
 
 (defun end-of-quoted (line start)
-  "Return the end of the quoted field that begins in LINE at START. Signals BROKEN-LINE."
+  "Return the end position of the quoted field that begins in LINE at START. Signals BROKEN-LINE."
   (loop for quote = (position #\" line :start (1+ start))
           then (position #\" line :start (+ 2 quote))
         unless quote do (error 'broken-line :line line)
@@ -106,7 +107,7 @@
           return (1+ quote)))
 
 (defun undouble-quotes (text)
-  "Return TEXT with each doubled quote made single."
+  "Return TEXT with each pair of double quotes replaced by one double quote."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length text))
@@ -114,7 +115,7 @@
              (incf i (if (char= #\" (char text i)) 2 1)))))
 
 (defun next-field (line start)
-  "Return the field that begins in LINE at START, and its end. Signals BROKEN-LINE."
+  "Return the field that begins in LINE at START, and its end position. Signals BROKEN-LINE."
   (cond ((and (< start (length line)) (char= #\" (char line start)))
          (let ((end (end-of-quoted line start)))
            (values (undouble-quotes (subseq line (1+ start) (1- end))) end)))
@@ -132,7 +133,7 @@
         while (<= start (length line))))
 
 (defun csv-texts (line)
-  "Return the fields of LINE, of a table. Signals BROKEN-LINE."
+  "Return a list of the fields of LINE, a line of a CSV table. Signals BROKEN-LINE."
   ;; Most lines have no quotes, and are split faster this way.
   (let ((texts (if (find #\" (the simple-string line))
                    (fields-with-quotes line)
@@ -142,8 +143,8 @@
 ;;;; JSON, XML and HTML
 
 (defun write-json-string (text stream &key in-page)
-  "Write TEXT to STREAM as a JSON string, valid in JavaScript too. If IN-PAGE, nothing in it can end
-the script element of a page."
+  "Write TEXT to STREAM as a JSON string, valid in JavaScript too. If IN-PAGE is true, TEXT cannot
+end the script element of the page that contains it."
   (write-char #\" stream)
   (loop for char across text
         for code = (char-code char)

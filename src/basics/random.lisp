@@ -14,21 +14,24 @@
 ;;; or digested.
 
 (defparameter *lisps-dice* 'cl:*random-state*
-  "The name of the variable with the random state that CL:RANDOM uses.")
+  "The name of the variable that holds the random state of CL:RANDOM.")
 
 ;;; Seeding. To fill the words of a random state takes microseconds, and few programs roll. So only
 ;;; the first word, the seed itself, is set, with a mark after it. The rest is filled when the first
 ;;; roll makes SBCL renew the words. A copy of such words means the same.
 
 (defconstant +place-of-place+ 2
-  "The index, in the words of a random state, of the position of the next word to read.")
+  "The index of the word, in the words of a random state, that holds the position of the next word
+to read.")
 (defconstant +first-word+ (1+ +place-of-place+))
 (defconstant +all-read+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
-  :documentation "The words after the seed, in words that are still to be filled.")
+  :documentation "The mark: the words after the seed in a random state whose other words are not yet
+filled.")
 
 (defun mark-seeded (words seed)
-  "Mark WORDS, of a random state, to be filled from SEED when SBCL renews them."
+  "Store SEED and the mark in WORDS, the words of a random state. They are filled from SEED when
+SBCL renews them."
   (declare (type random-words words))
   (setf (aref words +place-of-place+) +all-read+
         (aref words +first-word+) seed)
@@ -58,17 +61,18 @@
              (when filled-p (fill-if-marked words))
              state)))
     (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
-  "True if seeding can wait for the first roll, as this SBCL renews words in a way that allows it.")
+  "True if a random state can be filled at its first roll, because of the way this SBCL renews its
+words.")
 
 (defun seed-state (state short)
-  "Seed the random state STATE with SHORT, 32 bits, and return it."
+  "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."
   (let ((words (words-of-state state)))
     (mark-seeded words short)
     (unless *seeding-waits-p* (fill-if-marked words))
     state))
 
 (defun reseed (state seed)
-  "Seed the random state STATE with SEED, an integer, as SEEDED-LISPS-DICE does; return it."
+  "Seed the random state STATE with SEED, an integer, as SEEDED-RANDOM-STATE does; return STATE."
   (seed-state state (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed)))))
 
 (defun seeded-lisps-dice (seed)
@@ -80,37 +84,37 @@
   (let ((*random-state* (make-random-state nil))) (funcall function)))
 
 (defmacro rolling ((state) &body body)
-  "Run BODY with the random state STATE for CL:RANDOM, the current one if STATE is NIL."
+  "Run BODY with the random state STATE for CL:RANDOM. If STATE is NIL, use the current state."
   `(let ((*random-state* (or ,state *random-state*))) ,@body))
 
 (defun unique-number ()
-  "Return a random number of 64 bits, which other processes are not likely to get."
+  "Return a random number of 64 bits that is unlikely to be the same in two processes."
   (random (expt 2 64) (make-random-state t)))
 
 ;;; The dice of a tick. They are seeded when the first users' code is called.
 
 (define-record (tick-dice (:constructor make-tick-dice ()
-                            "Return dice for one tick after the other, see BEGIN-TICK-DICE."))
-  "The random state of users' code that changes a world in the current tick: STATE, once seeded with
-the integers SEED and TICK."
+                            "Return dice to be prepared for each tick by BEGIN-TICK-DICE."))
+  "The random state of users' code that changes a world in the current tick. At its first use, STATE
+is seeded with the integers SEED and TICK."
   (state nil (or null random-state) :writable)
   (seed 0 integer :writable)
   (tick 0 fixnum :writable)
   (seeded-p nil boolean :writable))
 
 (defvar *tick-dice* nil
-  "The TICK-DICE for users' code that this thread calls, or NIL for *RANDOM-STATE*.")
+  "The TICK-DICE for users' code that this thread calls; or NIL, to use *RANDOM-STATE*.")
 
 (declaim (inline begin-tick-dice))
 (defun begin-tick-dice (dice seed tick)
-  "Prepare DICE for TICK of a world whose chance comes from the integer SEED."
+  "Prepare DICE for TICK of a world with the integer SEED."
   (declare (type tick-dice dice) (type fixnum tick))
   (setf (tick-dice-seed dice) seed
         (tick-dice-tick dice) tick
         (tick-dice-seeded-p dice) nil))
 
 (defun seed-tick-dice (dice)
-  "Seed DICE; reuse their random state if they have one."
+  "Seed DICE for the current tick, and reuse their random state if they have one."
   (let ((seed (logxor (ldb (byte 64 0) (tick-dice-seed dice))
                       (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
         (state (tick-dice-state dice)))
@@ -121,34 +125,35 @@ the integers SEED and TICK."
 
 (declaim (inline users-dice))
 (defun users-dice ()
-  "Return the random state for users' code that is called here."
+  "Return the random state for users' code that this thread calls now."
   (let ((dice *tick-dice*))
     (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
                 (tick-dice-state dice))
           (t *random-state*))))
 
 (defmacro with-users-dice (&body body)
-  "Run BODY, which calls users' code, with the random state for that."
+  "Run BODY, which calls users' code, with *RANDOM-STATE* bound to the random state for users'
+code."
   `(let ((*random-state* (users-dice))) ,@body))
 
 ;; The state itself is changed, because calls of users' code bind the variable again.
 (defun reseed-lisps-dice (seed &optional (state *random-state*))
-  "Seed STATE, which programs use by CL:RANDOM here, with the integer SEED. Code that changes a
-world uses other dice."
+  "Seed STATE, the random state that programs use by CL:RANDOM, with the integer SEED. Does nothing
+in code that changes a world, which uses *TICK-DICE*."
   (unless *tick-dice* (reseed state seed)))
 
 ;;; In files. SBCL does not check the words of a random state, so those from a file are checked.
 
 (defun lisps-dice-numbers (state)
-  "Return the contents of the random state STATE, a list of 32-bit integers: the seed, if it was not
-rolled since; or else the position in its words, and the words."
+  "Return the contents of the random state STATE, a list of 32-bit integers: only the seed, if STATE
+was not used since it was seeded; else the position of the next word, and all words."
   (let ((words (words-of-state state)))
     (if (marked-p words)
         (list (aref words +first-word+))
         (coerce (subseq words +place-of-place+) 'list))))
 
 (defun lisps-dice-numbers-p (datum)
-  "True if DATUM can be what LISPS-DICE-NUMBERS returns."
+  "True if RANDOM-STATE-NUMBERS could return DATUM."
   (and (proper-list-p datum)
        (every (lambda (number) (typep number '(unsigned-byte 32))) datum)
        (or (= 1 (length datum))
@@ -156,7 +161,7 @@ rolled since; or else the position in its words, and the words."
                 (<= (first datum) +all-read+)))))
 
 (defun lisps-dice-of-numbers (numbers)
-  "Return a random state for which LISPS-DICE-NUMBERS returns NUMBERS."
+  "Return a random state for which RANDOM-STATE-NUMBERS returns NUMBERS."
   (let ((state (make-random-state nil)))
     (if (rest numbers)
         (replace (words-of-state state) numbers :start1 +place-of-place+)
@@ -167,13 +172,14 @@ rolled since; or else the position in its words, and the words."
 ;;; or, after the last word, the words.
 
 (defstruct (rolled (:constructor make-rolled (place words)) (:copier nil))
-  "A snapshot of a random state: its WORDS, whose position is out of date, and the position PLACE."
+  "A snapshot of a random state: the position PLACE of its next word, and its WORDS, in which the
+position is outdated."
   (place 0 :type (unsigned-byte 32) :read-only t)
   (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
 
 (defun dice-rolled (before)
-  "Return a snapshot of the current random state, for ROLL-BACK: BEFORE, an earlier snapshot or NIL,
-if there was no roll since."
+  "Return a snapshot of the current random state for RESTORE-RANDOM-SNAPSHOT. If CL:RANDOM was not
+called since the snapshot BEFORE, return BEFORE."
   (let* ((now (words-of-state *random-state*))
          (place (aref now +place-of-place+))
          (same-words-p (and before (= (aref now +first-word+)
@@ -184,7 +190,7 @@ if there was no roll since."
           (t (make-rolled place (rolled-words before))))))
 
 (defun roll-back (rolled)
-  "Restore the current random state from ROLLED, of DICE-ROLLED."
+  "Restore the current random state from SNAPSHOT, a value of TAKE-RANDOM-SNAPSHOT."
   (let ((words (words-of-state *random-state*)))
     (replace words (rolled-words rolled))
     (setf (aref words +place-of-place+) (rolled-place rolled))))

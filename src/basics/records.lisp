@@ -11,7 +11,8 @@
 ;;; are internal to the layers.
 
 (defstruct (mark (:constructor make-mark (symbol faces addition-p)) (:copier nil))
-  "The mark of a public name: the FACES, keywords, that show it, and whether it is ours."
+  "The mark of a public name: the FACES (:ARS, :NISP) whose packages export SYMBOL, and whether
+SYMBOL is an addition to the manual."
   (symbol nil :type symbol :read-only t)
   (faces '() :type list :read-only t)
   (addition-p nil :type boolean :read-only t))
@@ -22,7 +23,7 @@
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
     "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.SEEING"
     "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES" "ARS-MAGNA.RPL-PROJECTING")
-  "The packages whose public names NISP shows by default; ARS shows all others.")
+  "The packages whose public names NISP exports by default. ARS exports all other public names.")
 
 (defun face-of (symbol)
   "Return the default face, :ARS or :NISP, of SYMBOL."
@@ -39,10 +40,11 @@
                       (append *marks* (list mark))))))
 
 (defvar *marking-p* t
-  "True while the simulator is being loaded. Later definitions are users', and not marked.")
+  "True while the simulator is being loaded. Later definitions belong to users and get no marks.")
 
 (defun mark-names (names addition-p)
-  "Mark and export NAMES, symbols or lists (symbol face...). What was an addition stays one."
+  "Mark and export NAMES, symbols or lists (symbol face...). A name marked as an addition remains an
+addition."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
@@ -51,28 +53,29 @@
           (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))))
 
 (defmacro public (&rest names)
-  "Mark NAMES, defined next, as users' names that the manual has. A name may be a list (name
-face...), with the faces, :ARS and :NISP, that show it."
+  "Mark NAMES, defined next, as names for users that the manual has. A name may be a list (name
+face...), with the packages, :ARS and :NISP, that export the name."
   `(mark-names ',names nil))
 
 (defmacro addition (&rest names)
-  "Mark NAMES, defined next, as users' names that the manual does not have. A name may be a list
+  "Mark NAMES, defined next, as names for users that the manual does not have. A name may be a list
 \(name face...), as for PUBLIC."
   `(mark-names ',names t))
 
 (defvar *settable* '() "The public symbols whose functions users may SETF.")
 
 (defmacro settable (&rest names)
-  "Let users SETF the functions NAMES, which are public. All others they can only read: the state of
-a run is changed by functions that the journal records."
+  "Let users SETF the functions NAMES, which are public. Users cannot SETF other functions, because
+the state of a run must be changed by functions that the journal records."
   `(setf *settable* (union *settable* ',names)))
 
 (defun settable-p (symbol)
-  "True if users may SETF the function called SYMBOL."
+  "True if users may SETF the function named SYMBOL."
   (and (member symbol *settable* :test #'eq) t))
 
 (defun public-symbols (face)
-  "Return a list of the symbols that are marked for FACE, :ARS or :NISP, in order of definition."
+  "Return a list of the symbols that the package FACE, :ARS or :NISP, exports, in order of
+definition."
   (loop for mark in *marks*
         when (member face (mark-faces mark))
           collect (mark-symbol mark)))
@@ -83,8 +86,8 @@ a run is changed by functions that the journal records."
     (and mark (mark-addition-p mark))))
 
 (defun addition-text (text)
-  "Return TEXT, the documentation of an addition to the manual, without the chapter that its form
-names and with a last line that says that it is an addition."
+  "Return TEXT, the documentation of an addition to the manual, with a last line that says that this
+is an addition. A reference to a chapter of the manual is removed."
   (let ((sentence "An addition to the manual."))
     (if (search sentence text)
         text
@@ -95,7 +98,8 @@ names and with a last line that says that it is an addition."
 (defvar *restarts* '() "Lists (name text): the restarts that are documented.")
 
 (defun document-restarts (&rest names-and-texts)
-  "Document restarts. NAMES-AND-TEXTS alternate; a text says what choosing the restart does."
+  "Document restarts. NAMES-AND-TEXTS has each name of a restart, followed by a text that says what
+the restart does."
   (loop for (name text) on names-and-texts by #'cddr
         do (setf *restarts* (append (remove name *restarts* :key #'first)
                                     (list (list name (one-line text)))))))
@@ -118,13 +122,15 @@ names and with a last line that says that it is an addition."
         do (setf (documentation function 'function) text)))
 
 (defun reader-text (slot text)
-  "Return the documentation of the reader of SLOT, a symbol, from TEXT."
+  "Return the documentation of the reader of SLOT, a symbol, made from TEXT, the description of the
+slot."
   (if (ends-with-subseq "-P" (symbol-name slot))
       (format nil "True if ~A." text)
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "Return an alist of documentation for PREDICATE and CONSTRUCTORS, (symbol [arguments] [text])."
+  "Return an alist of the documentation of PREDICATE and CONSTRUCTORS, lists (symbol [arguments]
+[text])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -146,7 +152,8 @@ of the slot's name, returns the reader's name."
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return what follows KEY in each of the DEFSTRUCT OPTIONS that begin with it, or (DEFAULT)."
+  "Return a list of the arguments of each DEFSTRUCT option in OPTIONS that begins with KEY; if there
+is none, a list of DEFAULT."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 
@@ -187,7 +194,7 @@ A slot is (name default type [\"what is in it\"] mark...). The reader's document
 what is in it\", or \"True if ...\" if the name ends in -P. The marks are
   :writable  if the slot can be set;
   :export    if other layers use the reader;
-  :addition  if users do (see ADDITION).
+  :addition  if users use the reader (see ADDITION).
 Return the name. Signals MALFORMED-DEFINITION."
   (destructuring-bind (name &rest options) (ensure-list name-and-options)
     (dolist (slot slots) (check-record-slot name slot))

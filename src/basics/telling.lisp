@@ -19,14 +19,14 @@
     (cons "a list with elements") (list "a list") (symbol "a symbol")
     (hash-table "a hash table") (array "an array") (sequence "a list, vector or string")
     ((or function symbol) "a function") (stream "a stream") (pathname "a path"))
-  "Lists (type words). Of the types that a wrong value does not have, the first one counts.")
+  "Lists (type words). A message names the first type in this list that the wrong value is not of.")
 
 (defparameter *arithmetic-texts*
   '((division-by-zero "A number is divided by 0.")
     (floating-point-overflow "A floating-point number is too large.")
     (floating-point-underflow "A floating-point number is too close to 0.")
     (floating-point-invalid-operation
-     "An operation on floating-point numbers has no result, as 0 divided by 0."))
+     "An operation on floating-point numbers has no result, such as 0 divided by 0."))
   "Lists (condition-type text).")
 
 ;;; Wrong types.
@@ -34,18 +34,19 @@
 (defparameter *compilers-words*
   '("Argument is neither a positive integer" "Invalid function name" "malformed property list"
     "is not a string designator")
-  "Parts of type errors' texts that only some versions of SBCL use.")
+  "Parts of the texts of type errors that only some versions of SBCL use.")
 
 ;; A type without elements, such as that of the indices of an empty vector, is part of any other.
 (defun common-type-words (datum type)
-  "Return words for the first of *COMMON-TYPES* that includes TYPE and not DATUM, or NIL."
+  "Return the description of the first of *COMMON-TYPES* that includes TYPE but not DATUM, or NIL."
   (unless (subtypep type nil)
     (loop for (common words) in *common-types*
           when (and (not (typep datum common)) (subtypep type common))
             return words)))
 
 (defun integer-range (type)
-  "Return the limits, or NIL, of a TYPE (integer LEAST GREATEST) or (mod N); and true if it is one."
+  "Return the least and the greatest integer of TYPE, (integer LEAST GREATEST) or (mod N), and true.
+A missing limit is NIL. For other types, return NIL three times."
   (flet ((bound (bound step)
            (cond ((integerp bound) bound)
                  ((and (consp bound) (integerp (first bound))) (+ (first bound) step)))))
@@ -56,7 +57,8 @@
           (t (values nil nil nil)))))
 
 (defun range-words (datum type)
-  "Return words for the range TYPE of integers that does not include DATUM, an integer; or NIL."
+  "Return a text that describes the range of integers TYPE, which does not include the integer
+DATUM; or NIL if TYPE is no such range."
   (multiple-value-bind (least greatest range-p) (integer-range type)
     (cond ((not (and range-p (integerp datum))) nil)
           ((and least greatest (< greatest least)) "in range: nothing is there")
@@ -65,7 +67,7 @@
           (least (format nil "~D or more" least)))))
 
 (defun compilers-text-p (condition)
-  "True unless CONDITION, a type error, has a text that a program or CHECK-TYPE gave it."
+  "True if the text of CONDITION, a type error, is SBCL's own: not from a program or CHECK-TYPE."
   (or (not (typep condition 'simple-condition))
       ;; The compiler's texts are no strings, except these in older versions.
       (let ((control (simple-condition-format-control condition)))
@@ -89,7 +91,7 @@
 ;;; All of Lisp's own errors.
 
 (defun without-reference (text)
-  "Return TEXT without the pages of the standard that SBCL refers to at its end."
+  "Return TEXT without the references to the Lisp standard that SBCL appends."
   (let ((end (search (format nil "~%See also:") text)))
     (if end (subseq text 0 end) text)))
 
@@ -100,19 +102,20 @@
           (funcall *report-addition* condition)))
 
 (defun our-own-p (symbol)
-  "True if SYMBOL is of a package of this system."
+  "True if the package of SYMBOL is one of the simulator's own packages."
   (let ((package (symbol-package symbol)))
     (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
 
 (defun conflict-text (condition)
-  "Return our text for the name conflict CONDITION if one of the symbols is ours; else NIL."
+  "Return the simulator's text for the name conflict CONDITION if the simulator owns one of the
+symbols; else NIL."
   (let* ((symbols (sb-ext:name-conflict-symbols condition))
          (ours (find-if #'our-own-p symbols)))
     (when ours
-      (format nil "~A would mean ~{~A:~A~^ and ~} here. Say before which is meant, as by ~
-                   (shadowing-import 'ars:~(~A~)) or in a defpackage ~
-                   (:shadowing-import-from :ars #:~(~:*~A~)); or write (ars:define-user-package ~
-                   :mine) for a package without such conflicts."
+      (format nil "~A would mean ~{~A:~A~^ and ~} here. Choose one of them first, by ~
+                   (shadowing-import 'ars:~(~A~)) or in a defpackage (:shadowing-import-from :ars ~
+                   #:~(~:*~A~)); or write (ars:define-user-package :mine) for a package without ~
+                   such conflicts."
               (symbol-name ours)
               ;; Their order depends on the version of SBCL.
               (loop for symbol in (cons ours (remove ours symbols))
@@ -122,7 +125,8 @@
 
 ;; Lisp's own text shows the stream.
 (defun refusal-text (condition)
-  "Return our text for a stream error CONDITION by which the system refuses access, or NIL."
+  "Return the simulator's text for CONDITION, a stream error, if the system has refused access; else
+NIL."
   (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
          (file (ignore-errors (pathname (stream-error-stream condition))))
          (input-p (starts-with-subseq "couldn't read from" text)))
@@ -132,7 +136,8 @@
               (string-downcase (string-right-trim "." (subseq text (+ 2 place))))))))
 
 (defun lisp-error-text (condition)
-  "Return our text for CONDITION if it is one of Common Lisp's own errors; NIL if there is none."
+  "Return the simulator's text for CONDITION, an error defined by Common Lisp or SBCL; NIL if there
+is none."
   (ignore-errors
    (when (lisps-own-p (type-of condition))
      (typecase condition
@@ -150,18 +155,19 @@
 ;;; A condition may report a circular list, or an object that cannot be printed.
 
 (defmacro printing-briefly (() &body body)
-  "Run BODY, which makes text for people. Deep, long and circular data are shown in part."
+  "Run BODY, which makes text for people, with printer variables that abridge deep, long and
+circular data."
   `(printing-words ()
      (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
        ,@body)))
 
 (defun format-briefly (destination control &rest arguments)
-  "Do as FORMAT. Deep, long and circular ARGUMENTS are shown in part."
+  "Call FORMAT with the same arguments, but abridge deep, long and circular ARGUMENTS."
   (printing-briefly () (apply #'format destination control arguments)))
 
 (defun report-briefly (condition)
-  "Return the report of CONDITION, or another object, as FORMAT-BRIEFLY would. If it is already
-being printed, it does not count as circular."
+  "Return the report of CONDITION, or the printed form of another object, abridged as by
+FORMAT-BRIEFLY. An object that is already being printed does not count as circular."
   (with-output-to-string (out)
     (printing-briefly () (let ((*print-escape* nil)) (print-object condition out)))))
 
@@ -169,30 +175,32 @@ being printed, it does not count as circular."
 
 (defun storage-text (condition)
   (if (stack-full-p condition)
-      (format nil "The stack has overflowed: functions call each other too deeply, or lists stand ~
-                   too deeply in lists. Mend what has no end.")
-      "There is not enough memory for that. Ask for less at a time."))
+      (format nil "The stack has overflowed: calls or lists are nested too deeply. Look for a ~
+                   recursion that does not end.")
+      "There is not enough memory. Use smaller or fewer objects at a time."))
 
 (defun reader-p (condition)
-  "True if CONDITION says that text, typed or of a program, cannot be read as Lisp."
+  "True if CONDITION says that typed text, or text of a program, cannot be read as Lisp."
   (or (typep condition 'reader-error)
       (and (typep condition 'end-of-file)
            (not (typep (stream-error-stream condition) 'file-stream)))))
 
 (defun cause-of-reading-trouble (condition)
-  "Return CONDITION, or the condition to which it only adds a position, as LOAD's do."
+  "Return the original cause of CONDITION. LOAD wraps conditions in others that add a position."
   (let ((cause (encapsulated-condition condition)))
     (if cause (cause-of-reading-trouble cause) condition)))
 
 (defun naming-remedy (text)
-  "Return a remedy if TEXT says that a name cannot be read, else NIL."
+  "Return a sentence with a remedy if the error text TEXT says that a name cannot be read; else
+NIL."
   (cond ((or (search "not found in the" text) (search "Package" text))
-         "Perhaps it is misspelt, or what defines it has not been loaded")
+         "Perhaps the name is misspelt, or the file that defines it is not loaded")
         ((search "is not external" text)
-         "With two colons it can be read, if you mean what is that package's own")))
+         "To use an internal symbol of that package, write two colons")))
 
 (defun encoding-trouble (condition)
-  "Return in words that a file has another encoding than expected, if CONDITION says so; else NIL."
+  "If CONDITION says that a file has another encoding than expected, return a text that says so;
+else NIL."
   (let ((encoding (undecodable-format condition)))
     (and encoding
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
@@ -205,7 +213,8 @@ being printed, it does not count as circular."
                  trouble))))
 
 (defun reading-trouble (condition)
-  "Return why a text cannot be read, from CONDITION, without the names of Lisp's streams."
+  "Return a text that says why Lisp text cannot be read, from CONDITION, without the names of
+streams."
   (let* ((cause (cause-of-reading-trouble condition))
          (text (cond ((encoding-trouble cause))
                      ((typep cause 'simple-condition)
@@ -223,8 +232,8 @@ being printed, it does not count as circular."
     nil))
 
 (defun own-text (condition)
-  "Return as much of the report of CONDITION as can be printed; of another object, how it prints, or
-an empty text."
+  "Return the report of CONDITION, as far as it can be printed. For another object, return its
+printed form, or an empty text if it cannot be printed."
   (handler-case (without-reference (report-briefly condition))
     ((or error storage-condition) ()
       ;; There may be nothing that can be printed.
@@ -242,7 +251,8 @@ an empty text."
         finally (return text)))
 
 (defun failing-report-text (condition trouble beginning)
-  "Return in words that the report of CONDITION wrote BEGINNING and then failed with TROUBLE."
+  "Return a text that says that the report of CONDITION wrote BEGINNING and then failed with the
+error TROUBLE."
   (let ((why (or (our-text trouble)
                  (ignore-errors (format-briefly nil "~A" trouble))
                  ;; Its text may contain CONDITION, which cannot be printed.
@@ -254,13 +264,15 @@ an empty text."
             (without-addresses (one-line (princ-to-string why))))))
 
 (defun write-report (condition stream)
-  "Write to STREAM what CONDITION reports, with words for the objects that cannot be printed."
+  "Write the report of CONDITION to STREAM, with a text in place of each object that cannot be
+printed."
   (printing-briefly ()
     (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil))
       (print-object condition stream))))
 
 (defun report-anyhow (condition)
-  "Return as much of the report of CONDITION as can be printed, with words on its failure."
+  "Return the part of the report of CONDITION that can be printed, and a text that says that the
+report fails."
   (let ((out (make-string-output-stream)))
     (handler-case (progn (write-report condition out)
                          (format nil "~A (~(~A~), whose report fails)"
@@ -270,7 +282,8 @@ an empty text."
         (failing-report-text condition trouble (get-output-stream-string out))))))
 
 (defun our-text (condition)
-  "Return our text for CONDITION, one of Lisp's own, the same on every version of SBCL; or NIL."
+  "Return the simulator's text for CONDITION, an error of Lisp's own; the text is the same in every
+version of SBCL. NIL if there is none."
   (cond ((typep condition 'storage-condition) (storage-text condition))
         ((and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
@@ -285,12 +298,12 @@ an empty text."
     (if (string= text "") (string-downcase (type-of condition)) (visible text))))
 
 (defun hundredths (number)
-  "Return NUMBER for printing with two decimals: 0 if that would print 0.00 or -0.00."
+  "Return NUMBER, or 0 if NUMBER printed with two decimals would be 0.00 or -0.00."
   (if (< (abs number) 0.005d0) 0 number))
 
 (defun coordinate-text (number)
-  "Return NUMBER, a coordinate in metres, as text, rounded to a tenth of a millimetre: 23.2 for a
-typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
+  "Return NUMBER, a coordinate in metres, as text, rounded to a tenth of a millimetre: a typed 23.2
+is 23.2, not 23.200000762939453. Numbers closer to 0 than half of that have an exponent."
   (let ((text (string-right-trim "0" (format nil "~,4F" number))))
     (cond ((< 0 (abs number) 5d-5)
            (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))
@@ -298,25 +311,25 @@ typed 23.2, not 23.200000762939453. Smaller numbers have an exponent."
           (t text))))
 
 (defun point-in-text (x y)
-  "Return the point at X, Y, in metres, as text."
+  "Return the point (X, Y), in metres, as text."
   (format nil "(~A ~A)" (coordinate-text x) (coordinate-text y)))
 
 (defun one-line-text (condition)
-  "Return the text of CONDITION as a part of a sentence."
+  "Return the text of CONDITION on one line, without a full stop, to be part of a sentence."
   (string-right-trim "." (cut (one-line (text-of-condition condition)) 400)))
 
 ;;; The output of editors.
 
 (defun followed (stream)
-  "Return STREAM, or the stream that it is a synonym for here."
+  "Return STREAM, or, if STREAM is a synonym stream, the stream that it refers to."
   (if (typep stream 'synonym-stream)
       (followed (symbol-value (synonym-stream-symbol stream)))
       stream))
 
 (defun editors-output ()
-  "Return the stream that this thread's standard output goes to if an editor, SLIME or SLY, has set
-it, or NIL. It stays open, and other threads may write to it. Their own standard output does not
-reach the editor's prompt."
+  "Return the stream of this thread's standard output if an editor, SLIME or SLY, has set that
+stream; else NIL. The stream stays open, and other threads may write to it. The standard output of
+other threads does not reach the editor's prompt."
   (let* ((stream (followed *standard-output*))
          (package (symbol-package (type-of stream))))
     (and package

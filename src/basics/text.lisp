@@ -21,25 +21,25 @@
                              do (write-char (if blank #\Space char) stream)))))
 
 (defun cut (text length)
-  "Return TEXT, or its beginning if it is longer than LENGTH."
+  "Return TEXT. If TEXT is longer than LENGTH, return its beginning, with three dots."
   (if (> (length text) length)
       (concatenate 'string (subseq text 0 (- length 3)) "...")
       text))
 
 (defun sentence (text)
-  "Return TEXT with a full stop, unless it ends in a question."
+  "Return TEXT with a full stop, unless TEXT ends with a question mark."
   (if (ends-with #\? text) text (format nil "~A." text)))
 
 ;;; Reports quote files and typed text, which may contain any character.
 
 (defun obeyed-p (char)
-  "True if CHAR controls a terminal or the direction of text, instead of being shown."
+  "True if CHAR is not shown, but controls a terminal or the direction of text."
   (let ((code (char-code char)))
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
 (defun visible (text)
-  "Return TEXT with ^ and a letter, or a question mark, for each control character, except newlines
-and tabs."
+  "Return TEXT with each control character, except newlines and tabs, replaced by ^ and a letter, or
+by a question mark."
   (if (some #'obeyed-p text)
       (with-output-to-string (stream)
         (loop for char across text
@@ -53,7 +53,7 @@ and tabs."
 ;;; Lines of limited length, broken between words.
 
 (defun break-place (text width)
-  "Return where the first line of TEXT, WIDTH characters at most, ends."
+  "Return the end position of the first line of TEXT, which has at most WIDTH characters."
   (flet ((last-place (character)
            (position character text :end (1+ width) :from-end t :start 1)))
     (cond ((<= (length text) width) (length text))
@@ -62,8 +62,8 @@ and tabs."
           (t width))))
 
 (defun wrapped-text (text width)
-  "Return TEXT, one line, as a list of at least one line of at most WIDTH characters. Lines break at
-no-break spaces, which become spaces, only if there is no other space."
+  "Return TEXT, a single line, wrapped: a list of lines of at most WIDTH characters. Lines break at
+no-break spaces only if they have no other space. No-break spaces become spaces."
   (loop with blanks = '(#\Space #\No-break_space)
         with rest = (string-trim blanks text)
         for end = (break-place rest width)
@@ -77,8 +77,8 @@ no-break spaces, which become spaces, only if there is no other space."
 ;;; tables, pictures and JSON, must not depend on them.
 
 (defun call-printing-plainly (function)
-  "Call FUNCTION with the printer's variables as a fresh Lisp has them, but without pretty printing.
-Return its values."
+  "Call FUNCTION with the default values of the printer's variables, but without pretty printing.
+Return the values of FUNCTION."
   (let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-pretty* nil)
         (*print-readably* nil) (*print-escape* t) (*print-circle* nil) (*print-length* nil)
         (*print-level* nil) (*print-lines* nil) (*print-right-margin* nil) (*print-array* t)
@@ -86,11 +86,12 @@ Return its values."
     (funcall function)))
 
 (defmacro printing-plainly (() &body body)
-  "Run BODY, which writes data, as CALL-PRINTING-PLAINLY runs a function."
+  "Run BODY, which writes data, with the printer's variables as in CALL-PRINTING-PLAINLY."
   (form-calling 'call-printing-plainly body))
 
 (defun print-named (object stream name &optional (whole name))
-  "Print OBJECT to STREAM: for PRINC as NAME, a symbol or string, else unreadably as WHOLE."
+  "Print OBJECT to STREAM: for PRINC, as NAME, a symbol or string; for other functions, as
+#<WHOLE>."
   (if (or *print-escape* *print-readably*)
       (print-unreadable-object (object stream) (princ whole stream))
       (princ name stream)))
@@ -98,8 +99,8 @@ Return its values."
 ;;; Texts for people need decimal numbers and complete lists, too.
 
 (defmacro printing-words (() &body body)
-  "Run BODY, which makes text for people, with the printer's variables that change numbers, names
-and lists as a fresh Lisp has them."
+  "Run BODY, which makes text for people, with the default values of the printer's variables for
+numbers, names and lists."
   `(let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-length* nil)
          (*print-level* nil) (*print-lines* nil) (*print-readably* nil) (*print-array* t))
      ,@body))
@@ -109,11 +110,12 @@ and lists as a fresh Lisp has them."
 ;;; A message quotes what is wrong. That may be circular, a thousand lists deep or megabytes long,
 ;;; and the message must still be readable.
 
-(defconstant +most-parts+ 150 "The most conses of a datum that a message shows.")
-(defconstant +most-characters+ 200 "The most characters of a text that a message shows.")
+(defconstant +most-parts+ 150 "The largest number of conses of a datum that a message shows.")
+(defconstant +most-characters+ 200 "The largest number of characters of a text that a message
+shows.")
 
 (defstruct (remark (:constructor make-remark (text)) (:copier nil))
-  "TEXT in place of an omitted part of a datum."
+  "The TEXT that replaces an omitted part of a datum."
   (text "" :type string :read-only t))
 
 (defmethod print-object ((remark remark) stream)
@@ -141,14 +143,14 @@ and lists as a fresh Lisp has them."
     (t atom)))
 
 (defun ratio-size (ratio)
-  "Return RATIO as a float, or in words if it is too large or too small for one."
+  "Return RATIO as a float, or as a text if RATIO is too large or too small for a float."
   (let ((bits (- (integer-length (numerator ratio)) (integer-length (denominator ratio)))))
     (cond ((< bits -1000) "0")
           ((< 1000 bits) (format nil "2^~D" bits))
           (t (double ratio)))))
 
 (defun abridged (datum)
-  "Return DATUM, or the beginning of a long or circular one, with dots for the rest."
+  "Return DATUM; if DATUM is long or circular, return its beginning, with dots for the rest."
   (let ((left +most-parts+))
     (labels ((visit (datum)
                (cond ((atom datum) (abridged-atom datum))
@@ -167,7 +169,8 @@ and lists as a fresh Lisp has them."
       (visit datum))))
 
 (defun without-packages (datum)
-  "Return DATUM, of ABRIDGED, with uninterned symbols of the same names."
+  "Return DATUM, a value of ABRIDGED, with its symbols replaced by uninterned symbols of the same
+names."
   (typecase datum
     (cons (cons (without-packages (car datum))
                 (and (cdr datum) (without-packages (cdr datum)))))
@@ -176,18 +179,19 @@ and lists as a fresh Lisp has them."
     (t datum)))
 
 (defun unqualified-text (datum)
-  "Return DATUM, abridged, as it is printed, without package prefixes."
+  "Return the printed form of DATUM, abridged, without package prefixes."
   (let ((*print-gensym* nil))
     (prin1-to-string (without-packages (abridged datum)))))
 
 (defun text-as-typed (datum)
-  "Return DATUM, such as a symbol, as typed in lower case, between bars if necessary."
+  "Return DATUM, such as a symbol, as a user would type it in lower case, with bars (|) if
+necessary."
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
-  "Return OBJECT as printed by PRIN1, or by PRINC unless ESCAPE is true, without package prefixes,
-in at most LENGTH characters. Deep, long and circular data are shown in part. If OBJECT cannot be
-printed, the text says so."
+  "Return OBJECT as printed by PRIN1, or by PRINC if ESCAPE is false, without package prefixes, in
+at most LENGTH characters. Deep, long and circular data are abridged. If OBJECT cannot be printed,
+the text says so."
   (handler-case
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
             (*print-length* (or *print-length* 100))
@@ -197,7 +201,7 @@ printed, the text says so."
                                   (without-packages (abridged object))
                                   object))
              length))
-    ((or error storage-condition) () "what cannot be printed")))
+    ((or error storage-condition) () "an object that cannot be printed")))
 
 ;;;; Names
 
@@ -209,7 +213,7 @@ printed, the text says so."
   (string-upcase (string name)))
 
 (defun called-alike-p (a b)
-  "True if the symbols or strings A and B have the same name. Most differ in length."
+  "True if the symbols or strings A and B have the same name, regardless of package and case."
   (declare #.*hot*)
   (let ((a (if (symbolp a) (symbol-name a) (string a)))
         (b (if (symbolp b) (symbol-name b) (string b))))
@@ -254,8 +258,8 @@ both (reading 38)."
        (char-equal (char a (- i 2)) (char b (- j 1)))))
 
 (defun nearest-name (name names)
-  "Return the one of NAMES most like NAME, or NIL if none is similar or NAME has more than 100
-characters."
+  "Return the name in NAMES that is most similar to NAME; NIL if none is similar, or if NAME has
+more than 100 characters."
   (let ((names (and (<= (length (string name)) 100) names))
         (best nil)
         (least (max 2 (floor (length (string name)) 2))))
@@ -265,7 +269,7 @@ characters."
           (setf best candidate least distance))))))
 
 (defparameter *letters-alike* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
-  "Letters that may sound alike.")
+  "Groups of letters that may sound alike.")
 
 (defun alike-p (letter other)
   "True if the characters LETTER and OTHER are equal or may sound alike."
@@ -276,17 +280,17 @@ characters."
             *letters-alike*)))
 
 (defun another-word-p (a b)
-  "True if the short names A and B, of one length, differ in a letter that does not sound alike:
-SISE may be a misspelling of SIZE, SIDE is not."
+  "True if A and B are short names of equal length that differ in a letter that does not sound
+alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
   (and (= (length a) (length b))
        (< (length a) 6)
        (= 1 (count nil (map 'list #'char-equal a b)))
        (notevery #'alike-p a b)))
 
 (defun resembles-p (a b)
-  "True if the name A may be a misspelling of the different name B: one letter apart, or two if they
-are long. In short names, and at their beginning, a different letter makes another word, unless the
-two sound alike."
+  "True if the name A may be a misspelling of the different name B. They differ by one letter, or by
+two if both are long. In short names and at the beginning of names, a different letter must sound
+alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
          (or (alike-p (char a 0) (char b 0))
@@ -297,14 +301,15 @@ two sound alike."
 ;;; Natural order of names: box 2 before box 10.
 
 (defun first-part (text start)
-  "Return the number or else the character in TEXT at START, and the position after it."
+  "Return the number that begins in TEXT at START, or else the character at START, and the position
+after the number or character."
   (let ((end (or (position-if-not #'digit-char-p text :start start) (length text))))
     (if (> end start)
         (values (parse-integer text :start start :end end) end)
         (values (char text start) (1+ start)))))
 
 (defun part-before-p (one other)
-  "True if ONE, a number or character, comes before OTHER: numbers come first."
+  "True if ONE, a number or character, sorts before OTHER. Numbers sort before characters."
   (cond ((and (numberp one) (numberp other)) (< one other))
         ((and (characterp one) (characterp other)) (char< one other))
         (t (numberp one))))

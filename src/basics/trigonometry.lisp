@@ -19,10 +19,12 @@
 
 (define-constant +sines+ (doubles-table 103 #'sine-row)
   :test #'equalp
-  :documentation "Sine and cosine of K/128, each in two parts.")
+  :documentation "For each K: the sine and the cosine of K/128, each as a sum of two
+double-floats.")
 
 (defmacro with-sine-row ((sine sine-low cosine cosine-low rest size) &body body)
-  "Run BODY with the row of +SINES+ nearest to SIZE, and what REST of SIZE is beyond it."
+  "Run BODY with the first variables bound to the row of the table +SINES+ nearest to SIZE, and REST
+bound to the difference between SIZE and the argument of that row."
   (with-gensyms (row)
     `(let* ((,row (truncate (the (double-float 0d0 102d0) (+ 0.5d0 (* 128d0 ,size)))))
             (,rest (- ,size (* ,row #.(power-of-two -7))))
@@ -75,14 +77,16 @@
 (define-parts (+right-1+ +right-2+ +right-3+) (ash (fixed-pi) -1) 33 33)
 (define-parts (+right-a+ +right-b+ +right-c+ +right-d+) (ash (fixed-pi) -1) 33 33 33)
 (define-constant +right-angles+ (nearest-double (round (ash 1 (* 2 *places*)) (ash (fixed-pi) -1)))
-  :documentation "How many right angles a radian is.")
+  :documentation "The number of right angles in a radian.")
 
-(defconstant +binary-places+ 1400 "How many bits of 2/pi are known; the largest float needs 1250.")
+(defconstant +binary-places+ 1400 "The number of known bits of 2/pi. The largest double-float needs
+1250.")
 (define-constant +bits-of-2/pi+
     (let ((*places* +binary-places+)) (round (ash 1 (* 2 *places*)) (ash (fixed-pi) -1))))
 
 (defun reduce-exactly (operator angle)
-  "Return ANGLE, 1 or more, as right angles and two parts of the rest. OPERATOR rejects infinities."
+  "Return three values: the number of right angles in ANGLE, which is at least 1, and two numbers
+whose sum is the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
     (let* ((places (- +binary-places+ exponent))
@@ -94,7 +98,8 @@
 
 (declaim (inline reduce-closely reduced))
 (defun reduce-closely (angle count)
-  "Return two parts of ANGLE less COUNT right angles, which nearly cancel."
+  "Return two numbers whose sum is ANGLE minus COUNT right angles. ANGLE is nearly equal to COUNT
+right angles."
   (declare (type double-float angle count))
   (with-difference (high low) ((- angle (* count +right-a+)) (* count +right-b+))
     (with-difference (higher lower) (high (* count +right-c+))
@@ -102,7 +107,8 @@
         (values high low)))))
 
 (defun reduced (operator angle)
-  "Return the right angles in ANGLE, modulo 4, and two parts of the rest. OPERATOR is for messages."
+  "Return three values: the number of right angles in ANGLE, correct modulo 4, and two numbers whose
+sum is the rest. Error messages name OPERATOR."
   (declare (type double-float angle))
   (let ((size (abs angle)))
     (cond ((<= size 0.785d0) (values 0 angle 0d0))
@@ -121,7 +127,7 @@
 
 (declaim (inline sine-of-quarters))
 (defun sine-of-quarters (quarters high low)
-  "Return the sine of so many right angles QUARTERS, an integer, and HIGH + LOW."
+  "Return the sine of an angle: QUARTERS right angles, an integer, plus HIGH + LOW radians."
   (declare (type (signed-byte 32) quarters) (type double-float high low))
   (let ((value (if (logtest 1 quarters) (cosine-within high low) (sine-within high low))))
     (if (logtest 2 quarters) (- value) value)))
@@ -140,20 +146,20 @@
 
 (define-constant +arctangents+ (doubles-table 241 (lambda (row) (arctangent-row (+ row 16))))
   :test #'equalp
-  :documentation "For K/256 from 1/16 to 1: the arctangent in two parts, and what its series there
-multiplies the powers 1 to 6 by.")
+  :documentation "For K/256 from 1/16 to 1: the arctangent as a sum of two double-floats, and the
+coefficients 1 to 6 of its Taylor series.")
 
 (define-parts (+pi-1+ +pi-2+) (fixed-pi) 53)
 
 (declaim (inline small-arctangent table-arctangent arctangent-of-ratio))
 (defun small-arctangent (x low)
-  "Return two parts of the arctangent of X + LOW, for X from 0 to 1/16."
+  "Return two numbers whose sum is the arctangent of X + LOW, for X from 0 to 1/16."
   (declare (type double-float x low))
   (let ((square (* x x)))
     (values x (+ low (* x square (polynomial square -1/3 1/5 -1/7 1/9 -1/11 1/13))))))
 
 (defun table-arctangent (x low)
-  "Return two parts of the arctangent of X + LOW, for X from 1/16 to 1."
+  "Return two numbers whose sum is the arctangent of X + LOW, for X from 1/16 to 1."
   (declare (type (double-float 0.0625d0 1d0) x) (type double-float low))
   (let* ((k (truncate (+ 0.5d0 (* 256d0 x)))) (row (* 8 (- k 16)))
          (rest (+ (- x (* k #.(power-of-two -8))) low)))
@@ -165,7 +171,7 @@ multiplies the powers 1 to 6 by.")
       (values (aref +arctangents+ row) (series 1 7)))))
 
 (defun arctangent-of-ratio (small large)
-  "Return two parts of the arctangent of SMALL / LARGE, which is from 0 to 1."
+  "Return two numbers whose sum is the arctangent of SMALL / LARGE, a quotient from 0 to 1."
   (declare (type (double-float 0d0) small large))
   (let ((x (/ small large)))
     (declare (type (double-float 0d0 1d0) x))
@@ -182,7 +188,7 @@ multiplies the powers 1 to 6 by.")
 
 (declaim (inline arctangent-above))
 (defun arctangent-above (y x)
-  "Return the angle of (X, Y), of which neither is 0, and Y is above it."
+  "Return the angle of the direction (X, Y), where X is not 0 and Y is above 0."
   (declare (type double-float y x))
   (let* ((size (abs x)) (steep-p (> y size)) (back-p (minusp x)))
     (multiple-value-bind (high low)
@@ -208,8 +214,8 @@ multiplies the powers 1 to 6 by.")
 
 (addition sine)
 (defun sine (angle)
-  "Return the sine of ANGLE, in radians: a double-float with the same bits on every machine, which
-those of CL:SIN are not. Signals WRONG-ARGUMENT."
+  "Return the sine of ANGLE, in radians: a double-float with the same bits on every machine. (CL:SIN
+differs between machines.) Signals WRONG-ARGUMENT unless ANGLE is a real number."
   (check-number sine angle)
   (in-cells put-sine (double angle)))
 
@@ -220,6 +226,6 @@ those of CL:SIN are not. Signals WRONG-ARGUMENT."
   (in-cells put-cosine (double angle)))
 
 (defun arctangent (y x)
-  "Return the angle of the direction (X, Y), real numbers, in radians from -pi to pi. The sign of a
-zero counts, as for CL:ATAN."
+  "Return the angle of the direction (X, Y), real numbers, in radians from -pi to pi. If X or Y is
+0, its sign matters, as for CL:ATAN."
   (in-cells put-arctangent (double y) (double x)))

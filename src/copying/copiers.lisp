@@ -9,23 +9,25 @@
   "An object that copies a run."
   (table (make-hash-table :test 'eq :size 500) hash-table "the copies by their originals" :writable)
   (work (make-array 512) simple-vector
-        "copies with references to replace, each followed by their slots' numbers" :writable)
+        "the copies whose references must still be replaced, each followed by the numbers of the
+slots to replace" :writable)
   (fill 0 fixnum :writable)
   (tables '() list "the hash tables to fill when everything else is copied" :writable)
   (holder nil t "the copy whose references are being replaced" :writable)
   (environment '() list
-               "a list (variable . value): what the run that is copied has bound" :writable :export)
-  (objects nil t "data by which a layer finds copies. Can be set" :writable :export)
-  (screen nil (or null function) "a function of an object to copy, or NIL: it returns a replacement
-for the copy, and true; or NIL and false" :writable)
-  (options '() list "a plist, see COPIER-OPTION" :writable))
+               "an alist (variable . value) of the variables that the copied run has bound"
+               :writable :export)
+  (objects nil t "data that a layer stores to find copies. Can be set" :writable :export)
+  (screen nil (or null function) "NIL, or a function of an object to copy: it returns a replacement
+for the copy and true, or NIL and false" :writable)
+  (options '() list "a plist of options; see COPIER-OPTION" :writable))
 
 (defun copier-option (copier key)
-  "Return the value of the option KEY that COPIER was made with, or NIL."
+  "Return the value of the option KEY of COPIER, or NIL."
   (getf (copier-options copier) key))
 
 (defun copier-variable (copier symbol)
-  "Return the value to which the run of COPIER has bound SYMBOL."
+  "Return the value to which the run that COPIER copies has bound SYMBOL."
   (cdr (assoc symbol (copier-environment copier) :test #'eq)))
 
 ;;; Recording copies.
@@ -37,11 +39,12 @@ for the copy, and true; or NIL and false" :writable)
 
 (declaim (inline note-finished))
 (defun note-finished (copy copier)
-  "Return COPY, an object made for the fork of COPIER that needs no further work."
+  "Record COPY, an object made for the fork by COPIER, as a complete copy. Return COPY."
   (note-copy copy copy copier))
 
 (defun queue-references (copy indices copier)
-  "Queue COPY in COPIER for REPLACE-REFERENCES with INDICES. Return COPY."
+  "Queue COPY in COPIER, so that REPLACE-REFERENCES will replace its slots with the numbers INDICES.
+Return COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))
@@ -54,10 +57,10 @@ for the copy, and true; or NIL and false" :writable)
 ;;; A copier is much larger than its copy of a small run, so copiers are reused.
 
 (defvar *idle-copiers* (list '())
-  "A list whose element is the list of idle copiers.")
+  "A list of one element, the list of the copiers that are not in use.")
 
-(defconstant +largest-idle+ 20000 "The number of objects that a copier may have copied and still be
-reused.")
+(defconstant +largest-idle+ 20000 "The largest number of objects that a copier may have copied if it
+is to be reused.")
 
 (defun take-copier ()
   (loop for copiers = (car *idle-copiers*)
@@ -78,8 +81,8 @@ reused.")
     (atomic-push copier (car *idle-copiers*))))
 
 (defmacro with-copier ((copier &key environment options screen) &body body)
-  "Run BODY with COPIER bound to a copier of a run that has bound the variables of ENVIRONMENT, with
-OPTIONS and SCREEN. Return the values of BODY."
+  "Run BODY with COPIER bound to a copier with OPTIONS and SCREEN. ENVIRONMENT is an alist of the
+variables that the copied run has bound. Return the values of BODY."
   `(let ((,copier (take-copier)))
      (setf (copier-environment ,copier) ,environment
            (copier-options ,copier) ,options
@@ -97,38 +100,41 @@ OPTIONS and SCREEN. Return the values of BODY."
   (:report (lambda (condition stream)
              (format stream "~A cannot be copied for a fork~@[; it was found in ~A~]. ~:[Share it, ~
                              leave it out, or define a method of COPY-PLAN-VALUE for it~;The ~
-                             method of COPY-PLAN-VALUE for it failed: ~:*~A. Mend that, share it, ~
-                             or leave it out~]."
+                             method of COPY-PLAN-VALUE for it failed: ~:*~A. Correct the method, ~
+                             share the object, or leave it out~]."
                      (safe-text (cannot-fork-value condition) :length 200)
                      (cannot-fork-place condition)
                      (and (cannot-fork-trouble condition)
                           (string-right-trim "." (cannot-fork-trouble condition))))))
   (:documentation "The run to be forked refers to something in the outside world: a stream, a
-thread, a lock. Restarts: SHARE-VALUE, both runs have the same object; LEAVE-OUT-VALUE, the fork has
-NIL instead; MAKE-NO-FORK."))
+thread, a lock. The restarts are SHARE-VALUE (both runs have the same object), LEAVE-OUT-VALUE (the
+fork has NIL in its place) and MAKE-NO-FORK."))
 
 (addition cannot-fork-value cannot-fork-place share-value leave-out-value make-no-fork)
 (document-restarts
  'share-value "Make the fork; both runs have the same object."
- 'leave-out-value "Make the fork; it has NIL instead of the object."
- 'make-no-fork "Make no fork. The function that was to make one returns NIL.")
+ 'leave-out-value "Make the fork, with NIL in place of the object."
+ 'make-no-fork "Make no fork. The function that was called to make the fork returns NIL.")
 (setf (documentation 'cannot-fork-value 'function)
       "Return the object that cannot be copied."
       (documentation 'cannot-fork-place 'function)
-      "Return where the object was found: a text, such as the name of a plan's variable.")
+      "Return a text that says where the object was found, such as the name of a plan's variable.")
 
 (defun place-in-words (value copier)
-  "Return in words where VALUE was found, by COPIER's option :PLACE-OF or the holding object."
+  "Return a text that says where VALUE was found: the result of COPIER's option :PLACE-OF, or else
+the object that refers to VALUE."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
 (defun decision-about (value copier)
-  "Return a cons of VALUE and its replacement in the fork, if COPIER was given one; else NIL."
+  "If the caller of COPIER has chosen a replacement for VALUE in the fork, return a cons of VALUE
+and the replacement; else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
 (defun decided-copy (value copier)
-  "Return the replacement of VALUE that COPIER was given. Signals CANNOT-FORK if there is none."
+  "Return the replacement for VALUE that the caller of COPIER has chosen. Signals CANNOT-FORK if
+there is none."
   (let ((decision (decision-about value copier)))
     (if decision
         (cdr decision)
@@ -136,12 +142,12 @@ NIL instead; MAKE-NO-FORK."))
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
-   "Return the counterpart in FORK, a fork being made, of VALUE, an object in variables of plans, in
-closures or elsewhere in a run. By default, lists, vectors, tables, structures and instances are
-copied with their contents; what two of them share is shared by the copies. Functions are shared,
-closures copied with what they close over. Define a method for a class of your own to change this:
-return VALUE itself to share it, or a replacement. (forked x fork) returns the counterpart of
-another object x.")
+   "Return the counterpart of VALUE, an object in variables of plans, in closures or elsewhere in a
+run, in FORK, a fork that is being made. By default, lists, vectors, tables, structures and
+instances are copied with their contents. If two of them share an object, their copies share the
+copy. Functions are shared; closures are copied with the variables that they close over. Define a
+method for a class of your own to change this: return VALUE itself to share it, or a replacement.
+(forked x fork) returns the counterpart of another object x.")
   (:method (value fork) (decided-copy value fork)))
 
 (addition copy-plan-value)
@@ -149,10 +155,10 @@ another object x.")
 ;;; Shared objects.
 
 (defvar *shared-types* '()
-  "The types of structures that are shared.")
+  "The types of structures that a run shares with its forks.")
 
 (defmacro define-shared (&rest types)
-  "Let objects of TYPES be shared by a run and its forks."
+  "Make a run share objects of TYPES with its forks."
   `(progn ,@(loop for type in types
                   collect `(pushnew ',type *shared-types*)
                   collect `(defmethod copy-plan-value ((value ,type) fork)
@@ -163,11 +169,12 @@ another object x.")
   "Lists (type slot...): slots of structures without a kind, whose contents are never modified.")
 
 (defmacro define-shared-slots (type &rest slots)
-  "Let a run and its forks share the contents of SLOTS of structures of TYPE."
+  "Make a run share the contents of SLOTS, slots of structures of TYPE, with its forks."
   `(pushnew '(,type ,@slots) *shared-slots* :test #'equal))
 
 (defun shared-slot-p (name object kind)
-  "True if forks share what is in the slot NAME of OBJECT, of KIND or of none."
+  "True if a run shares the contents of the slot NAME of OBJECT with its forks. KIND is the kind of
+OBJECT, or NIL."
   (let ((slot (and kind (find name (kind-slots kind) :key #'kind-slot-name :test #'eq))))
     (if slot
         (kind-slot-shared-p slot)
@@ -178,15 +185,15 @@ another object x.")
 ;;; Copy policies.
 
 (defstruct (copy-policy (:constructor make-copy-policy (way indices fresh)) (:copier nil))
-  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD; or :ASK, for those of the
-system. INDICES are the numbers of the slots whose contents are copied too. FRESH is a list of
-functions (writer . initial) for slots that are as in a new object."
+  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, by a user's method; or :ASK,
+for structures of SBCL. INDICES are the numbers of the slots whose contents are copied too. FRESH is
+a list of pairs of functions (writer . initial), for slots that get their initial values."
   (way :copy :type (member :share :copy :method :ask) :read-only t)
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))
 
 (defun default-method-p (object class)
-  "True if OBJECT is copied by our method of COPY-PLAN-VALUE for CLASS."
+  "True if the simulator's own method of COPY-PLAN-VALUE for CLASS copies OBJECT."
   (eq (first (compute-applicable-methods #'copy-plan-value (list object nil)))
       (find-method #'copy-plan-value '() (list (find-class class) (find-class t)))))
 
@@ -211,17 +218,17 @@ functions (writer . initial) for slots that are as in a new object."
                           (loop for slot in links
                                 collect (cons (kind-slot-writer slot) (kind-slot-initial slot)))))))
 
-(defconstant +policies-cached+ 4096 "The number of policies remembered, a power of 2.")
+(defconstant +policies-cached+ 4096 "The size of the cache of copy policies, a power of 2.")
 
 (defun empty-policy-cache ()
   (make-array +policies-cached+ :initial-element nil))
 
 (defvar *copy-policies* (cons '() (empty-policy-cache))
-  "The methods of COPY-PLAN-VALUE, and a cache valid for them: a vector of (layout . copy-policy),
-by the number of the layout.")
+  "A cons of the methods of COPY-PLAN-VALUE and the cache of copy policies that is valid for them: a
+vector of pairs (layout . copy-policy), indexed by the number of the layout.")
 
 (defun refresh-copy-policies ()
-  "Clear the cache of policies if methods of COPY-PLAN-VALUE were defined since."
+  "Clear the cache of copy policies if methods of COPY-PLAN-VALUE were defined after it was made."
   (let ((methods (methods-of-generic #'copy-plan-value)))
     (unless (eq methods (car *copy-policies*))
       (setf *copy-policies* (cons methods (empty-policy-cache))))))

@@ -16,8 +16,8 @@
 (declaim (inline forked))
 (addition forked)
 (defun forked (value copier)
-  "Return the copy of VALUE in a fork, for methods of COPY-PLAN-VALUE, which receive COPIER. It may
-be incomplete until they have returned."
+  "Return the copy of VALUE in a fork. Methods of COPY-PLAN-VALUE call this function with their
+second argument, COPIER. The copy may be incomplete until all methods have returned."
   (typecase value
     ((or number symbol character) value)
     (t (forked-object value copier))))
@@ -30,7 +30,8 @@ be incomplete until they have returned."
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return the replacement of VALUE by COPIER's screen, or else a copy."
+  "Return the replacement for VALUE that the screen of COPIER returns; if there is none, a copy of
+VALUE."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (note-copy value instead copier)
@@ -40,7 +41,7 @@ be incomplete until they have returned."
   (copy-slots value fork))
 
 (defun copy-slots (object copier &optional (copy-policy (copy-policy object)))
-  "Return a copy of the structure OBJECT by COPIER, with copies in its slots."
+  "Return a copy, made by COPIER, of the structure OBJECT. Its slots will contain copies too."
   (declare #.*hot* (type copy-policy copy-policy))
   (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
     (loop for (writer . initial) in (copy-policy-fresh copy-policy)
@@ -88,7 +89,8 @@ be incomplete until they have returned."
                copier)))
 
 (defun copy-by-method (value copier)
-  "Return the caller's decision about VALUE, or COPY-PLAN-VALUE's. Its errors are CANNOT-FORK."
+  "Return the replacement for VALUE that the caller has chosen, or else the value of
+COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
   (let ((decision (decision-about value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
@@ -126,7 +128,8 @@ be incomplete until they have returned."
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return FUNCTION, which closes over nothing; one of a user's class may hold anything."
+  "Return the copy of FUNCTION, which is not a closure: FUNCTION itself, unless its class is a
+user's and may have slots."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (decided-copy function copier))
         (t function)))
@@ -134,7 +137,8 @@ be incomplete until they have returned."
 ;;; Replacing references in copies.
 
 (defun replace-list-references (list copier)
-  "Replace the references in LIST, a copy, up to a tail that was copied before."
+  "Replace the references in LIST, a copy of a list, by copies, up to a tail that was copied
+before."
   (declare #.*hot* (type copier copier))
   (loop
     (setf (car list) (forked (car list) copier))
@@ -146,7 +150,8 @@ be incomplete until they have returned."
                                 (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
 
 (defun replace-references (copy indices copier)
-  "Replace the references in COPY by copies. INDICES are slot numbers, or NIL for objects without."
+  "Replace the references in COPY by copies. INDICES are numbers of slots, or NIL for objects
+without numbered slots."
   (declare #.*hot* (type copier copier))
   (cond (indices
          (loop for index of-type (unsigned-byte 20) across (the simple-vector indices)
@@ -197,7 +202,7 @@ be incomplete until they have returned."
       (fill-tables tables copier))))
 
 (defmacro copying ((copier) &body body)
-  "Run BODY, which copies objects by COPIER, then complete the copies. Return the value of BODY."
+  "Run BODY, which copies objects with COPIER. Then complete the copies. Return the value of BODY."
   (once-only (copier)
     `(progn
        (refresh-copy-policies)
@@ -207,8 +212,8 @@ be incomplete until they have returned."
 ;;; Plain values, outside of any run.
 
 (defun plain-value-p (value)
-  "True if VALUE is a list, array, table, closure or closed-over variable, or of a user's class that
-has no method for copying."
+  "True if VALUE is a list, array, table, closure or closed-over variable, or if its class is a
+user's without a method of COPY-PLAN-VALUE."
   (typecase value
     ((or cons array hash-table) t)
     (condition nil)
@@ -218,8 +223,9 @@ has no method for copying."
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
 (defun copy-values (list instead-of)
-  "Return LIST with the plain values in it, and in these, copied; what two share is shared by the
-copies. Other objects are replaced by the value of INSTEAD-OF, a function of them."
+  "Return a copy of LIST, with copies of the plain values that it contains, at any depth. If two
+values share an object, their copies share the copy. Other objects are replaced by the value of
+INSTEAD-OF, called with the object."
   (if (every (lambda (value) (typep value '(or number symbol character))) list)
       list
       (with-copier (copier :screen (lambda (value)
@@ -230,12 +236,12 @@ copies. Other objects are replaced by the value of INSTEAD-OF, a function of the
 
 ;;;; Users' arguments
 
-(defconstant +longest-argument+ 100000 "The limit of conses and elements in an argument.")
-(defconstant +deepest-argument+ 200 "The limit of nesting in an argument.")
+(defconstant +longest-argument+ 100000 "The largest number of conses and elements in an argument.")
+(defconstant +deepest-argument+ 200 "The largest nesting depth of an argument.")
 
 (defun copy-lists (datum)
-  "Return DATUM with its lists and vectors copied, so that the caller cannot modify it later. Return
-NIL and true if it is circular, too long or too deep."
+  "Return DATUM with its lists and vectors copied, so that the caller cannot modify them later. If
+DATUM is circular, too long or too deep, return NIL and true."
   (let ((left +longest-argument+))
     (labels ((deeper (depth)
                (when (or (minusp (decf left)) (> depth +deepest-argument+))
@@ -259,8 +265,8 @@ NIL and true if it is circular, too long or too deep."
       (copy datum 1))))
 
 (defun copy-argument (operator name datum)
-  "Return a copy of DATUM, the argument NAME of OPERATOR. Signals WRONG-ARGUMENT if it is circular,
-too long or too deep."
+  "Return a copy of DATUM, the argument NAME of OPERATOR. Signals WRONG-ARGUMENT if DATUM is
+circular, too long or too deep."
   (multiple-value-bind (copy endless-p) (copy-lists datum)
     (when endless-p
       (reject-argument operator name "what was given"

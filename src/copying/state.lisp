@@ -12,13 +12,13 @@
 (defgeneric reference (object)
   (:documentation
    "Return plain data that identifies OBJECT in its run: (KIND argument...), a keyword and data.
-Journals use it, and DEREFERENCE finds the same object in another run. NIL if OBJECT cannot be
-identified.")
+Journals contain such data; DEREFERENCE returns the object that they identify in another run. Return
+NIL if OBJECT cannot be identified.")
   (:method (object) (declare (ignore object)) nil))
 
 (defgeneric digest-state (object digest)
-  (:documentation "Add to DIGEST the reference of OBJECT, its state, and that of its parts. Return
-DIGEST. A kind may add an :AFTER method.")
+  (:documentation "Add to DIGEST the reference of OBJECT, the state of OBJECT, and the state of its
+parts. Return DIGEST. A kind may add an :AFTER method.")
   (:method (object digest)
     (digest-add digest object))
   (:method ((object structure-object) digest)
@@ -38,7 +38,7 @@ DIGEST. A kind may add an :AFTER method.")
         (t (digest-state value digest)))
       (digest-add digest value)))
 
-(defvar *digest-depth* 0 "The nesting depth of the objects that are being digested.")
+(defvar *digest-depth* 0 "The nesting depth of the object that is being digested.")
 
 (defmethod digest-mention (object digest)
   (let ((reference (reference object)))
@@ -51,7 +51,7 @@ DIGEST. A kind may add an :AFTER method.")
   digest)
 
 (defun digest-contents (object digest)
-  "Add to DIGEST the contents of OBJECT, an array, table, pathname or structure of a user."
+  "Add to DIGEST the contents of OBJECT, an array, a table, a pathname or a user's structure."
   (typecase object
     (array (digest-add digest (array-dimensions object))
      (dotimes (i (array-total-size object)) (digest-add digest (row-major-aref object i))))
@@ -63,7 +63,7 @@ DIGEST. A kind may add an :AFTER method.")
          (digest-add digest (slot-value object slot)))))))
 
 (defun digest-table (table digest)
-  "Add to DIGEST the contents of the hash TABLE, independent of their order."
+  "Add to DIGEST the contents of TABLE, a hash table. The order of the entries does not matter."
   (let ((sum 0))
     (maphash (lambda (key value)
                (incf sum (digest-value (digest-add (make-digest) (list key value)))))
@@ -94,7 +94,8 @@ DIGEST. A kind may add an :AFTER method.")
     (t (if (value-cell-p object) (list (cell-value object)) '()))))
 
 (defun holds-p (object value)
-  "True if VALUE is OBJECT or in it: in a list, array, table, closure, structure or instance."
+  "True if VALUE is OBJECT, or is contained in OBJECT at any depth: in lists, arrays, tables,
+closures, structures or instances."
   (let ((seen (make-hash-table :test 'eq)) (work (list object)))
     (loop while work
           do (let ((each (pop work)))
@@ -104,7 +105,7 @@ DIGEST. A kind may add an :AFTER method.")
                        work (append (contents-of each) work)))))))
 
 (defun closed-over (function)
-  "Return a list of the values that FUNCTION closes over; NIL if it is not a closure."
+  "Return a list of the values that FUNCTION closes over; NIL if FUNCTION is not a closure."
   (when (closure-p function)
     (loop for value in (closure-values function)
           collect (if (and (value-cell-p value) (not (exit-cell-p value)))
@@ -118,11 +119,11 @@ DIGEST. A kind may add an :AFTER method.")
 ;;; kind it has all slots.
 
 (defun slot-kept-p (slot)
-  "True if SLOT, of FIELDS-OF-TYPE, is to be saved."
+  "True if saved runs contain SLOT, an element of FIELDS-OF-TYPE."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
 (defun plain-slot (name type)
-  "Return a description of the slot NAME, of TYPE, of a structure without a kind."
+  "Return a description of NAME, a slot with values of TYPE in a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
                   (lambda (object) (slot-value object name))
@@ -132,7 +133,7 @@ DIGEST. A kind may add an :AFTER method.")
                     (setf (slot-value object name) value))))
 
 (defun fields-of-type (type)
-  "Return a list of the slots of the structures of TYPE, a symbol."
+  "Return a list of the descriptions of all slots of structures of TYPE, a symbol."
   (let* ((kind (kind-called type))
          (slots (and kind (kind-slots kind))))
     (append slots
@@ -141,8 +142,9 @@ DIGEST. A kind may add an :AFTER method.")
                     collect (plain-slot name slot-type)))))
 
 (defun blank-object (type fields)
-  "Return a new structure of TYPE, a symbol, whose FIELDS are to be written. Until then a field has
-its initial value, or, if that is not of its type, garbage: do not print the object."
+  "Return a new structure of TYPE, a symbol. The caller must then set its FIELDS, descriptions of
+slots. Before that, a field has its initial value, or garbage if the initial value is of the wrong
+type; so do not print the object."
   (let ((object (allocate-instance (find-class type))))
     (dolist (field fields object)
       (ignore-errors
@@ -154,16 +156,16 @@ its initial value, or, if that is not of its type, garbage: do not print the obj
   "The names of functions that objects of a saved run may hold.")
 
 (defun note-lasting (name)
-  "Let a file name the function NAME as held by an object. Return NAME."
+  "Allow files of saved runs to name the function NAME as the contents of a slot. Return NAME."
   (pushnew name *lasting-functions*)
   name)
 
 (defun lasting-name (function)
-  "Return the name of FUNCTION if it was passed to NOTE-LASTING, or NIL."
+  "Return the name of FUNCTION if that name was passed to NOTE-LASTING, or NIL."
   (find function *lasting-functions* :key #'fdefinition))
 
 (defun lasting-function (name)
-  "Return the function NAME if that was passed to NOTE-LASTING, or NIL."
+  "Return the function named NAME if NAME was passed to NOTE-LASTING, or NIL."
   (and (member name *lasting-functions*) (fdefinition name)))
 
 ;;;; Consistency of restored objects
@@ -174,16 +176,16 @@ its initial value, or, if that is not of its type, garbage: do not print the obj
 (define-condition contradiction (error)
   ((text :initarg :text :reader contradiction-text))
   (:report (lambda (condition stream) (write-string (contradiction-text condition) stream)))
-  (:documentation "Restored objects are inconsistent."))
+  (:documentation "Objects loaded from a file are inconsistent."))
 
 (defun contradict (control &rest arguments)
   "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS."
   (error 'contradiction :text (apply #'format nil control arguments)))
 
 (defmacro must-hold (test control &rest arguments)
-  "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS unless TEST holds."
+  "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS unless TEST is true."
   `(unless ,test (contradict ,control ,@arguments)))
 
 (defun proper-list-of-p (predicate object)
-  "True if OBJECT is a proper list and PREDICATE is true of each of its elements."
+  "True if OBJECT is a proper list and PREDICATE is true for each of its elements."
   (and (proper-list-p object) (every predicate object)))

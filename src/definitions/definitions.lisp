@@ -12,19 +12,19 @@
 ;;; the definition out, read it again from its file, or replace it.
 
 (define-record (defining-form (:conc-name defining-) (:constructor make-defining (source form)))
-  "The definition FORM, from SOURCE, that is being expanded or performed."
+  "A definition that is being expanded or evaluated: its FORM, from the file of SOURCE."
   (source '() list)
-  (form '() list "the form that is being expanded or carried out" :export)
-  (ordinal nil t "which of the forms of that operator and name in its file it is, from 0, once
-looked up" :writable)
-  (clause nil t "the part of it that was rejected last" :writable))
+  (form '() list "the form that is being expanded or evaluated" :export)
+  (ordinal nil t "the number of the form, from 0, among the forms of the same operator and name in
+its file; NIL until it is looked up" :writable)
+  (clause nil t "the part of the form that was rejected last" :writable))
 
 (defvar *definition* nil
-  "The definition that is being expanded or performed, or NIL.")
+  "The definition that is being expanded or evaluated, or NIL.")
 
 (defun current-source ()
-  "Return the source of the current definition, or else of the form being loaded; NIL if it was
-typed."
+  "Return the source of the current definition; if there is none, of the form being loaded. NIL if
+the definition or form was typed."
   (if *definition*
       (defining-source *definition*)
       (source-here)))
@@ -37,13 +37,15 @@ typed."
   (and *definition* (head (defining-form *definition*))))
 
 (defun current-docstring ()
-  "Return :documentation of the current definition, or the first string after its name, or NIL."
+  "Return the docstring of the current definition: the value of :documentation, or else the first
+string after the name; or NIL."
   (let* ((parts (and *definition* (cddr (defining-form *definition*))))
          (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
     (and (stringp text) text)))
 
 (defun title (operator name)
-  "Return the title of the definition of NAME by OPERATOR for messages, such as \"defmap yard\"."
+  "Return the text by which messages name the definition of NAME by OPERATOR, such as \"defmap
+yard\"."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
@@ -52,7 +54,8 @@ typed."
     (title (first form) (second form))))
 
 (defun clause-place (clause)
-  "Return the place of CLAUSE of the current definition, such as \"yard.lisp, line 7\", or NIL."
+  "Return the file and line of CLAUSE, a part of the current definition, as a text such as
+\"yard.lisp, line 7\", or NIL."
   (let ((source (if *definition* (current-source) (source-here))))
     (when source
       (multiple-value-bind (line ordinal)
@@ -63,21 +66,21 @@ typed."
                 (or (line-in-text (source-file source) clause (place-in-text clause)) line))))))
 
 (defun reject-clause (definition clause expected &optional (place (clause-place clause)))
-  "Signal MALFORMED-DEFINITION about CLAUSE, at PLACE, of DEFINITION, a string such as \"defmap
-watson\"."
+  "Signal MALFORMED-DEFINITION about CLAUSE, a part of DEFINITION, a string such as \"defmap
+watson\". PLACE is the file and line of CLAUSE. EXPECTED describes a valid clause."
   (when *definition* (setf (defining-clause *definition*) clause))
   (error 'malformed-definition :definition definition :clause clause :expected expected
                                :place place))
 
 (defun check-function-name (definition name)
-  "Signal MALFORMED-DEFINITION if NAME, of DEFINITION, is no name of a function, or is in a package
-whose names users cannot define as functions."
+  "Signal MALFORMED-DEFINITION if NAME, the name in DEFINITION, cannot be the name of a function, or
+belongs to a package in which users cannot define functions."
   (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
     (reject-clause definition name "a symbol as the name"))
   (let ((package (and (symbolp name) (symbol-package name))))
     (when (and package (package-locked-p package) (not (eq package *package*)))
       (reject-clause definition name
-                     (format nil "a name that is free; ~A belongs to ~A. Call it my-~(~A~), or ~
+                     (format nil "a name that is free; ~A belongs to ~A. Name it my-~(~A~), or ~
                                   shadow the symbol in your package: (:shadow #:~(~A~))"
                              name (package-name package) name name)))))
 
@@ -85,48 +88,51 @@ whose names users cannot define as functions."
 
 (addition skip-definition skip-clause read-again)
 (document-restarts
- 'skip-definition "Leave out the definition with the mistake. An earlier definition of that name
-stays."
+ 'skip-definition "Leave out the definition with the mistake. An earlier definition of the same name
+remains."
  'skip-clause "Leave out the clause of a map that has the mistake, and continue with the next."
  'read-again "Read the definition, or the clause, again from its file, after you have corrected it
 there."
  'use-value "Use the value that you type instead: another clause, definition, name or value.")
 
 (defun read-value (what)
-  "Ask the user for WHAT, a form; return a list of it."
+  "Ask the user for a form, which the text WHAT describes. Return a list of the form."
   (format *query-io* "~&~A: " what)
   (finish-output *query-io*)
   (list (read *query-io*)))
 
 (defun in-file-p (condition)
-  "True if what CONDITION is about was read from a file and can be read again."
+  "True if the current definition, with the error CONDITION, was read from a file and can be read
+again."
   (declare (ignore condition))
   (and (current-source) t))
 
 (defun definition-again (definition)
-  "Return the form of DEFINITION as it is in its file now."
+  "Read the form of DEFINITION again from its file, and return it."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 
 (defun other-definition-p (value &optional (definition *definition*))
-  "True if VALUE is a whole form that can replace DEFINITION."
+  "True if VALUE is a complete form with the operator of DEFINITION."
   (and (consp value)
        (symbolp (first value))
        (same-name-p (first value) (first (defining-form definition)))))
 
 (defun definition-with (definition value)
-  "Return DEFINITION's form with VALUE for the rejected clause, or VALUE if it is a whole form."
+  "Return VALUE if it is a complete form that can replace DEFINITION; else the form of DEFINITION
+with VALUE in place of the rejected clause."
   (let* ((form (defining-form definition))
          (clause (defining-clause definition))
          (new (subst value clause form :test #'equal)))
     (cond ((other-definition-p value definition) value)
           ((and clause (not (equal new form))) new)
-          (t (reject-use "~S cannot replace a part of ~A. Give a whole form for it."
+          (t (reject-use "~S cannot replace a part of ~A. Give a complete form."
                          value (definition-text definition))))))
 
 (defun call-with-definition-restarts (function replace)
-  "Call FUNCTION, with restarts that leave out the current definition, or call REPLACE with another
-form for it, also repeatedly: read again from its file, or with another clause."
+  "Call FUNCTION, with restarts for an error in the current definition. SKIP-DEFINITION leaves it
+out. READ-AGAIN and USE-VALUE call REPLACE with another form: read again from its file, or with
+another clause. The restarts remain available for that form."
   (let ((definition *definition*))
     (flet ((instead (choose)
              (call-with-definition-restarts
@@ -150,7 +156,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
 ;;; Mistakes that Lisp finds.
 
 (defun missing-name (condition)
-  "Return the name of the variable or function that CONDITION reports as undefined, or NIL."
+  "If CONDITION reports an undefined variable or function, return its name; else NIL."
   (and (typep condition '(or unbound-variable undefined-function))
        (cell-error-name condition)))
 
@@ -158,7 +164,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
   (subseq form 0 (min 2 (length form))))
 
 (defun reject-value (condition)
-  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of an author."
+  "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of the current definition."
   (let ((name (missing-name condition)))
     (reject-clause (definition-text *definition*)
                    (or name (append (head (defining-form *definition*)) (list +more+)))
@@ -166,7 +172,8 @@ form for it, also repeatedly: read again from its file, or with another clause."
                            name (string-right-trim "." (text-of-condition condition))))))
 
 (defun call-blaming (function blame)
-  "Call FUNCTION, and BLAME with each error that is not ours: a mistake in an author's form."
+  "Call FUNCTION. For each error that is not an ARS-MAGNA-ERROR, and so is a mistake in a user's
+form, call BLAME with the error."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition 'ars-magna-error)
                             (funcall blame condition)))))
@@ -177,7 +184,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
     (call-with-definition-restarts (lambda () (call-blaming function #'reject-value)) #'eval)))
 
 (defun find-part (test form)
-  "Return the first part of FORM, a tree of conses, of which TEST is true, or NIL."
+  "Return the first part of FORM, a tree of conses, for which TEST returns true, or NIL."
   (let ((stack (list form)))
     (loop while stack
           do (let ((part (pop stack)))
@@ -187,7 +194,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
                  (push (car part) stack))))))
 
 (defun endless-p (form)
-  "True if FORM has more conses than a written form can have, as circular lists do."
+  "True if FORM has more conses than a written form can have, for example because it is circular."
   (let ((left 10000000))
     (and (find-part (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
 
@@ -196,7 +203,7 @@ form for it, also repeatedly: read again from its file, or with another clause."
   (and (find-part (lambda (part) (typep part '(cons (eql quote)))) form) t))
 
 (defun rejected-form (condition)
-  "Return a form that signals CONDITION again when it is evaluated."
+  "Return a form that signals CONDITION, a MALFORMED-DEFINITION, again when the form is evaluated."
   (when *compile-file-truename*
     (call-at-place (malformed-definition-clause condition)
                    (lambda () (warn-of-definition "~A" condition))))
@@ -206,9 +213,10 @@ form for it, also repeatedly: read again from its file, or with another clause."
                   ,(malformed-definition-place condition)))
 
 (defun forms-or-rejection (function nested)
-  "Return the value of FUNCTION. If it signals MALFORMED-DEFINITION and the form is NESTED in others
-or in a file that is compiled, where the compiler would turn it into another error, return a form
-that signals it later."
+  "Call FUNCTION, which expands a form, and return its value. If FUNCTION signals
+MALFORMED-DEFINITION, and the form is NESTED in another form or is in a file that is compiled,
+return a list of a form that signals the error later. (The compiler would change an error signalled
+now.)"
   (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
         (malformed-definition (condition) (list (rejected-form condition))))
@@ -220,8 +228,9 @@ that signals it later."
     (call-with-definition-restarts function #'identity)))
 
 (defun expand-definition (form environment function)
-  "Return the expansion of FORM, (operator name ...), in ENVIRONMENT: the forms that FUNCTION
-returns to perform it, preceded by the forms of its second value. The expansion returns the name."
+  "Return the expansion of the definition FORM, (operator name ...), in ENVIRONMENT. FUNCTION
+returns two lists of forms: those that perform the definition, and those to evaluate before it. The
+expansion returns the name."
   (call-with-definition
    form
    (lambda ()

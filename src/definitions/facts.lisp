@@ -8,23 +8,25 @@
 ;;; DESCRIBE also shows users' definitions of that name: maps, kickers and the like.
 
 (defgeneric facts (object)
-  (:documentation "Return what to show people of OBJECT: a list of lists (label text), in order,
-without those whose text is NIL.")
+  (:documentation "Return the properties of OBJECT that DESCRIBE and inspectors show: a list of
+lists (label text), in order.")
   (:method (object) (declare (ignore object)) '()))
 
 (defun known-facts (&rest labels-and-texts)
-  "Return a list (label text) for each pair in LABELS-AND-TEXTS whose text is not NIL. Other objects
-than strings become text as people write them."
+  "Return a list (label text) for each pair in LABELS-AND-TEXTS whose text is not NIL. Objects that
+are not strings are converted by FACT-TEXT."
   (loop for (label fact) on labels-and-texts by #'cddr
         when fact collect (list label (if (stringp fact) fact (fact-text fact)))))
 
 (defun fact-text (fact)
-  "Return FACT, any object, as people write it, on one line."
+  "Return the text that shows the object FACT to users: on one line, in lower case, without package
+prefixes."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
     (one-line (safe-text fact :length 400))))
 
 (defun listed (objects)
-  "Return OBJECTS, such as names, as people list them; NIL if there are none."
+  "Return a text with OBJECTS, such as names, separated by commas; NIL if there are none. Show at
+most 12 of them."
   (and objects
        (format nil "~{~A~^, ~}"
                (names-to-show (loop for object in objects
@@ -41,8 +43,8 @@ than strings become text as people write them."
   (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
 
 (defmacro define-facts ((class variable) &rest labels-and-forms)
-  "Let DESCRIBE and inspectors show the values of FORMS for VARIABLE, an object of CLASS.
-LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
+  "Make DESCRIBE and inspectors show labels and the values of forms for objects of CLASS. In
+LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound to the object."
   `(progn
      (defmethod facts ((,variable ,class)) (known-facts ,@labels-and-forms))
      ,@(unless (kind-called class)
@@ -84,7 +86,7 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
 (defun show-entry-p (entry registry symbol)
-  "True if DESCRIBE of SYMBOL should show its ENTRY in REGISTRY."
+  "True if DESCRIBE should show ENTRY, the definition of SYMBOL in REGISTRY."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))
@@ -110,8 +112,9 @@ LABELS-AND-FORMS alternate, as in KNOWN-FACTS."
 ;;; Source locations for editors.
 
 (defun definition-sources (name)
-  "Return a list (file position operator), as of now, for each definition of NAME, a symbol, whose
-location Lisp does not know itself, as it knows those of variables and functions."
+  "Return a list of lists (file position operator): the present source locations of the definitions
+of NAME, a symbol, as a map, a kicker and so on. Lisp itself knows the locations of variables and
+functions."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))

@@ -13,21 +13,21 @@
 
 (define-record (kind-slot (:constructor make-kind-slot
                               (name role type text part-p shared-p initial reader writer)))
-  "What is known of a slot of a kind."
+  "The description of a slot of a kind."
   (name nil symbol "the name of the slot, a symbol" :export)
   (role nil (member :fixed :state :memory :scratch :link)
-        "what the slot is: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK" :export)
+        "the role of the slot: :FIXED, :STATE, :MEMORY, :SCRATCH or :LINK" :export)
   (type t t "the Lisp type of the slot's values" :export)
-  (text "" string "what is in the slot, in words" :export)
+  (text "" string "the text that describes the slot's contents" :export)
   (part-p nil boolean "the slot's contents belong to the object" :export)
   (shared-p nil boolean "the slot's contents are never modified, so copies share them" :export)
   (initial nil function "the function that returns the slot's initial contents" :export)
   (reader nil function "the function of an object that returns the slot's contents" :export)
   (writer nil function
-          "the function of a value and an object that puts the value into the slot" :export))
+          "the function of a value and an object that stores the value in the slot" :export))
 
 (defun decisive-p (slot)
-  "True if SLOT contains state or parts."
+  "True if SLOT has the role :STATE, or is a :FIXED slot that contains parts of the object."
   (or (eq :state (kind-slot-role slot))
       (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
 
@@ -36,11 +36,12 @@
                                 (name slots parent
                                  &aux (decisive-slots (remove-if-not #'decisive-p slots))))
                             (:predicate kind-p))
-  "A kind of object."
+  "A kind of object, defined by DEFINE-KIND."
   (name nil symbol "the name of the kind, the type of its objects" :export)
   (slots '() list "a list of the descriptions of the kind's slots, inherited ones first" :export)
-  (decisive-slots '() list "those slots of the kind whose contents determine the run" :export)
-  (parent nil (or null object-kind) "the kind that it includes, or NIL"))
+  (decisive-slots '() list "the slots of the kind whose contents determine how a run continues"
+                  :export)
+  (parent nil (or null object-kind) "the kind that this kind includes, or NIL"))
 
 (defmethod print-object ((kind object-kind) stream)
   (print-unreadable-object (kind stream :type t) (princ (kind-name kind) stream)))
@@ -50,7 +51,8 @@
 
 (declaim (inline kind-called))
 (defun kind-called (name)
-  "Return the kind called NAME, the very symbol, or NIL."
+  "Return the kind with the name NAME, or NIL. NAME must be the same symbol, not only the same
+string."
   (get name 'object-kind))
 
 (declaim (inline kind-of))
@@ -65,8 +67,8 @@
           thereis (eq base (kind-name each))))
 
 (defun all-kinds (&optional base)
-  "Return a list of all kinds in order of definition; with BASE, a name, only that kind and those
-that include it."
+  "Return a list of all kinds in order of definition. If the name BASE is given, list only the kind
+BASE and the kinds that include it."
   (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
                  (all-object-kinds)))
 
@@ -76,8 +78,8 @@ that include it."
           return (kind-name kind)))
 
 (defun find-kind-name (name base)
-  "Return the name of the first kind, of BASE and those that include it, whose name equals NAME, a
-symbol or string; NIL if there is none."
+  "Return the name of the first kind that has the name NAME, a symbol or string of any package, and
+is the kind BASE or includes BASE; NIL if there is none."
   (let ((kinds (registry-objects *object-kinds*)))
     (if (symbolp name)
         ;; Plans' commands ask this for each argument. The cache is valid until a kind is defined.
@@ -96,15 +98,15 @@ symbol or string; NIL if there is none."
   (funcall (kind-slot-reader slot) object))
 
 (defun object-slots (object &rest roles)
-  "Return a list (name value text) for each slot of OBJECT, of a kind, with a role among ROLES;
-without ROLES, for each slot."
+  "Return a list (name value text) for each slot of OBJECT, an object of a kind, whose role is among
+ROLES. Without ROLES, list all slots."
   (loop for slot in (kind-slots (kind-of object))
         when (or (null roles) (member (kind-slot-role slot) roles))
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
 
 (defun slots-to-show (object)
-  "Return lists (title (name value text)...) of the slots of OBJECT, a structure: by role if it is
-of a kind, else under one title without texts."
+  "Return a list of lists (title (name value text)...) of the slots of the structure OBJECT. If
+OBJECT is of a kind, there is a list for each role; else there is one list, and the texts are NIL."
   (if (kind-of object)
       (loop for (role title) in '((:fixed "as it was made") (:state "state") (:memory "memory")
                                   (:scratch "scratch") (:link "links"))
@@ -124,8 +126,8 @@ of a kind, else under one title without texts."
     (t (funcall function value))))
 
 (defgeneric reset (object)
-  (:documentation "Reset OBJECT, of a kind, and its parts to their initial state, except for its
-:LINK slots. Return OBJECT. A kind may add an :AFTER method.")
+  (:documentation "Reset OBJECT, an object of a kind, and its parts to their initial state. Slots
+with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER method.")
   (:method (object) object)
   (:method ((object structure-object))
     (let ((kind (kind-of object)))
@@ -159,14 +161,14 @@ of a kind, else under one title without texts."
     kind))
 
 (defun slots-by-place (groups)
-  "Return the slots in GROUPS, lists (role slot...), in their order in memory."
+  "Return the slots in GROUPS, a list of lists (role slot...), in their order in memory."
   (stable-sort (loop for (nil . slots) in groups append slots)
                (lambda (one other)
                  (and (member :near (nthcdr 4 one)) (not (member :near (nthcdr 4 other)))))))
 
 (defun check-kind-name (name include documentation)
   (unless (and (symbolp name) name (symbol-package name) (not (keywordp name)))
-    (reject-clause-of-kind name name "a symbol of a package as the name of the kind"))
+    (reject-clause-of-kind name name "an interned symbol as the name of the kind"))
   (unless (symbolp include)
     (reject-clause-of-kind name (list :include include) "the name of a kind after :include"))
   (unless (stringp documentation)
@@ -181,7 +183,8 @@ of a kind, else under one title without texts."
     (reject-clause-of-kind name slot
                            "(name default type \"what it is\" [:part] [:shared] [:near])"))
   (when (member (first slot) known :test #'same-name-p)
-    (reject-clause-of-kind name slot "a name that no other slot has, also of what is included")))
+    (reject-clause-of-kind name slot "a name that no other slot of this kind and of the included
+kind has")))
 
 (defun check-kind-form (name include documentation groups)
   (check-kind-name name include documentation)
@@ -210,7 +213,8 @@ of a kind, else under one title without texts."
                        (lambda (value object) (setf (,reader (the ,name object)) value))))))
 
 (defun kind-options (form)
-  "Return the name, included kind or NIL, and constructor in FORM, DEFINE-KIND's first argument."
+  "Return three values from FORM, the first argument of DEFINE-KIND: the name, the included kind or
+NIL, and the constructor."
   (destructuring-bind (name &rest options) (ensure-list form)
     (unless (and (proper-list-p options) (evenp (length options))
                  (loop for key in options by #'cddr always (member key '(:include :constructor))))
@@ -223,16 +227,15 @@ of a kind, else under one title without texts."
 (defmacro define-kind (name-and-options documentation &body groups &environment environment)
   "Define a structure with a role for each slot. NAME-AND-OPTIONS is its name, or (name [:include
 kind] [:constructor constructor]), as in DEFSTRUCT. GROUPS are lists (role slot...). A slot is (name
-default type \"what it is\"), then :PART if its contents belong to the object, :SHARED if they are
-never modified, :NEAR if it is to be near others in memory; :EXPORT and :ADDITION are as in
-DEFINE-RECORD. The roles are
+default type \"what it is\"), then :PART if its contents belong to the object, :SHARED if its
+contents are never modified, :NEAR to store the slot near the other :NEAR slots in memory; :EXPORT
+and :ADDITION are as in DEFINE-RECORD. The roles are
   :fixed    the model: how the object was made;
   :state    what determines the future, or what programs see of it;
   :memory   what is shown to people and determines nothing;
   :scratch  what has no meaning between ticks;
   :link     ties to users of the object, such as continuations.
-A running Lisp cannot change the slots of a kind: restart it for that. Return the name. Signals
-MALFORMED-DEFINITION."
+To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-DEFINITION."
   (multiple-value-bind (name include constructor) (kind-options name-and-options)
     (check-kind-form name include documentation groups)
     (unless (or (null include) (kind-called include) (find-class include nil environment))

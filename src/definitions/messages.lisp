@@ -10,7 +10,8 @@
 ;;; bounded: beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
 
 (defparameter *message-limit* 1000
-  "How many messages a queue holds before it drops the oldest (manual 3.7; our bound).")
+  "The number of messages that a queue holds before it drops the oldest (manual 3.7). The limit is
+an addition.")
 
 (public flush-all-errors*)
 (defvar flush-all-errors* nil
@@ -21,31 +22,33 @@
   '(member :report :signal :collect))
 
 (defvar *told-of* nil
-  "A note of who requested what messages report here, from NOTE-OF-ASKER, or NIL.")
+  "The origin, a value of NOTE-OF-ASKER, of the request that messages queued in this thread report
+about; or NIL.")
 
 (defvar *robot-told-of* nil
-  "The name of the robot whose action messages report here, or NIL.")
+  "The name of the robot that messages queued in this thread report about, or NIL.")
 
 (defvar *run-that-reports* (constantly nil)
-  "A function that returns the run that a message queued in this thread belongs to, or NIL.")
+  "A function that returns the run to which messages queued in this thread belong, or NIL.")
 
 (define-record (message (:constructor make-message
                             (kind items &key cause (summary "") told-p notable-p about)
-                          "Return a message with the kind and list of items given."))
+                          "Return a message of KIND with a list of ITEMS."))
   "A message of the simulator or a user."
   (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
   (items '() list "the items that the message is made of" :export)
   (asker *told-of* t
-         "a note of who requested what the message reports, such as a command, or NIL" :export)
+         "the origin of the request that the message is about, for example the name of a plan; or
+NIL" :export)
   (robot *robot-told-of* t
          "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
   (run (funcall *run-that-reports*) t "the run that the message belongs to, or NIL" :export)
-  (cause nil t "the condition or failure in users' code that the message reports, or NIL, see
+  (cause nil t "the condition or failure in users' code that the message reports, or NIL; see
 troubles.lisp" :export)
-  (summary "" string "the cause in a line")
+  (summary "" string "a text about the cause, on one line")
   (about nil (or null symbol) "the name of the command whose failure the message reports, or NIL")
-  (told-p nil boolean "users' code has also been told what the message reports" :export)
+  (told-p nil boolean "users' code has also received what the message reports" :export)
   ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if there
   ;; is no listener, because the run may never end.
   (notable-p nil (or boolean (eql :at-once) function)
@@ -54,26 +57,26 @@ troubles.lisp" :export)
 (define-record (message-queue (:constructor make-message-queue
                                   (&key (error-policy :report) echoed)
                                 "Return a new, empty queue of messages."))
-  "Unread messages. LOCK guards all lists, counts and tables; whether UNSIGNALLED is
-NIL may be read without it."
+  "A queue of unread messages. A thread must hold LOCK to use the lists, counts and tables, except
+to test whether UNSIGNALLED is NIL."
   (lock (make-lock "messages") t)
   (newest-first '() list :writable)
   (count 0 fixnum :writable)
   (forgotten 0 fixnum :writable)
-  (listener nil (or null function) "the function that is called after each message is queued, in the
-thread that reports and without arguments, or NIL. Can be set" :writable :export)
+  (listener nil (or null function) "the function, without arguments, that is called after each
+message is queued, in the thread that queues the message; or NIL. Can be set" :writable :export)
   (error-policy :report error-policy
                 ":REPORT, :SIGNAL or :COLLECT: what happens to errors in users' code. Can be set"
                 :writable :export)
-  (seen '() list "the tail of NEWEST-FIRST that need not be shown" :writable)
+  (seen '() list "the tail of NEWEST-FIRST with the messages that need not be shown" :writable)
   (read-p nil boolean
           "messages of the queue have been read or counted"
           :writable :export)
   (troubles '() list "the latest errors in users' code, the newest first" :writable)
   (unsignalled nil (or null message) "the first message about an error in users' code that is to be
-signalled, or NIL, see troubles.lisp" :writable :export)
-  (echoed nil (or null hash-table) "the table that counts errors, which are shown at once if there
-is no listener, or NIL"))
+signalled, or NIL; see troubles.lisp" :writable :export)
+  (echoed nil (or null hash-table) "the table that counts errors, or NIL. If there is a table and no
+listener, errors are shown at once"))
 
 ;; An interrupt, such as Ctrl-C, may report something too.
 (defmacro with-queue ((queue) &body body)
@@ -81,10 +84,10 @@ is no listener, or NIL"))
   `(deferring-interrupts (with-lock ((message-queue-lock ,queue)) ,@body)))
 
 (defvar *message-queue* (make-message-queue :echoed (make-hash-table :test 'equal))
-  "The queue that messages go to. A headless simulation binds its own.")
+  "The queue to which messages are added. A headless simulation binds its own queue.")
 
 (defun copy-message-queue (queue)
-  "Return a new queue with the messages of QUEUE, as read, and no listener."
+  "Return a new queue with the messages of QUEUE, marked as read, and without a listener."
   (let ((copy (make-message-queue)))
     (with-queue (queue)
       (setf (message-queue-newest-first copy) (message-queue-newest-first queue)
@@ -94,7 +97,7 @@ is no listener, or NIL"))
     copy))
 
 (defun keep-trouble (message queue)
-  "Record MESSAGE, about an error in users' code, as the latest in QUEUE."
+  "Record MESSAGE, about an error in users' code, as the latest error in QUEUE."
   (push message (message-queue-troubles queue))
   (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
     (when last (setf (rest last) '())))
@@ -103,7 +106,8 @@ is no listener, or NIL"))
     (setf (message-queue-unsignalled queue) message)))
 
 (defun to-be-seen-p (message)
-  "True if MESSAGE is about an error or a mistake in users' code that was not reported otherwise."
+  "True if MESSAGE is about an error or a mistake in users' code that was not reported in another
+way."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
@@ -130,38 +134,41 @@ is no listener, or NIL"))
           ((echoed-p message queue) (echo-message message queue)))))
 
 (defun queue-items (kind items &rest options)
-  "Queue a message of KIND with ITEMS and OPTIONS, as for MAKE-MESSAGE. Return nothing."
+  "Queue a message of KIND with ITEMS and OPTIONS, the arguments of MAKE-MESSAGE. Return nothing."
   (queue-message (apply #'make-message kind items options) *message-queue*)
   (values))
 
 (public error-set)
 (defun error-set (&rest stuff)
-  "Queue an error message made of the items STUFF, printed by OUT's rules. Return nothing
+  "Queue an error message made of the items STUFF, which are printed as by OUT. Return nothing
 (manual 3.7)."
   (queue-items :error stuff))
 
 (public warning-set)
 (defun warning-set (&rest stuff)
-  "Queue a warning made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  "Queue a warning made of the items STUFF, which are printed as by OUT. Return nothing (manual
+3.7)."
   (queue-items :warning stuff))
 
 (defun warn-notably (&rest stuff)
-  "Queue a warning made of the items STUFF that is shown like an error if it is not read. Return
-nothing."
+  "Queue a warning made of the items STUFF. If nobody reads the warning, it is shown at the end like
+an error. Return nothing."
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
-  "Queue a warning of the items STUFF, shown at once if there is no listener. Return nothing."
+  "Queue a warning made of the items STUFF. If the queue has no listener, the warning is shown at
+once. Return nothing."
   (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)
 (defun message-set (&rest stuff)
-  "Queue a message made of the items STUFF, printed by OUT's rules. Return nothing (manual 3.7)."
+  "Queue a message made of the items STUFF, which are printed as by OUT. Return nothing (manual
+3.7)."
   (queue-items :message stuff))
 
 (defun take-messages (&optional (queue *message-queue*))
-  "Empty QUEUE. Return its messages, oldest first, at most *MESSAGE-LIMIT*. If older ones were
-dropped, a warning with their number comes first."
+  "Empty QUEUE. Return a list of its messages, the oldest first, at most *MESSAGE-LIMIT*. If older
+messages were dropped, the list begins with a warning that gives their number."
   (with-queue (queue)
     (setf (message-queue-read-p queue) t)
     (let* ((messages (message-queue-newest-first queue))
@@ -177,9 +184,9 @@ dropped, a warning with their number comes first."
 ;;; Formatting a message costs more than queueing it, and few are read.
 
 (define-record (phrase (:constructor phrase (control &rest arguments)
-                          "Return an item of a message that formats CONTROL with ARGUMENTS, which
-never change, when it is read."))
-  "An item of a message."
+                          "Return an item of a message: the format string CONTROL with ARGUMENTS.
+They are formatted when the message is read, so ARGUMENTS must never change."))
+  "An item of a message that is formatted when the message is read."
   (control "" string)
   (arguments '() list))
 (defmethod print-object ((phrase phrase) stream)
@@ -189,7 +196,8 @@ never change, when it is read."))
 ;;; Printing.
 
 (defun write-item (item stream)
-  "Write ITEM without quotes, a float without exponent marker, T as a new line (reading 36)."
+  "Write ITEM to STREAM without quotes. Floats have no exponent marker; T is a newline (reading
+36)."
   (cond ((eq item t) (terpri stream))
         ((floatp item)
          (let ((*read-default-float-format* (type-of item)))
@@ -201,41 +209,43 @@ never change, when it is read."))
 
 (public (out :nisp))
 (defun out (&rest items)
-  "Print each of ITEMS, without quotes, to standard output; T ends the line. Return nothing
+  "Print each of ITEMS, without quotes, to standard output; the item T is a newline. Return nothing
 (manual 3.1.3)."
   (write-items items *standard-output*)
   (finish-output)
   (values))
 
 (defun item-text (item)
-  "Return ITEM as OUT writes it, or a text that says that it cannot be printed."
+  "Return ITEM as OUT prints it. If ITEM cannot be printed, return a text that says so."
   (handler-case (with-output-to-string (stream) (write-item item stream))
-    (error (trouble) (format nil "what cannot be printed (~A: ~A)"
+    (error (trouble) (format nil "an object that cannot be printed (~A: ~A)"
                              (string-downcase (type-of item)) (one-line-text trouble)))))
 
 (defun message-text (message)
-  "Return the items of MESSAGE as a string, without the marker of its kind."
+  "Return the items of MESSAGE as a string, without the marker *ERROR* or *WARNING*."
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return the text of MESSAGE after the name of its command, for readers who just saw another one."
+  "Return the text of MESSAGE, preceded by the name of the command it is about, if the text does not
+begin with that name."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)
         text)))
 
 (defun write-message (message stream &optional (text (message-text message)))
-  "Write MESSAGE, which says TEXT, and a new line to STREAM, or return that if STREAM is NIL, marked
-*ERROR* -> or *WARNING* -> (manual E)."
+  "Write MESSAGE, with the text TEXT, and a newline to STREAM. Errors begin with *ERROR* ->,
+warnings with *WARNING* -> (manual E). If STREAM is NIL, return the line as a string."
   (format stream "~@[*~A* -> ~]~A~%"
           (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
           text))
 
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))
-  "Write all queued messages to STREAM, oldest first, and flush the queue; NIL and T mean standard
-output. Writes nothing when FLUSH-ALL-ERRORS* is true. Return nothing (manual 3.7). Signals
-WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream. See reading 207."
+  "Write all queued messages to STREAM, the oldest first, and flush the queue. A STREAM of NIL or T
+means standard output. If FLUSH-ALL-ERRORS* is true, flush the queue without writing. Return nothing
+(manual 3.7). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is not a stream. See reading
+207."
   (check-argument error-display stream (typep stream '(or stream boolean)) "a stream")
   (let ((messages (take-messages))
         (stream (if (streamp stream) stream *standard-output*)))

@@ -8,7 +8,8 @@
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
-  "A test and a description in words. TROUBLE is as in DEFINE-ARGUMENT-TYPE."
+  "A type of arguments: a predicate and the WORDS that describe the type. TROUBLE is as in
+DEFINE-ARGUMENT-TYPE."
   (name nil :type symbol :read-only t)
   (predicate nil :type function :read-only t)
   (words "" :type string :read-only t)
@@ -17,29 +18,30 @@
 (define-registry argument-type "argument type" :object-p argument-type-p :fixed t :internal t)
 
 (defun define-argument-type (name predicate text &optional trouble)
-  "Define the argument type NAME: values that satisfy PREDICATE, described by TEXT. TROUBLE is a
-function that returns in words what is wrong with a value, or NIL if TEXT is enough."
+  "Define the argument type NAME, of values for which PREDICATE is true. TEXT describes such a
+value. TROUBLE is a function that returns a text that says what is wrong with a value; or NIL if
+TEXT says enough."
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
 (defun argument-type-like (name)
-  "Return the name of the argument type that NAME, a symbol, may be a misspelling of, or NIL."
+  "Return the name of an argument type of which NAME, a symbol, may be a misspelling; or NIL."
   (find-if (lambda (known) (resembles-p name known))
            (mapcar #'argument-type-name (all-argument-types))))
 
 (defun argument-of-type-p (value type)
-  "True if VALUE can be an argument of TYPE, an argument type or the name of one."
+  "True if VALUE can be an argument of TYPE, an argument type or its name."
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
 (defun trouble-with (value type)
-  "Return in words what is wrong with VALUE as an argument of TYPE, an argument type or its name;
-NIL if the description of the type says it all."
+  "Return a text that says what is wrong with VALUE as an argument of TYPE, an argument type or its
+name; NIL if the description of the type says enough."
   (let ((trouble (argument-type-trouble (find-argument-type type))))
     (and trouble (funcall trouble value))))
 
 (defun argument-type-text (type &optional (value nil value-p))
-  "Return in words what arguments of TYPE, an argument type or its name, are, and what is wrong with
-VALUE."
+  "Return a text that describes the arguments of TYPE, an argument type or its name. If VALUE is
+given, the text also says what is wrong with VALUE."
   (format nil "~A~@[: ~A~]" (argument-type-words (find-argument-type type))
           (and value-p (trouble-with value type))))
 
@@ -60,7 +62,7 @@ VALUE."
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
 (define-argument-type 'probability #'probability-p "a probability from 0 to 1")
 (define-argument-type 'integer #'integerp "a whole number")
-(define-argument-type 'truth (constantly t) "anything, of which NIL is false")
+(define-argument-type 'truth (constantly t) "a boolean: NIL is false, anything else is true")
 (define-argument-type 'datum (constantly t) "anything")
 (define-argument-type 'name (lambda (value) (and value (typep value '(or symbol string))))
   "a name, a symbol or string")
@@ -70,17 +72,18 @@ VALUE."
 ;;; Radians.
 
 (defun perhaps-degrees-p (angle)
-  "True if ANGLE, in radians, is more than a whole turn and was perhaps meant in degrees: it is not
-a whole number of degrees in radians, as from a unit or by pi."
+  "True if the user perhaps meant ANGLE, in radians, as degrees. ANGLE is more than a full turn, and
+is not a whole number of degrees, as an angle computed with a unit or pi would be."
   (and (< (* 2 pi) (abs angle))
        (let ((degrees (* angle (/ 180 pi))))
          (< 1d-6 (abs (- degrees (fround degrees)))))))
 
 (defun degrees-advice (angle)
-  "Return in words how many turns ANGLE, perhaps meant in degrees, is, and what to write instead."
+  "Return a text that says how many turns ANGLE, in radians, is, and what to write if degrees are
+meant."
   (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
-    (format nil "~A radians are ~,1F whole turns. If ~A degrees are meant, write ~
-                 (* ~A (/ pi 180)), or at the prompt ~A deg."
+    (format nil "~A radians are ~,1F full turns. If ~A degrees are meant, write (* ~A (/ pi 180)), ~
+                 or at the prompt ~A deg."
             number (/ (abs angle) 2 pi) number number number)))
 
 ;;;; Operators: everything that a journal can do
@@ -94,14 +97,16 @@ a whole number of degrees in radians, as from a unit or by pi."
   "A request that a run accepts."
   (name nil symbol "the name of the operator, a symbol" :export)
   (types '() list "the types of the arguments")
-  (rest nil symbol "the type of any further arguments, or NIL")
-  (function nil function "the function of the operator's arguments that asks it again" :export))
+  (rest nil symbol "the type of all further arguments, or NIL")
+  (function nil function "the function, of the operator's arguments, that makes the request again"
+            :export))
 
 (define-registry operator "operator" :object-p operator-p :fixed t :internal t)
 
 (defun define-operator (name types function &key rest)
-  "Define the operator NAME, with arguments of TYPES, names of argument types, and then of the type
-REST, if given. FUNCTION repeats the request in the current simulation, with these arguments."
+  "Define the operator NAME. Its arguments have TYPES, a list of names of argument types; further
+arguments have the type REST, if given. FUNCTION is called with the arguments and repeats the
+request in the current simulation."
   (register *operators* name (make-operator name types rest function))
   name)
 

@@ -11,7 +11,8 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun keep-entry (entry)
-  "Return a list of ENTRY, a copy of its object, and a list of its variable's value, if any."
+  "Return a list of ENTRY, a copy of its object, and a list of the value of its variable, or NIL if
+it has no value."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
@@ -31,18 +32,21 @@
 (defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")
 
 (defun claim-definitions ()
-  "Make this thread the one inside WITH-OWN-DEFINITIONS. Return the value to restore afterwards."
+  "Record that this thread enters WITH-OWN-DEFINITIONS. Return the value of *OWN-DEFINITIONS-THREAD*
+to restore afterwards. Signals MISUSE if another thread is inside."
   (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
                                  (current-thread))))
     (unless (member other (list nil (current-thread)))
-      (reject-use "Another thread is inside with-own-definitions: only one at a time may be."))
+      (reject-use "Another thread is inside with-own-definitions. Only one thread at a time may be
+inside."))
     other))
 
 (defvar *kept-variables* '()
-  "Variables that hold what is current, for WITH-OWN-DEFINITIONS. Layers add them.")
+  "Variables, such as that of the current simulation, whose values WITH-OWN-DEFINITIONS restores.
+Layers add variables.")
 
 (defun call-with-own-definitions (function)
-  "Call FUNCTION; see WITH-OWN-DEFINITIONS."
+  "Call FUNCTION, then undo its definitions; see WITH-OWN-DEFINITIONS."
   (let* ((outer (claim-definitions))
          (variables *kept-variables*)
          (values (mapcar #'symbol-value variables))
@@ -57,8 +61,8 @@
 
 (addition with-own-definitions)
 (defmacro with-own-definitions (() &body body)
-  "Run BODY, then undo everything that it has defined, redefined or undefined (maps, robots, kickers
-and so on), however it ends. For tests, and users' suites. Return the values of BODY. A run of a map
-that BODY redefines ends; start another with SIMULATOR. Definitions are shared by all threads, so
-only one thread at a time may do this. Signals MISUSE otherwise."
+  "Run BODY. Then undo all definitions, redefinitions and undefinitions by BODY (of maps, robots,
+kickers and so on), even after an error. Made for tests. Return the values of BODY. A run of a map
+that BODY redefines ends; start another with SIMULATOR. Definitions are shared by all threads. If
+another thread is inside this macro, it signals MISUSE."
   `(call-with-own-definitions (lambda () ,@body)))

@@ -7,7 +7,8 @@
 
 ;; Much faster than PROGV for parameters defined before this is compiled, as all of ours are.
 (defmacro with-parameters-bound ((values) &body body)
-  "Run BODY with the parameters bound to the list in the variable VALUES, in order."
+  "Run BODY with all parameters bound, in order, to the elements of the list in the variable
+VALUES."
   (let ((symbols (mapcar #'parameter-symbol (registry-objects *parameters*))))
     `(let* ,(loop for symbol in symbols collect `(,symbol (pop ,values)))
        (progv (mapcar #'parameter-symbol (nthcdr ,(length symbols) (registry-objects *parameters*)))
@@ -23,8 +24,8 @@
 
 (defun call-with-parameters (settings function)
   "Call FUNCTION with every parameter bound: to its value in SETTINGS, a list of lists (name value),
-or else to its current value. Changes made inside end with the call. Signals WRONG-ARGUMENT and
-UNKNOWN-NAME."
+or else to its current value. Changes of parameters by FUNCTION end with the call. Signals
+WRONG-ARGUMENT for an invalid value and UNKNOWN-NAME for an unknown parameter."
   (check-settings settings)
   (let* ((settings (loop for (name value) in settings
                          collect (cons (parameter-symbol (find-parameter name)) value)))
@@ -37,21 +38,22 @@ UNKNOWN-NAME."
       (with-parameters-bound (values) (funcall function)))))
 
 (defun call-with-parameter-values (values function)
-  "Call FUNCTION with the parameters bound to VALUES, a vector as of PARAMETER-VALUES, and store
-their final values in it. Return the values of FUNCTION."
+  "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns. At the
+end, store the parameters' values in VALUES. Return the values of FUNCTION."
   (let ((known (coerce values 'list)))
     (with-parameters-bound (known)
       (multiple-value-prog1 (funcall function)
         (replace values (parameter-values))))))
 
 (defun parameter-values ()
-  "Return a vector of the values of all parameters as they are now, for FOLLOW-PARAMETERS."
+  "Return a vector of the current values of all parameters, for FOLLOW-PARAMETERS."
   (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
        (registry-objects *parameters*)))
 
 (defun digest-parameters (known digest)
-  "Add KNOWN, a vector of PARAMETER-VALUES, to DIGEST. Parameters that are not marked as digested
-are added by name, and only if they differ from their default, so that older digests stay valid."
+  "Add KNOWN, a vector as PARAMETER-VALUES returns, to DIGEST. Parameters without the mark :DIGESTED
+are added by name, and only if they differ from their defaults. So digests of earlier versions
+remain valid."
   (loop for parameter in (registry-objects *parameters*)
         for value across known
         if (parameter-digested-p parameter)
@@ -62,8 +64,8 @@ are added by name, and only if they differ from their default, so that older dig
                 (when others (digest-add digest others))))
 
 (defun changed-parameters (known)
-  "Return a list (symbol . value) of the parameters that differ from KNOWN, a vector of
-PARAMETER-VALUES."
+  "Return an alist (symbol . value) of the parameters that differ from KNOWN, a vector as
+PARAMETER-VALUES returns."
   (declare (type simple-vector known))
   (loop for parameter in (registry-objects *parameters*)
         for old across known
@@ -71,15 +73,15 @@ PARAMETER-VALUES."
         unless (eql old (symbol-value symbol)) collect (cons symbol (symbol-value symbol))))
 
 (defun usable-value-p (parameter value)
-  "True if PARAMETER can have VALUE; if not, queue an error message."
+  "Return true if PARAMETER can have VALUE. Otherwise queue an error message and return NIL."
   (handler-case (progn (check-parameter-value parameter value) t)
     (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
 
 (defun follow-parameters (known global-p note)
-  "Find the parameters that have changed since KNOWN, a vector of PARAMETER-VALUES, was last
-updated, and update it. If GLOBAL-P, the caller is a thread with its own bindings: values set
-globally by others are adopted, and values set here become global. An unusable value is
-reset, with an error message. NOTE is called with each symbol and its new value."
+  "Find the parameters that have changed since KNOWN, a vector as PARAMETER-VALUES returns, was last
+updated, and update KNOWN. Call NOTE with the symbol and new value of each. If GLOBAL-P is true, the
+caller is a thread with its own bindings of parameters: adopt values that other threads have set
+globally, and make values set in this thread global. Reset an invalid value, with an error message."
   (declare #.*hot* (type simple-vector known) (type function note))
   (loop for parameter in (registry-objects *parameters*)
         for index of-type fixnum from 0

@@ -24,7 +24,8 @@
   (group "" string "the heading that chapter 4 lists it under" :addition)
   (sentence "" string "what the parameter means" :addition)
   (digested-p t boolean
-              "digests have its value even where that is the default; see DIGEST-PARAMETERS"))
+              "digests include the parameter even if it has its default value; see
+DIGEST-PARAMETERS"))
 
 (addition parameter-name)
 (defun parameter-name (parameter)
@@ -41,14 +42,14 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun limit-text (limit)
-    "Return LIMIT, a number, as people write it: 1e9 for a thousand million."
+    "Return the number LIMIT as a short text: 1e9 for a thousand million."
     (let ((power (and (integerp limit) (>= limit 1000000) (1- (length (princ-to-string limit))))))
       (if (and power (= limit (expt 10 power)))
           (format nil "1e~D" power)
           (princ-to-string limit))))
 
   (defun describe-type (type)
-    "Return TYPE, a parameter's, in words."
+    "Return a text that describes TYPE, the type of a parameter."
     (cond ((eq type 'boolean) "T or NIL")
           ((and (consp type) (member (first type) '(real integer)))
            (format nil "~:[a number~;an integer~]~@[ from ~A~]~@[ to ~A~]"
@@ -62,8 +63,9 @@
                             (&key (unit "") (type t) (kind :limit) (group "") clean addition)
                             sentence)
   "Define SYMBOL as a special variable and simulation parameter. CLEAN is its value in a noiseless
-world, for parameters of kind :noise; write it like DEFAULT if they are equal. ADDITION is true if
-the manual does not have it, :DIGESTED if digests include it even with its default value."
+world, for parameters of the kind :NOISE; if it equals DEFAULT, it must be the same Lisp number.
+ADDITION is true if the manual does not have the parameter. With :DIGESTED, digests include the
+parameter even if it has its default value."
   ;; Or a run would have another digest after CLEAN-SIMULATION.
   (assert (or (eql default clean) (not (equalp default clean))) ()
           "The default of ~(~A~), ~S, equals its clean value: write ~S." symbol default clean)
@@ -95,7 +97,7 @@ the manual does not have it, :DIGESTED if digests include it even with its defau
 (addition parameter-value)
 (settable parameter-value)
 (defun parameter-value (parameter)
-  "Return the current value of PARAMETER, or of the parameter of that name. Can be set. Signals
+  "Return the current value of PARAMETER, a parameter or its name. Can be set. Signals
 WRONG-ARGUMENT if the new value is of the wrong type or out of range."
   (symbol-value (parameter-symbol (find-parameter parameter))))
 
@@ -119,14 +121,15 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 ;;; Noise on and off.
 
 (defvar *noise-before-cleaning* nil
-  "What CLEAN-SIMULATION changed: a list (symbol value), or NIL in a dirty simulation.")
+  "The parameters that CLEAN-SIMULATION has changed, with their former values: a list of lists
+(symbol value); NIL in a dirty simulation.")
 
 (public clean-simulation)
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and NO-SENSOR-ERROR*
 to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR* and STANDARD-MATCH-THRESHOLD* do not change,
-because they have no effect while NO-SENSOR-ERROR* is true. Nor do delays and limits. A second call
-changes nothing. Return nothing (manual, chapter 4; reading 117)."
+because they have no effect while NO-SENSOR-ERROR* is true. Delays and limits do not change either.
+A second call changes nothing. Return nothing (manual, chapter 4; reading 117)."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
           (loop for parameter in (registry-objects *parameters*)
@@ -137,8 +140,8 @@ changes nothing. Return nothing (manual, chapter 4; reading 117)."
 
 (public dirty-simulation)
 (defun dirty-simulation ()
-  "Restore the noise parameters from before CLEAN-SIMULATION; without that, do nothing. Return
-nothing (manual, chapter 4)."
+  "Undo CLEAN-SIMULATION: restore the values that the noise parameters had before. If
+CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4)."
   (loop for (symbol value) in (shiftf *noise-before-cleaning* nil)
         do (setf (symbol-value symbol) value))
   (values))
@@ -168,7 +171,8 @@ nothing (manual, chapter 4)."
      (braking* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long the robot coasts before it comes to a stop.")
      (motion-noise* 0.1d0 "fraction of the speed" :noise (real 0 1)
-      "How far the distance driven in a tick may be from the speed; sizes odometer intervals.")
+      "The largest difference, in a tick, between the distance driven and the speed. It also sets
+the width of odometer intervals.")
      (robot-turn-max-error* 0.01d0 "fraction of the angle" :noise (real 0 1)
       "How far the angle turned in a tick may be from the turn angle.")
      (robot-align-error-prob* 0.1d0 "probability" :noise (real 0 1)
@@ -178,23 +182,23 @@ nothing (manual, chapter 4)."
      (robot-turn-delay* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long a turn takes to start.")
      (robot-align-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How much longer than a turn an alignment takes to start."))
+      "How many ticks longer than a turn an alignment takes to start."))
     ("Cameras"
      (camera-angle-max-error* 0.02d0 "radians" :noise (real 0 #.+largest+)
       "The largest error of a designator's angle and of a camera's report of its turn.")
      (scan-density* 50 "rays" :limit (integer 1 100000)
-      "How many evenly spaced rays sample the field of view in a search for a designator. What lies
-between two rays is not seen: 50 over a right angle may miss a thing beyond 30 m, even dead ahead,
-as an even number of rays has none in the middle.")
+      "The number of evenly spaced rays that sample the field of view in a search for a designator.
+Things between two rays are not seen: with 50 rays over a right angle, the robot may miss a thing
+beyond 30 m, even straight ahead, because an even number of rays has none in the middle.")
      (prob-lose-track* 0.01d0 "probability per tick" :noise (real 0 1)
       "The chance that a track is lost for no reason.")
      (prob-lose-false-track* 0.4d0 "probability per tick" :noise (real 0 1)
       "The chance that the track of a false designator is lost.")
      (false-desig-drift-dist* 1 "cells per tick" :noise (real 0 #.+largest+)
-      "How far the perceived distance of a tracked false designator may drift.")
+      "The largest drift of the perceived distance of a tracked false designator.")
      ;; As reading 21 says.
      (false-desig-drift-ang* 0.2d0 "radians per tick" :noise (real 0 #.+largest+)
-      "How far the perceived angle of a tracked false designator may drift.")
+      "The largest drift of the perceived angle of a tracked false designator.")
      (camera-insert-miss-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that inserting a camera misses, which loses the designator.")
      (camera-insert-lose-desig-prob* 0.1d0 "probability" :noise (real 0 1)
@@ -207,11 +211,12 @@ as an even number of rays has none in the middle.")
       "How long acquiring a designator, or starting to track one, takes."))
     ("Sensor error"
      (type-false-pos* 0.01d0 "probability" :noise (real 0 1)
-      "The chance of sensing a place type, any of them, where there is none.")
+      "The chance of sensing some place type where there is none.")
      (type-false-neg* 0.05d0 "probability" :noise (real 0 1)
-      "The chance of not sensing the place type that is there.")
+      "The chance of not sensing the place type of a place.")
      (prob-stop* 0.07d0 "probability per cell" :limit (real 0 1)
-      "The chance that the walk along a ray that places a false designator stops.")
+      "The chance, in each cell of the walk along a ray, that the walk stops and places a false
+designator there.")
      ;; As reading 8 says.
      (miss-thing-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that a search overlooks a thing.")
@@ -219,33 +224,35 @@ as an even number of rays has none in the middle.")
       "The chance that a search overlooks a place.")
      ;; As reading 135 says.
      (false-thing-prob* 0.01d0 "probability" :noise (real 0 1)
-      "The chance that a search for things finds one that is not there. The manual has false
+      "The chance that a search for things finds a thing that does not exist. The manual has false
 designators of things, but no parameter for them." :addition :digested)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0 #.+largest+)
-      "The largest usual error of a pixel; errors are uniform from minus this to plus this.")
+      "The largest usual error of a pixel's value: errors are uniform between minus and plus this
+number.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
-      "The chance that a pixel is any value of the map's range.")
+      "The chance that a pixel has a random value in the map's range.")
      (no-sensor-error* nil "" :noise boolean
       "When true, nothing is sensed wrongly." :clean t)
      (discrete-noise-factor* 0.1d0 "per cell" :limit (real 0 #.+largest+)
-      "How fast the reading of discrete attributes gets worse with distance.")
+      "How fast readings of discrete attributes become less reliable with distance.")
      (continuous-noise-factor* 0.05d0 "cells" :limit (real 0 #.+largest+)
-      "How fast the reading of numeric attributes gets worse with distance.")
+      "How fast readings of numeric attributes become less accurate with distance.")
      (standard-match-threshold* 0.5d0 "attribute units" :limit (real 0 #.+largest+)
       "How far from a specified number a reading may be and still match."))
     ("Hands"
      (prob-miss-grasp* 0.04d0 "probability" :noise (real 0 1)
       "The chance that a grasp misses its object.")
      (prob-grasp-lose-desig* 0.1d0 "probability" :noise (real 0 1)
-      "The chance, for each designator on it, that grasping an object loses it.")
+      "The chance, for each designator of an object, that grasping the object loses the
+designator.")
      (hand-insert-miss-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that inserting a hand misses.")
      (hand-insert-lose-desig-prob* 0.1d0 "probability" :noise (real 0 1)
-      "The chance that an insertion that missed loses a designator.")
+      "The chance that an insertion of a hand that misses loses a designator.")
      (hand-move-delay* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long moving a hand takes.")
      (hand-grasp-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How much longer than a move a grasp takes."))
+      "How many ticks longer than a move of the hand a grasp takes."))
     ("Storage bins"
      (bin-close-jam-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that something in a storage bin keeps it from closing.")
@@ -253,36 +260,38 @@ designators of things, but no parameter for them." :addition :digested)
       "How long opening or closing a storage bin takes."))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
-      "How much time one tick stands for: motion, drift and chances scale with it, and what takes
-time takes fewer ticks. The manual, in chapter 1.2, only proposes to skip ahead."
+      "How many of the manual's ticks one tick represents. Motion, drift and chances for each tick
+are multiplied by this number; actions that take time take fewer ticks. The manual, in chapter 1.2,
+only proposes to skip time."
        :addition :digested))))
 
 (defun per-tick-probability (probability)
-  "Return the chance that an event of PROBABILITY per unit of time happens in a tick, which lasts
-TICK-QUANTUM* units."
+  "Return the chance that an event happens in a tick, if PROBABILITY is its chance per unit of time.
+A tick lasts TICK-QUANTUM* units."
   (let ((probability (double probability)))
     (if (= tick-quantum* 1)
         probability
         (- 1d0 (power (- 1d0 probability) (double tick-quantum*))))))
 
 (defun ticks-for (time)
-  "Return how many ticks an action of TIME units, the manual's ticks, takes when a tick lasts
-TICK-QUANTUM* units."
+  "Return the number of ticks that an action of TIME units takes. A unit is a tick of the manual; a
+tick lasts TICK-QUANTUM* units."
   (if (= tick-quantum* 1)
       time
       (values (ceiling time tick-quantum*))))
 
 (declaim (inline noise-of-step))
 (defun noise-of-step (noise step unit)
-  "Return the error of a STEP, as a fraction of it, if NOISE is the error of a step of length UNIT,
-which takes a unit of time. In a tick of many units their errors partly cancel out."
+  "Return the relative error of STEP, the length of a step, if NOISE is the relative error of a step
+of the length UNIT, which takes a unit of time. In a tick of many units, the errors of the units
+partly cancel out."
   (declare (type (double-float 0d0) step unit))
   (if (<= step unit)
       (double noise)
       (/ (double noise) (sqrt (/ step unit)))))
 
 (defun per-tick-drift (drift)
-  "Return the largest drift in a tick for one of at most DRIFT in a unit of time."
+  "Return the largest drift in a tick, if DRIFT is the largest drift in a unit of time."
   (if (= tick-quantum* 1)
       (double drift)
       (* (double drift) (sqrt (double tick-quantum*)))))

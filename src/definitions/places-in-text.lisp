@@ -9,7 +9,8 @@
 ;;; is then searched for in what has been reached.
 
 (defun skip-blanks (text i)
-  "Return the position in TEXT, from I on, of the first character outside of blanks and comments."
+  "Return the position of the first character in TEXT, from I on, that is neither blank nor part of
+a comment."
   (loop while (< i (length text))
         do (cond ((blank-p (char text i)) (incf i))
                  ((skip-comment text i) (setf i (skip-comment text i)))
@@ -17,11 +18,12 @@
   i)
 
 (defvar *last-element* '("" 0 0 nil)
-  "The arguments and the start found by the last ELEMENT-BOUNDS: elements are requested in order.
-Replaced, never modified.")
+  "A cache, because elements are requested in order: the arguments of the last call of
+ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modified.")
 
 (defun element-bounds (text start number)
-  "Return start and end in TEXT of element NUMBER of the list at START; NIL if it cannot be read."
+  "Return the start and end in TEXT of element NUMBER of the list at START; NIL if the element
+cannot be read."
   (with-form-reader (text)
     (destructuring-bind (last-text last-start last-number last-begin) *last-element*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)
@@ -39,7 +41,8 @@ Replaced, never modified.")
               (values begin end))))))))
 
 (defun bounds-of-place (text place)
-  "Return start and end in TEXT of PLACE, of PLACE-IN-TEXT, or of the smallest form around it."
+  "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT; if that
+form cannot be found, of the smallest form around it."
   (destructuring-bind (position . numbers) place
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))
@@ -48,7 +51,8 @@ Replaced, never modified.")
           (setf start inner-start end inner-end))))))
 
 (defun line-in-text (file form place)
-  "Return the line in FILE of FORM, if not NIL, or else of PLACE, of PLACE-IN-TEXT; or NIL."
+  "Return the line of FORM in FILE. If FORM is NIL or not found, return the line of LOCATION, a
+value of LOCATION-IN-TEXT. Return NIL if both fail."
   (and place
        (ignore-errors
          (let ((text (text-of-file file)))
@@ -59,14 +63,14 @@ Replaced, never modified.")
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
-  "Return the line in its file of the form that LOAD reads from STREAM."
+  "Return the number of the line on which the form begins that LOAD is reading from STREAM."
   (let ((text (file-text (pathname stream))))
     (line-number text (skip-blanks text (min (form-start stream) (length text))))))
 
 (defun reading-place (condition)
-  "Return the native name of the file that LOAD was reading when CONDITION was signalled, and the
-line where the reader stopped, or where the form begins if it does not end. Return NIL for other
-conditions. Works only while the file is open."
+  "If LOAD signalled CONDITION because it could not read a form, return the native name of the file,
+and the line where the reader stopped; if the form does not end, the line where it begins. Return
+NIL for other conditions. Works only while the file is open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
     (when (and stream (open-stream-p stream) (form-start stream))
       (let ((cause (cause-of-reading-trouble condition)))
@@ -76,8 +80,8 @@ conditions. Works only while the file is open."
                       (t (line-reached stream))))))))
 
 (defun compiling-place ()
-  "Return the native name of the file that COMPILE-FILE compiles, and the line of its current form,
-or NIL if that is not known. Return NIL if no file is being compiled."
+  "Return the native name of the file that COMPILE-FILE is compiling, and the line of the current
+form, or NIL if the line is unknown. Return NIL if no file is being compiled."
   (multiple-value-bind (path place) (compiler-place)
     (when path
       (let ((file (native-name path)))

@@ -17,26 +17,27 @@
                                                 &optional (digest (current-form-digest))
                                                   (head (current-operator-and-name))
                                                   (documentation (current-docstring)))))
-  "The definition of NAME as OBJECT, in SOURCE."
+  "The entry of a definition in a registry: SOURCE defines NAME as OBJECT."
   (name nil symbol "the symbol that is defined" :export)
   (object nil t "the object that the entry defines" :export)
   (source nil list "the source of the entry's definition; see sources.lisp" :export)
-  (variable nil symbol "the variable that holds the object or a value for it, or NIL")
-  (digest nil (or null integer) "a number for the form of the entry's definition, or NIL" :export)
-  (head '() list "the operator and name of that form, a list")
+  (variable nil symbol "the variable whose value is the object, or is computed from it; or NIL")
+  (digest nil (or null integer) "the digest of the form of the entry's definition, or NIL" :export)
+  (head '() list "the operator and name in the form of the definition, a list")
   (documentation nil (or null string) "the docstring of the definition, or NIL"))
 
 (define-record (registry (:constructor %make-registry (kind text)))
-  "All definitions of one KIND, called TEXT in messages."
+  "All definitions of one KIND. Messages name the kind with TEXT."
   (kind nil symbol)
   (text "" string)
   (entries '() list "the entries of the registry's definitions, in order" :writable :export)
   (objects '() list "the objects in REGISTRY, in order; do not modify the list" :writable :export)
-  (by-symbol-p nil boolean "names that are different symbols mean different things" :writable)
+  (by-symbol-p nil boolean "a definition replaces another only if both have the same symbol as the
+name" :writable)
   (fixed-p nil boolean "users cannot undefine any of the definitions" :writable)
   (sealed-p nil boolean "users cannot undefine the simulator's definitions" :writable)
-  (synonyms '() list "what else UNDEFINE may call the kind" :writable)
-  (aliases (constantly '()) function "the function that returns what else an object may be called,
+  (synonyms '() list "other names of the kind for UNDEFINE" :writable)
+  (aliases (constantly '()) function "the function that returns the other names of an object,
 strings and symbols" :writable))
 
 (defmethod print-object ((registry registry) stream)
@@ -66,7 +67,8 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol for NAME, such as \"PACKAGE:NAME\", as it is or in upper case; or NIL."
+  "Return the symbol that the string NAME, such as \"PACKAGE:NAME\", denotes as it is or in upper
+case; NIL if there is none."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
@@ -76,7 +78,8 @@ strings and symbols" :writable))
              (or (find-symbol name package) (find-symbol (string-upcase name) package)))))))
 
 (defun lookup-entry (name registry)
-  "Return the entry of REGISTRY for NAME, a symbol or string, perhaps PACKAGE:NAME, or NIL."
+  "Return the entry of REGISTRY for NAME, a symbol or a string, which may have the form
+PACKAGE:NAME; or NIL."
   (when (typep name '(or symbol string))
     (let ((entries (registry-entries registry))
           (name (or (qualified-symbol name) name)))
@@ -90,30 +93,32 @@ strings and symbols" :writable))
   (remove-if #'registry-fixed-p *registries*))
 
 (defun entries-meant (name)
-  "Return the entries of users' definitions, of all kinds, for NAME, a symbol."
+  "Return the entries of users' definitions with the name NAME, a symbol, in all registries."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         when (and entry (users-p entry)) collect entry))
 
 (defun defined-names (registry)
-  "Return the names defined in REGISTRY, in order."
+  "Return a list of the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))
 
 (defun names-to-offer (registry)
-  "Return the names defined in REGISTRY to suggest: those of users first, the newest of these before
-others."
+  "Return a list of the names in REGISTRY in the order in which messages suggest them: those that
+users have defined, the newest first, then the simulator's."
   (let ((entries (registry-entries registry)))
     (mapcar #'entry-name (append (reverse (remove-if-not #'users-p entries))
                                  (remove-if #'users-p entries)))))
 
 (defun find-definition (name registry errorp)
-  "Return the object in REGISTRY called NAME; else NIL, or signal UNKNOWN-NAME if ERRORP is true."
+  "Return the object in REGISTRY with the name NAME. If there is none, return NIL, or signal
+UNKNOWN-NAME if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
 
 (defun from-this-file-p (name registry)
-  "True if NAME in REGISTRY is from the file being loaded, which may still redefine it."
+  "True if NAME in REGISTRY is defined in the file that is being loaded. (Later forms of the file
+may redefine NAME.)"
   (let ((entry (lookup-entry name registry))
         (file (source-file (current-source))))
     (and entry file (equal file (source-file (entry-source entry))))))
@@ -121,11 +126,13 @@ others."
 ;;; Defining.
 
 (defgeneric take-back (object)
-  (:documentation "Undo the effects of the definition of OBJECT, other than its entry.")
+  (:documentation "Undo the effects of the definition of OBJECT. The entry in the registry is
+removed elsewhere.")
   (:method (object) object))
 
 (defgeneric reinstate (object)
-  (:documentation "Redo what TAKE-BACK may have undone: the definition of OBJECT is restored.")
+  (:documentation "Redo the effects of the definition of OBJECT that TAKE-BACK has undone, because
+the definition is restored.")
   (:method (object) object))
 
 (defun entry-to-replace (name registry)
@@ -149,8 +156,9 @@ others."
   (not (equal *own-source* (entry-source entry))))
 
 (defun entries-with (new old before registry)
-  "Return the entries of REGISTRY with NEW: before the object BEFORE, in place of OLD unless another
-entry of the same name would then be last, or last."
+  "Return the entries of REGISTRY with the entry NEW added. If BEFORE, an object, is given, NEW
+precedes its entry. Else NEW replaces the entry OLD, unless an entry of the same name follows OLD.
+Else NEW is the last."
   (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
@@ -160,18 +168,20 @@ entry of the same name would then be last, or last."
           (t (append others (list new))))))
 
 (defun variable-in-use-p (name)
-  "True if the variable NAME has a global value of something else."
+  "True if the variable NAME has a global value other than NIL, so that a definition must not set
+it."
   (ignore-errors (global-value name)))
 
 (defun free-variable (name kind)
-  "Return NAME if a definition of KIND can have it as its variable. Else return NIL, with a warning
-unless NAME is a symbol of Common Lisp or ours."
+  "Return NAME if a definition of KIND can set the variable NAME. Else return NIL, and warn unless
+NAME is a symbol of Common Lisp or of the simulator."
   (flet ((refuse (control)
            (warn-of-definition "~@?: refer to the ~A by its name, '~(~A~)."
                                control name kind name)))
     (cond ((not (variable-name-p name))
            (when (users-symbol-p name)
-             (refuse "~(~A~) is a constant or the like and keeps its value")))
+             (refuse "~(~A~) is a constant, a symbol macro or a global variable, and keeps its
+value")))
           ((variable-in-use-p name) (refuse "The variable ~(~A~) already has a value"))
           (t name))))
 
@@ -183,16 +193,18 @@ unless NAME is a symbol of Common Lisp or ours."
                           (registry-text registry) (entry-name new) other file))))
 
 (defun variable-for (name old registry)
-  "Return the variable for a definition of NAME: that of the entry OLD, or NAME if unused, or NIL."
+  "Return the variable for a definition of NAME: the variable of the entry OLD; or NAME, if that
+variable is unused; or NIL."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (free-variable name (registry-text registry)))))
 
 (defvar *definition-listener* nil
-  "A function that is called in this thread with each object that is defined, or NIL.")
+  "A function that is called with each object that this thread defines, or NIL.")
 
 (defun replace-entry (old new registry before value)
-  "Put the entry NEW into REGISTRY, in place of OLD or before the object BEFORE, and set its
-variable, if any, to VALUE. True unless another thread has replaced OLD meanwhile."
+  "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. Set the
+variable of NEW, if any, to VALUE. Return true; but if another thread has replaced OLD meanwhile, do
+nothing and return NIL."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
       (set-entries registry (entries-with new old before registry))
@@ -200,10 +212,10 @@ variable, if any, to VALUE. True unless another thread has replaced OLD meanwhil
       t)))
 
 (defun register (registry name object &key variable (value object) before)
-  "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. With VARIABLE, set the
-special variable NAME to VALUE if it can be one and is unused. BEFORE is an object of the registry
-to come before, instead of last. Return OBJECT and the object that it replaces, or NIL. If several
-threads define NAME, each replaces another object."
+  "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. If VARIABLE is true, set the
+special variable NAME to VALUE, if NAME can be a special variable and is unused. A new entry is the
+last, or precedes that of the object BEFORE. Return OBJECT and the object that it replaces, or NIL.
+If several threads define NAME at a time, each replaces a different object."
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (variable-for name old registry)))
@@ -217,7 +229,7 @@ threads define NAME, each replaces another object."
 ;;; Undefining.
 
 (defun registry-called (kind registries)
-  "Return the one of REGISTRIES of KIND, a symbol such as KICKER, or NIL."
+  "Return the registry among REGISTRIES whose kind is KIND, a symbol such as KICKER, or NIL."
   (find-if (lambda (registry)
              (or (same-name-p kind (registry-kind registry))
                  (member kind (registry-synonyms registry) :test #'same-name-p)))
@@ -228,8 +240,9 @@ threads define NAME, each replaces another object."
       (reject-name "kind of definition" kind (mapcar #'usual-name (open-registries)))))
 
 (defun all-definitions (kind)
-  "Return lists (name object source) for all definitions of KIND, as in UNDEFINE, in order. SOURCE
-is its file, :OWN if it is the simulator's, or NIL if it was typed."
+  "Return a list of lists (name object source) for all definitions of KIND, a kind as in UNDEFINE,
+in order. SOURCE is the file of a definition, :OWN for definitions of the simulator, or NIL for
+typed definitions."
   (loop for entry in (registry-entries (find-registry kind))
         collect (list (entry-name entry) (entry-object entry)
                       (if (users-p entry) (source-file (entry-source entry)) :own))))
@@ -238,7 +251,7 @@ is its file, :OWN if it is the simulator's, or NIL if it was typed."
   (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)
-  "Make VARIABLE unbound globally. A binding by a headless run stays."
+  "Make VARIABLE globally unbound. Bindings of VARIABLE by headless runs remain."
   (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
 (defun forget-entry (entry)
@@ -253,10 +266,10 @@ is its file, :OWN if it is the simulator's, or NIL if it was typed."
 
 (addition undefine)
 (defun undefine (kind name)
-  "Remove the definition of NAME, of KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
-KICKER, MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. Its variable becomes
-unbound; existing worlds keep what they have. Return NAME. Signals UNKNOWN-NAME, MISUSE for
-definitions that are not users', and WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  "Remove the definition of NAME as KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
+MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. The variable of the definition
+becomes unbound. Existing worlds do not change. Return NAME. Signals UNKNOWN-NAME; MISUSE for some
+definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))
@@ -274,25 +287,25 @@ definitions that are not users', and WRONG-ARGUMENT unless KIND and NAME are sym
 (defmacro define-registry (kind text &key object-p by-symbol fixed sealed synonyms aliases internal
                                        (finder (symbolicate 'find- kind))
                                        (lister (symbolicate 'all- kind 's)))
-  "Define the registry of KIND, a symbol, in the variable *KINDs*, and the functions FIND-KIND and
-ALL-KINDs, or FINDER and LISTER, for users unless INTERNAL is true. TEXT describes a definition in
-messages. OBJECT-P is the predicate of objects that can be passed instead of a name. The rest are
-slots of REGISTRY."
+  "Define the registry of KIND, a symbol. For the kind KICKER it is in the variable *KICKERS*, and
+the functions FIND-KICKER and ALL-KICKERS (or the names FINDER and LISTER) search it. Users may call
+the functions unless INTERNAL is true. Messages name a definition with TEXT. Objects for which
+OBJECT-P is true can be passed in place of names. The other arguments are slots of REGISTRY."
   (let ((variable (symbolicate '* kind 's*)))
     `(progn
        (defparameter ,variable
          (ensure-registry ',kind ,text :by-symbol ,by-symbol :fixed ,fixed :sealed ,sealed
                                        :synonyms ',synonyms :aliases ,aliases)
-         ,(format nil "The registry of each ~A." text))
+         ,(format nil "The registry with the definition of each ~A." text))
        ,@(unless internal `((addition ,finder ,lister)))
        (defun ,finder (name &optional (errorp t))
-         ,(format nil "Return the ~A called NAME, a symbol or string~@[; one is returned as it ~
-                       is~*~]. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is ~
-                       NIL."
+         ,(format nil "Return the ~A named NAME, a symbol or string.~:[~; If NAME is such an ~
+                       object, return it.~] If there is none, signal UNKNOWN-NAME, or return ~
+                       NIL if ERRORP is NIL."
                   text object-p)
          ,(if object-p
               `(if (,object-p name) name (find-definition name ,variable errorp))
               `(find-definition name ,variable errorp)))
        (defun ,lister ()
-         ,(format nil "Return a list of the ~As that are defined, in order of definition." text)
+         ,(format nil "Return a list of all defined ~As, in order of definition." text)
          (copy-list (registry-objects ,variable))))))

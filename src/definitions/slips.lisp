@@ -7,8 +7,8 @@
           values-used-in code-doubt))
 
 (defun ours-called (name)
-  "Return the public function of ours that is called NAME, a string or symbol, and the name of its
-package; or NIL."
+  "Return the symbol of the public function named NAME, a string or symbol, that ARS or NISP
+exports, and the name of that package; or NIL."
   ;; A user's package may have local nicknames.
   (let ((*package* (find-package "KEYWORD")))
     (dolist (package '("ARS" "NISP"))
@@ -19,7 +19,8 @@ package; or NIL."
 ;;; Names in other packages.
 
 (defun user-packages ()
-  "Return the packages that use ARS, ARS-USER first, without those of this system."
+  "Return a list of users' packages: those that use ARS, with ARS-USER first, without the
+simulator's own packages."
   (let ((ours (find-package "ARS-USER")))
     (cons ours
           (remove-if (lambda (package)
@@ -28,18 +29,20 @@ package; or NIL."
                      (and (find-package "ARS") (package-used-by-list "ARS"))))))
 
 (defun elsewhere-text (name predicate)
-  "Return in a sentence how to use another users' symbol called NAME that fits PREDICATE, or NIL."
+  "If another users' package has a symbol with the name of NAME for which PREDICATE is true, return
+a sentence that says how to use that symbol; else NIL."
   (dolist (package (user-packages))
     (multiple-value-bind (symbol status) (find-symbol (symbol-name name) package)
       (when (and symbol (not (eq symbol name)) (funcall predicate symbol))
         (return
           (if (and (eq :external status) (eq package (symbol-package symbol)))
               (format nil "There is ~(~A:~A~)." (package-name package) symbol)
-              (format nil "~A has it: say (in-package :~(~:*~A~)) first."
+              (format nil "The package ~A has it: type (in-package :~(~:*~A~)) first."
                       (package-name package))))))))
 
 (defun symbols-seen (package test)
-  "Return the symbols accessible in PACKAGE, not Lisp's, that satisfy TEST, sorted by name."
+  "Return a list, sorted by name, of the symbols accessible in PACKAGE for which TEST is true,
+without those of Common Lisp."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
       (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
@@ -49,8 +52,9 @@ package; or NIL."
 ;;; Functions.
 
 (defgeneric function-meant (name)
-  (:documentation "Return the name of the function that is called NAME elsewhere, as at the prompt,
-where NAME is a symbol that names no function; or NIL. The layer that knows commands has a method.")
+  (:documentation "NAME is a symbol without a function. If NAME is a command at the prompt, return
+the name of the function that the command calls; else NIL. The layer that defines commands has a
+method.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun function-slip-text (name)
@@ -59,9 +63,9 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
         (ours-called (or (function-meant name) name))
       (if ours
           (if (eq ours (find-symbol (symbol-name ours) (symbol-package name)))
-              (format nil "In Lisp it is ~(~A~)." ours)
-              (format nil "There is one in ~A: write ~(~:*~A:~A~), or type (in-package :ars-user) ~
-                           first."
+              (format nil "In Lisp, the function is ~(~A~)." ours)
+              (format nil "The package ~A has it: write ~(~:*~A:~A~), or type (in-package ~
+                           :ars-user) first."
                       package ours))
           (function-elsewhere-text name)))))
 
@@ -77,7 +81,8 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 ;;; Variables.
 
 (defun defined-slip-text (name)
-  "Return in a sentence the kind of the definition called NAME, which has no value, or NIL."
+  "If the unbound symbol NAME is the name of a definition, such as a map, return a sentence that
+says so; else NIL."
   (loop for registry in (open-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
@@ -86,7 +91,8 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
                           (usual-name registry) (unqualified-text name))))
 
 (defun variable-slip (name)
-  "Return in words the variable that NAME, which has no value, may be a misspelling of; or NIL."
+  "Return the name, in lower case, of the variable of which the unbound symbol NAME may be a
+misspelling; or NIL."
   (let ((meant (and (symbol-package name)
                     (first (symbols-seen (symbol-package name)
                                          (lambda (symbol)
@@ -113,14 +119,16 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 
 ;;; Syntax.
 
-(defvar *dispatch-remedies* '() "Lists (character remedy) for what # reads in other readtables.")
+(defvar *dispatch-remedies* '() "Lists (character remedy) for characters that can follow # in other
+readtables only.")
 
 (defun note-dispatch-character (character remedy)
-  "Register REMEDY, a sentence, for code with # and CHARACTER that Lisp cannot read."
+  "Register REMEDY, a sentence for the error that Lisp cannot read # followed by CHARACTER."
   (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
 
 (defun syntax-slip-text (condition)
-  "Return in a sentence how to make Lisp read what CONDITION says cannot be read, or NIL."
+  "If CONDITION says that Lisp cannot read some syntax, return a sentence that says how to make it
+readable; or NIL."
   (let ((character (and (typep condition 'simple-condition)
                         (starts-with-subseq "no dispatch function"
                                             (simple-condition-format-control condition))
@@ -130,24 +138,27 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 ;;; Types.
 
 (defgeneric value-behind (datum)
-  (:documentation "Return in a sentence what to pass instead of DATUM, of the wrong type, or NIL.")
+  (:documentation "If DATUM is an argument of the wrong type, return a sentence that says which
+value to pass in its place; or NIL.")
   (:method (datum)
     (declare (ignore datum))
     nil))
 
 (defun source-known-p (type)
-  "True if the words for TYPE, an argument type, say what returns such an object."
+  "True if the description of TYPE, an argument type, says which function returns such an object."
   (and (our-own-p (argument-type-name type))
        (search " returns" (argument-type-words type))))
 
 (defun type-remedy (datum type)
-  "Return in a sentence what is wrong with DATUM for the argument TYPE, or what to give, or NIL."
+  "Return a sentence that says what is wrong with DATUM as an argument of TYPE, or which value to
+give; or NIL."
   (let ((type (and (symbolp type) (find-argument-type type nil))))
     (when (and type (or (trouble-with datum type) (source-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defun slip-text (condition)
-  "Return in a sentence what was meant or what to do, for Lisp's own error CONDITION; or NIL."
+  "Return a sentence that says what the user perhaps meant, or what to do, after CONDITION, an error
+of Lisp's own; or NIL."
   (typecase condition
     (undefined-function (function-slip-text (cell-error-name condition)))
     (unbound-variable (variable-slip-text (cell-error-name condition)))
@@ -161,14 +172,14 @@ where NAME is a symbol that names no function; or NIL. The layer that knows comm
 ;;;; Tests that are never true, or always
 
 (defgeneric test-doubt (form)
-  (:documentation "Return in a sentence why FORM, a test in Lisp code, is probably a mistake; or
-NIL. The layer that knows fluents has methods.")
+  (:documentation "Return a sentence that says why FORM, a test in Lisp code, is probably a mistake;
+or NIL. The layer that defines fluents has methods.")
   (:method (form) (declare (ignore form)) nil))
 
 ;;; Words that something is compared with: keywords, and what may be meant for one.
 
 (defun word-p (object)
-  "True if OBJECT, a constant, may be meant for a word such as an error code."
+  "True if OBJECT, a constant, may be meant as a word such as an error code."
   (or (stringp object) (and (symbolp object) (not (member object '(nil t otherwise))))))
 
 (defun words-in (object)
@@ -181,7 +192,8 @@ NIL. The layer that knows fluents has methods.")
         ((or (keywordp form) (stringp form)) form)))
 
 (defun compared-words (form)
-  "Return the words that FORM compares something with, and the form of that; NIL if it does not."
+  "If FORM compares the value of a form with constant words, return a list of the words, and that
+form; else NIL."
   (let ((arguments (rest form)))
     (flet ((is (count &rest names)
              (and (member (first form) names)
@@ -199,15 +211,15 @@ NIL. The layer that knows fluents has methods.")
                      (first arguments)))))))
 
 (defun map-calls (function form)
-  "Call FUNCTION with each list in FORM, code, that may be a call: none that is quoted."
+  "Call FUNCTION with each list in the code FORM that may be a call. Skip quoted lists."
   (when (and (consp form) (not (eq 'quote (first form))))
     (funcall function form)
     (loop for rest = form then (cdr rest)
           while (consp rest) do (map-calls function (car rest)))))
 
 (defun map-comparisons (function form)
-  "Call FUNCTION with each form in FORM, code, that is compared with a word, that word, and the form
-that compares them."
+  "Call FUNCTION for each comparison of a form with a word in the code FORM. Its arguments are the
+compared form, the word, and the form that compares them."
   (map-calls (lambda (call)
                (multiple-value-bind (words subject) (compared-words call)
                  (dolist (word words) (funcall function subject word call))))
@@ -216,7 +228,8 @@ that compares them."
 ;;; Where values are used.
 
 (defun lisp-call-p (form &rest names)
-  "True if FORM is a proper list that calls an operator with one of NAMES that is not a user's."
+  "True if FORM is a proper list that calls an operator named by one of the strings NAMES, of Common
+Lisp or of the simulator."
   (and (typep form '(cons symbol))
        (proper-list-p form)
        (not (users-symbol-p (first form)))
@@ -224,12 +237,12 @@ that compares them."
        t))
 
 (defun test-forms (form)
-  "Return the tests in FORM, a call, if that is a condition."
+  "Return a list of the tests in FORM, if FORM is a conditional such as IF or COND."
   (cond ((lisp-call-p form "IF" "WHEN" "UNLESS") (list (second form)))
         ((lisp-call-p form "COND") (mapcar #'first (remove-if #'atom (rest form))))))
 
 (defun values-used-in (form)
-  "Return the forms whose values FORM, a call, binds, stores or tests."
+  "Return a list of the forms whose values the form FORM binds, stores or tests."
   (cond ((lisp-call-p form "LET" "LET*")
          (loop for binding in (and (proper-list-p (second form)) (second form))
                when (typep binding '(cons t (cons t null))) collect (second binding)))
@@ -244,10 +257,10 @@ that compares them."
 
 (define-constant +words-of-success+ '(:done :ok :okay :success :succeeded :none :no-error)
   :test #'equal
-  :documentation "Words that are no error codes, and that are meant for success.")
+  :documentation "Words that users mistake for the error code of a command that has succeeded.")
 
 (defun code-like (word)
-  "Return the error code that WORD, which is none, was perhaps meant for; or NIL."
+  "Return the error code that the user perhaps meant by WORD, which is no error code; or NIL."
   (or (nearest-name word *error-codes*)
       (find-if (lambda (code)
                  (let ((code (symbol-name code)) (word (symbol-name word)))
@@ -256,14 +269,16 @@ that compares them."
                *error-codes*)))
 
 (defun code-doubt (word)
-  "Return in a sentence why no command ends with the error code WORD, or NIL if one may."
+  "If no command ends with the error code WORD, return a sentence that says why; else NIL."
   (let ((code (find word *error-codes* :test #'string-equal)))
     (cond ((not (keywordp word))
            (and code
-                (format nil "~(~S~) is no error code: they are keywords. Write ~(~S~)." word code)))
+                (format nil "~(~S~) is no error code, because error codes are keywords. Write
+~(~S~)." word code)))
           (code nil)
           ((member word +words-of-success+)
-           (format nil "no command ends with ~(~S~): its error code is NIL if it succeeds." word))
+           (format nil "no command ends with ~(~S~): the error code of a command that succeeds is
+NIL." word))
           (t (let ((like (code-like word)))
                (and like
                     (format nil "no command ends with ~(~S~). Did you mean ~(~S~)?" word like)))))))

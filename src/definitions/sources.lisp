@@ -24,7 +24,8 @@
 ;;; A map has thousands of clauses, each of which may be looked up, so the last result is cached.
 
 (defun call-caching (function cell &rest keys)
-  "Do what CACHING does. CELL holds (value key...) of the last call, replaced, never modified."
+  "Return the value of FUNCTION, cached as by CACHING. The element of CELL, a list (value key...),
+belongs to the last call; it is replaced, never modified."
   (destructuring-bind (&optional value &rest last-keys) (first cell)
     (if (and last-keys
              (every (lambda (key last)
@@ -35,13 +36,15 @@
         (first (setf (first cell) (cons (funcall function) keys))))))
 
 (defmacro caching ((&rest keys) &body body)
-  "Return the value of BODY, cached while the strings and objects KEYS are those of the last call."
+  "Return the value of BODY. If the values of KEYS, strings and other objects, are those of the last
+call, return the value of that call."
   (apply #'form-calling 'call-caching body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
 
 (defmacro with-form-reader ((text) &body body)
-  "Run BODY, where (READ-WORDS position) returns the form in TEXT that begins there, and its end."
+  "Run BODY. In BODY, (READ-WORDS position) returns the form in TEXT that begins at the position,
+and the end of the form."
   (with-gensyms (words)
     ;; Other packages are found by the local nicknames of the current one.
     `(let ((,words (make-package (gensym "WORDS") :use '())))
@@ -64,7 +67,7 @@
                (and (typep a 'structure-object) (eq (type-of a) (type-of b)))))))
 
 (defun skip-quoted (text start)
-  "Return the end of the string or |symbol| that begins in TEXT at START."
+  "Return the end position of the string or |symbol| that begins in TEXT at START."
   (loop with quote = (char text start)
         for i from (1+ start) below (length text)
         for char = (char text i)
@@ -73,7 +76,8 @@
         finally (return (length text))))
 
 (defun skip-block-comment (text start)
-  "Return the end of the block comment, perhaps nested, that begins in TEXT at START."
+  "Return the end position of the block comment that begins in TEXT at START. Comments may be
+nested."
   (loop with depth = 0
         for i from start below (1- (length text))
         do (cond ((string= "#|" text :start2 i :end2 (+ i 2)) (incf depth) (incf i))
@@ -88,12 +92,13 @@
          (string= prefix text :start2 i :end2 end))))
 
 (defun skip-comment (text i)
-  "Return the end of the comment that begins in TEXT at I; NIL if there is none."
+  "Return the end position of the comment that begins in TEXT at I; NIL if no comment begins there."
   (cond ((char= #\; (char text i)) (or (position #\Newline text :start i) (length text)))
         ((starts-at-p "#|" text i) (skip-block-comment text i))))
 
 (defun skip-text (text i)
-  "Return the end of the comment, string or escaped character that begins in TEXT at I, or NIL."
+  "Return the end position of the comment, string or escaped character that begins in TEXT at I; NIL
+if none begins there."
   (cond ((skip-comment text i))
         ((find (char text i) "\"|") (skip-quoted text i))
         ((starts-at-p "#\\" text i) (+ i 3))
@@ -128,11 +133,13 @@
                          (list (list position end (same-words-p found form)))))))))
 
 (defun definition-positions (text form)
-  "Return (start end equal-p) for each form in TEXT with the operator and name of FORM."
+  "Return a list (start end equal-p) for each form in TEXT that has the operator and name of FORM.
+EQUAL-P is true if the form equals FORM."
   (caching (text form) (look-for-definitions text form)))
 
 (defun position-of-definition (positions ordinal)
-  "Return the one of POSITIONS that is unchanged, or number ORDINAL, or the first; and its number."
+  "Return the element of POSITIONS, lists of DEFINITION-POSITIONS, whose form is unchanged; else
+number ORDINAL; else the first. Return its number as a second value."
   (let ((number (or (position-if #'third positions)
                     (and ordinal (< ordinal (length positions)) ordinal)
                     0)))
@@ -145,13 +152,13 @@
           collect (cons position (read-words position)))))
 
 (defvar *last-place* '(())
-  "The list that FORM-POSITION searched last, consed to its tail from what was found on. Replaced,
-never modified.")
+  "A cache: a cons of the list that FORM-POSITION has searched last, and the tail of that list that
+begins with the form found. The cons is replaced, never modified.")
 
 ;; Forms are mostly looked up in order.
 (defun form-position (text form start end)
-  "Return the position of FORM, a list, in TEXT between START and END, the next from the last search
-if possible; or NIL."
+  "Return a position of FORM, a list, in TEXT between START and END, or NIL. If FORM occurs more
+than once, prefer the first position after that of the last search."
   (let ((forms (caching (text start end) (forms-in text start end))))
     (flet ((look (from)
              (let ((tail (member form from :key #'cdr :test #'same-words-p)))
@@ -161,7 +168,8 @@ if possible; or NIL."
           (look forms)))))
 
 (defun word-position (text form start end)
-  "Return the position of the first word of FORM, or of FORM itself, in TEXT, or NIL."
+  "Return the position in TEXT, between START and END, of FORM, if it is an atom, or of its first
+element; or NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))
@@ -174,13 +182,15 @@ if possible; or NIL."
   (1+ (count #\Newline text :end position)))
 
 (defun text-of-file (file)
-  "Return the text of FILE, a native name, as FILE-TEXT does, cached for repeated calls."
+  "Return the text of FILE, a native name, as FILE-TEXT does. The text is cached until the file or
+the write date changes."
   (let ((path (native-path file)))
     (caching (file (file-write-date path)) (file-text path))))
 
 (defun line-of-clause (text form clause)
-  "Return the line in TEXT of CLAUSE of the definition FORM, or of the definition if CLAUSE is not
-found in it, or NIL; and which of the definitions of that name it is."
+  "Return two values for CLAUSE, a part of the definition FORM: the number of its line in TEXT, and
+the ordinal of the definition among those of the same operator and name. If CLAUSE is not found,
+return the line of the definition, or NIL."
   (let ((positions (and form (definition-positions text form))))
     (multiple-value-bind (place number) (position-of-definition positions nil)
       (destructuring-bind (&optional (start 0) (end (length text)) same) place
@@ -194,7 +204,8 @@ found in it, or NIL; and which of the definitions of that name it is."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
-  "Return how often WORD occurs in FILE, in any case, also in comments; NIL if FILE cannot be read."
+  "Return how many times WORD occurs in FILE, including comments, in upper or lower case; NIL if
+FILE cannot be read."
   (ignore-errors
     (loop with text = (text-of-file file)
           for start = (search word text :test #'char-equal)
@@ -202,14 +213,16 @@ found in it, or NIL; and which of the definitions of that name it is."
           while start count t)))
 
 (defun part-in-file-p (file form part)
-  "True if FILE now has a form with operator and name of FORM that contains PART, a list."
+  "True if FILE now contains a form that has the operator and name of FORM and contains PART, a
+list."
   (ignore-errors
     (let ((text (read-file-into-string (native-path file))))
       (loop for (start end) in (definition-positions text form)
               thereis (form-position text part start end)))))
 
 (defun read-definition-again (file form ordinal)
-  "Return the definition FORM, number ORDINAL of its name, as FILE has it now, or signal MISUSE."
+  "Return the present version, in FILE, of the definition FORM, number ORDINAL among those of the
+same operator and name. Signals MISUSE if it is not found."
   (let* ((text (read-file-into-string (native-path file)))
          (place (position-of-definition (definition-positions text form) ordinal)))
     (unless place
@@ -222,7 +235,7 @@ found in it, or NIL; and which of the definitions of that name it is."
   (find char "()"))
 
 (defun code-alone (text)
-  "Return TEXT without comments and blanks, except one space between two words."
+  "Return TEXT without comments and blanks, but with one space between words."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))
@@ -247,7 +260,8 @@ found in it, or NIL; and which of the definitions of that name it is."
         finally (return (length text))))
 
 (defun code-without (operator text)
-  "Return TEXT, of CODE-ALONE, without top-level forms with OPERATOR, a string, of any package."
+  "Return TEXT, a value of CODE-ALONE, without the top-level forms whose operator has the name
+OPERATOR, a string."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
@@ -257,8 +271,8 @@ found in it, or NIL; and which of the definitions of that name it is."
                (setf i end)))))
 
 (defun file-digest (file &optional without)
-  "Return a digest of the code in FILE. Comments and layout do not count, nor top-level forms with
-the operator WITHOUT, a string, if given."
+  "Return a digest of the code in FILE, without comments and layout. If WITHOUT, a string, is given,
+leave out the top-level forms with that operator."
   ;; Any file can be read this way. The meaning of its bytes does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)))
     (caching (text without)
@@ -281,7 +295,8 @@ the operator WITHOUT, a string, if given."
         until (<= -1 rest 0)))
 
 (defun kind-of-atom (atom)
-  "Return the name of the type of ATOM, the same for all that are read alike."
+  "Return the name of the type of ATOM. Atoms that Lisp reads from the same text have the same
+name."
   (typecase atom
     (symbol 'symbol)
     (string 'string)
@@ -289,7 +304,8 @@ the operator WITHOUT, a string, if given."
     (t (first (ensure-list (type-of atom))))))
 
 (defun add-atom (atom digest known)
-  "Add ATOM, of a form, to DIGEST. Uninterned symbols count by their order, which KNOWN keeps."
+  "Add ATOM, a part of a form, to DIGEST. For an uninterned symbol, add its number of first
+occurrence, which the table KNOWN holds."
   (digest-add digest (kind-of-atom atom))
   (typecase atom
     (symbol (digest-add digest (if (symbol-package atom)

@@ -21,9 +21,9 @@
   ((text :initarg :text :reader user-code-error-text)
    (cause :initarg :cause :reader user-code-error-cause))
   (:report (lambda (condition stream) (write-string (user-code-error-text condition) stream)))
-  (:documentation "An error in users' code that a run has called: a continuation, a kicker, a test,
-a plan that was begun. The text names the code. RUN-TICKS, RUN-UNTIL, RUN-PLAN and WITH-SIMULATION
-signal it in a run with the error policy :SIGNAL, see WITH-SIMULATION."))
+  (:documentation "An error in users' code that a run has called: a continuation, a kicker, a test
+or a plan. The text of the error names the code. In a run with the error policy :SIGNAL (see
+WITH-SIMULATION), RUN-TICKS, RUN-UNTIL, RUN-PLAN and WITH-SIMULATION signal this error."))
 (setf (documentation 'user-code-error-cause 'function)
       "Return the condition, or the failure of a plan, that caused a USER-CODE-ERROR.")
 
@@ -36,15 +36,15 @@ signal it in a run with the error policy :SIGNAL, see WITH-SIMULATION."))
 
 (defun trouble-set (cause text &rest stuff)
   "Queue an error message with the items STUFF about CAUSE, a condition in users' code or a failure
-of a plan; TEXT says it in a line. Return nothing."
+of a plan. TEXT is the message on one line. Return nothing."
   (queue-items :error stuff :cause cause :summary text))
 
 (defun error-of-message (message)
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
 (defun errors-in (queue run-p)
-  "Return the errors of users' code in QUEUE, of runs for which RUN-P is true, as USER-CODE-ERRORs,
-the oldest first."
+  "Return a list of USER-CODE-ERRORs, the oldest first, for the errors in QUEUE that belong to runs
+for which RUN-P is true."
   (let ((messages (with-queue (queue)
                     (reverse (message-queue-troubles queue)))))
     (loop for message in messages
@@ -52,20 +52,20 @@ the oldest first."
             collect (error-of-message message))))
 
 (defun forget-errors (queue run-p)
-  "Forget the errors of users' code in QUEUE, of runs for which RUN-P is true. Otherwise the queue
-would keep a finished run alive."
+  "Remove from QUEUE the errors of users' code that belong to runs for which RUN-P is true.
+Otherwise the queue would keep finished runs from being garbage collected."
   (with-queue (queue)
     (setf (message-queue-troubles queue)
           (remove-if run-p (message-queue-troubles queue) :key #'message-run))))
 
 (defun drop-unsignalled (queue)
-  "Let no error of users' code now in QUEUE be signalled."
+  "Mark the errors of users' code in QUEUE so that none of them is signalled."
   (with-queue (queue)
     (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
-  "Take the first error to be signalled from QUEUE and return it as USER-CODE-ERROR, or NIL. Later
-ones then count as signalled."
+  "Take the first error that is to be signalled from QUEUE, and return it as a USER-CODE-ERROR, or
+NIL. Later errors now in QUEUE will not be signalled."
   (when (message-queue-unsignalled queue)
     (with-queue (queue)
       (let ((message (shiftf (message-queue-unsignalled queue) nil)))
@@ -77,8 +77,8 @@ ones then count as signalled."
           (error-of-message message))))))
 
 (defun signal-trouble (queue)
-  "Signal the pending error in users' code of QUEUE, if there is one. True if there was, and its
-handler continues."
+  "If QUEUE has a pending error of users' code, signal it. Return true if a handler continues after
+the error; NIL if there was none."
   (let ((trouble (take-unsignalled queue)))
     (when trouble
       (with-simple-restart (continue "Let the other ticks pass.")
@@ -87,10 +87,10 @@ handler continues."
 
 ;;; Unread messages.
 
-(defparameter *most-unread* 20 "How many different unread messages are shown.")
+(defparameter *most-unread* 20 "The largest number of different unread messages that are shown.")
 
 (defun take-unseen (queue)
-  "Return the unread messages in QUEUE, the oldest first. Mark all as read."
+  "Return a list of the unread messages in QUEUE, the oldest first. Mark all messages as read."
   (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
       (reverse (ldiff newest-first (shiftf (message-queue-seen queue) newest-first))))))
@@ -105,18 +105,20 @@ handler continues."
           do (format stream "~A~:[~; (~D times)~]~%" (string-right-trim '(#\Newline) text)
                      (< 1 (gethash text counts)) (gethash text counts)))
     (when (< *most-unread* (length texts))
-      (format stream "... and ~D other messages; (error-display), inside, shows all.~%"
+      (format stream "... and ~D other messages. To show all, call (error-display) within the
+simulation.~%"
               (- (length texts) *most-unread*)))))
 
 (defun shown-at-end-p (message policy)
-  "True if MESSAGE, unread, is shown at the end of its run under the error POLICY."
+  "True if MESSAGE, which is unread, must be shown at the end of its run, under the error policy
+POLICY."
   (let ((notable (message-notable-p message)))
     (or (if (functionp notable) (funcall notable) (eq t notable))
         (and (not (eq :collect policy)) (to-be-seen-p message)))))
 
 (defun show-unseen (queue &optional (wanted (constantly t)))
-  "Write to the error output the unread messages in QUEUE that should be seen and for which WANTED
-is true."
+  "Write to the error output the unread messages in QUEUE that must be shown and for which WANTED is
+true."
   (unless flush-all-errors*
     (let ((messages (remove-if-not (lambda (message)
                                      (and (shown-at-end-p message
@@ -133,13 +135,14 @@ is true."
 (defvar *echo-output* nil
   "The stream on which the user of this Lisp sees messages of runs; NIL for the error output.")
 
-(defconstant +most-echoed+ 1000 "How many texts are counted.")
+(defconstant +most-echoed+ 1000 "The largest number of texts that are counted.")
 
 (defvar *echo-counter* (make-message-queue :echoed (make-hash-table :test 'equal))
-  "The queue that counts messages shown for queues without a table.")
+  "The queue that counts the messages shown for queues that have no table ECHOED.")
 
 (defun count-echo (text queue)
-  "Return how often TEXT was shown, or would have been, since the count was cleared."
+  "Return how many times TEXT was reported, including times when it was not shown, since the counts
+were cleared."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
     (with-queue (counter)
@@ -152,7 +155,8 @@ is true."
         finally (return (= power count))))
 
 (defun echo-message (message queue)
-  "Show MESSAGE to the user of this Lisp. Repeated messages are shown less and less often."
+  "Show MESSAGE to the user of this Lisp. Show a repeated message only at its 1st, 10th, 100th ...
+time."
   (unless flush-all-errors*
     (let* ((text (string-right-trim '(#\Newline)
                                     (write-message message nil (text-with-command message))))
@@ -161,7 +165,7 @@ is true."
       (when (power-of-ten-p count)
         ;; The stream may be closed.
         (ignore-errors
-         (format stream "~&~A~:[~; (~:*~D times by now)~]~%" text (and (< 1 count) count))
+         (format stream "~&~A~:[~; (~:*~D times so far)~]~%" text (and (< 1 count) count))
          (finish-output stream))))))
 
 ;;;; Which debugger asks for a restart
@@ -172,7 +176,8 @@ is true."
 ;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "The debugger of HOOK, or Lisp's own if that is NIL, asks for a restart of THREAD."
+  "A pending question: the debugger of HOOK, or Lisp's own debugger if HOOK is NIL, asks the user to
+choose a restart for THREAD."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
@@ -180,22 +185,24 @@ is true."
 (defvar *inquiries-lock* (make-lock "inquiries"))
 
 (define-event *inquiry-hooks*
-  "Functions, or their names, of a condition and of the asking debugger in words. They are called in
-the thread of the error before the debugger asks there.")
+  "Functions, or their names, of two arguments: a condition and a text that names the debugger. They
+are called before the debugger asks for a restart, in the thread of the error.")
 
 (defvar *debugger-refused-p* nil
-  "True where the debugger's hook signals an error instead of asking.")
+  "True while the debugger hook must signal an error instead of asking the user.")
 
 (defun debugger-words (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
-  "Return in words whose debugger asks for a restart of THREAD; NIL if no foreign one does."
+  "If a debugger asks the user to choose a restart for THREAD, return a text that names the
+debugger; else NIL."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (debugger-words (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
-  "Notify the threads in which GONE-P, called there, is true that their debugger has gone."
+  "Interrupt the threads whose debugger asks for a restart. In each, if GONE-P returns true, its
+debugger has disconnected, and the question ends."
   (dolist (inquiry *inquiries*)
     (interrupt-thread (inquiry-thread inquiry)
                       (lambda ()
@@ -203,18 +210,20 @@ the thread of the error before the debugger asks there.")
                           (throw inquiry nil))))))
 
 (defun call-as-debugger (function)
-  "Call FUNCTION, a debugger. Errors in what is typed there belong to it."
+  "Call FUNCTION, which enters a debugger. The debugger also handles errors in code that the user
+types in it."
   (handler-bind (((or error storage-condition) #'debug-inside))
     (funcall function)))
 
 (defun debug-inside (condition)
-  "Let the current debugger handle CONDITION, from what was typed there."
+  "Let the current debugger handle CONDITION, an error in code that the user has typed in it."
   (unless (typep condition 'time-limit)
     (call-as-debugger (lambda () (invoke-debugger condition)))))
 
 ;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
 (defun enter-outer (condition hook)
-  "Let the debugger of HOOK, else of *DEBUGGER-HOOK*, else Lisp's own ask about CONDITION."
+  "Let a debugger ask the user about CONDITION: that of HOOK, else that of *DEBUGGER-HOOK*, else
+Lisp's own."
   (call-as-debugger (lambda ()
                       (when hook (funcall hook condition hook))
                       (cond (*debugger-hook*
@@ -223,15 +232,17 @@ the thread of the error before the debugger asks there.")
                             ((null hook) (invoke-debugger condition))))))
 
 (defun restart-unasked (condition)
-  "Choose the most likely restart of CONDITION, because no debugger is left, and warn."
+  "Choose a restart of CONDITION without the user, because no debugger is left: ABORT for errors,
+else CONTINUE. Queue a warning."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
-    (warning-set "The debugger that asked for a restart has gone; " (string-downcase name)
+    (warning-set "The debugger that asked for a restart has disconnected;" (string-downcase name)
                  " was chosen: " (one-line-text condition))
     (when (eq name 'continue) (continue condition))
     (abort condition)))
 
 (defun inquire (condition hook)
-  "Let the debugger of HOOK, or another if that goes away, ask for a restart of CONDITION."
+  "Let the debugger of HOOK ask the user for a restart of CONDITION. If it disconnects, let another
+debugger ask."
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
       (with-lock (*inquiries-lock*) (push inquiry *inquiries*))
@@ -243,8 +254,8 @@ the thread of the error before the debugger asks there.")
     (restart-unasked condition)))
 
 (defun call-answering-debugger (function answer)
-  "Call FUNCTION. If it enters a debugger, call ANSWER with the condition, and true if an
-interactive debugger is available; if none is, ANSWER must not return."
+  "Call FUNCTION. If FUNCTION enters a debugger, call ANSWER with the condition, and true if an
+interactive debugger is available. If none is available, ANSWER must not return."
   (declare (type function function answer))
   (let ((hook (debugger-hook))
         (foreign (foreign-hook)))
@@ -262,5 +273,5 @@ interactive debugger is available; if none is, ANSWER must not return."
           (funcall function))))))
 
 (defmacro answering-debugger ((answer) &body body)
-  "Run BODY as CALL-ANSWERING-DEBUGGER would a function."
+  "Run BODY. If BODY enters a debugger, call ANSWER, as CALL-ANSWERING-DEBUGGER does."
   (form-calling 'call-answering-debugger body answer))

@@ -13,12 +13,12 @@
 ;;; prompt to itself. Requests keep a note of it.
 
 (defvar *asker* nil
-  "Who makes requests here: an origin as for CALL-USER-CODE, or an object with a method of
-ASKER-NOTE; NIL for a program or a REPL.")
+  "The origin of requests that this thread makes now: an origin as for CALL-USER-CODE, or an object
+with a method of ASKER-NOTE; NIL for a program or a REPL.")
 
 (defgeneric asker-note (asker)
-  (:documentation "Return what to record of ASKER: a string, or a list of items as OUT prints them.
-It must not change when ASKER does.")
+  (:documentation "Return the note by which messages name ASKER, the origin of a request: a string,
+or a list of items as OUT prints them. The note must not change when ASKER changes.")
   (:method (asker) (princ-to-string asker))
   (:method ((asker string)) asker)
   (:method ((asker cons)) (mapcar (lambda (item) (if (atom item) (asker-note item) item)) asker))
@@ -26,23 +26,23 @@ It must not change when ASKER does.")
   (:method ((asker null)) (list "Lisp (" (thread-name (current-thread)) ")")))
 
 (defgeneric asker-forked-p (asker)
-  (:documentation "True if ASKER continues in forks of the run, as a plan does, and so receives the
-ends of its commands there.")
+  (:documentation "True if ASKER, the origin of a request, continues in forks of the run, as a plan
+does. In a fork, the copy of ASKER is notified when its commands end.")
   (:method (asker) (declare (ignore asker)) nil))
 
 (defvar *goes-on-in-forks-p* nil
-  "True while code runs that continues in forks of the run, whatever *ASKER* is.")
+  "True while this thread runs code that continues in forks of the run, regardless of *ASKER*.")
 
 (defun goes-on-in-forks-p ()
-  "True if forks of the run repeat by themselves what is requested here."
+  "True if this thread now makes requests that forks of the run repeat by themselves."
   (or *goes-on-in-forks-p* (asker-forked-p *asker*)))
 
 (defun note-of-asker ()
-  "Return a note of the current asker."
+  "Return the note by which messages name *ASKER*, the origin of requests."
   (asker-note *asker*))
 
 (defun note-text (note)
-  "Return NOTE, of NOTE-OF-ASKER, as a string."
+  "Return NOTE, a value of NOTE-OF-ASKER, as a string."
   (with-output-to-string (stream) (write-items (ensure-list note) stream)))
 
 ;;;; Calls
@@ -64,19 +64,22 @@ an error message that names its origin, and the run goes on.")
 ;;; The users' code that a thread is in.
 
 (define-record (user-calls (:constructor make-user-calls (&optional stop)))
-  "The users' code that a thread calls. STOP is a function that ends the thread's work."
-  (origin nil t "whose code the thread is in, an item or a list of items, or NIL" :writable :export)
-  (count 0 fixnum "how many calls of users' code the thread has begun" :writable :export)
-  (waiting-p nil t "the last of them waits for an answer in a debugger" :writable :export)
-  (place nil (or null function) "a function that returns the place of the form that the thread is
-loading from a file, or NIL. Can be set" :writable :export)
-  (stop nil (or null function) "a function that ends what the thread does, or NIL"))
+  "The calls of users' code by a thread, for a watcher. STOP is a function that ends the thread's
+work."
+  (origin nil t "the origin of the users' code that the thread is in, an item or a list of items; or
+NIL" :writable :export)
+  (count 0 fixnum "the number of calls of users' code that the thread has begun" :writable :export)
+  (waiting-p nil t "the latest call of users' code waits in a debugger" :writable :export)
+  (place nil (or null function) "a function that returns the file and line of the form that the
+thread is loading, or NIL. Can be set" :writable :export)
+  (stop nil (or null function) "a function that ends the thread's work, or NIL"))
 
 (defvar *user-calls* nil
-  "The USER-CALLS of this thread, or NIL if it is not watched.")
+  "The USER-CALLS of this thread, or NIL if the thread is not watched.")
 
 (defun call-as-users-code (function origin)
-  "Call FUNCTION, users' code that ORIGIN names, visibly to a watcher. It can be interrupted."
+  "Call FUNCTION, users' code that ORIGIN names, and record the call for the watcher. FUNCTION can
+be interrupted."
   (declare (type function function))
   (let ((calls *user-calls*))
     (if calls
@@ -89,7 +92,7 @@ loading from a file, or NIL. Can be set" :writable :export)
         (call-interruptible (interrupts-deferred-p) function))))
 
 (defmacro as-users-code ((origin) &body body)
-  "Run BODY as CALL-AS-USERS-CODE would a function."
+  "Run BODY, users' code that ORIGIN names, as CALL-AS-USERS-CODE calls a function."
   (form-calling 'call-as-users-code body origin))
 
 (defun note-waiting ()
@@ -97,7 +100,7 @@ loading from a file, or NIL. Can be set" :writable :export)
   (when *user-calls* (setf (user-calls-waiting-p *user-calls*) t)))
 
 (defun abort-user-code (count)
-  "Abort this thread's users' code, if its call is still the one numbered COUNT."
+  "Abort the users' code that this thread is in, if its call still has the number COUNT."
   (let ((calls *user-calls*))
     (when (and calls (user-calls-origin calls) (= count (user-calls-count calls)))
       (abort))))
@@ -105,7 +108,7 @@ loading from a file, or NIL. Can be set" :writable :export)
 ;;; Reporting.
 
 (defun brief-text (condition)
-  "Return what CONDITION reports, on one line and of bounded length."
+  "Return the report of CONDITION, on one line of at most 2000 characters."
   (cut (one-line (text-of-condition condition)) 2000))
 
 (defun text-of-origin (origin)
@@ -117,7 +120,7 @@ loading from a file, or NIL. Can be set" :writable :export)
 
 (defun report-user-error (condition origin)
   "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items. A
-program that makes requests of a finished run is not reported."
+condition OUTLIVED, a request of a finished run, only gives a message, not a USER-CODE-ERROR."
   (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
         (stuff (list* "Error in " (append (ensure-list origin)
                                           (list ": " (brief-text condition))))))
@@ -134,14 +137,15 @@ program that makes requests of a finished run is not reported."
 ;;; Code that runs by itself, such as a kicker, may fail again and again.
 
 (defgeneric recurring-code (item)
-  (:documentation "Return the user's function that runs repeatedly by itself and is the source of
-trouble, from ITEM of the message about it; NIL if there is none.")
+  (:documentation "If ITEM, an item of an error message, names a user's function that runs again and
+again by itself, such as a kicker, return that function; else NIL.")
   (:method (item)
     (declare (ignore item))
     nil))
 
 (defgeneric recurring-remedy (item)
-  (:documentation "Return a sentence that says how to end trouble in the RECURRING-CODE of ITEM."))
+  (:documentation "Return a sentence that says how to stop the recurring code that ITEM names from
+being called. See RECURRING-CODE."))
 
 ;;; Calling.
 
@@ -153,20 +157,21 @@ part of. The run goes on."
  'stop-simulator "Report the error, leave your code and stop the live simulator.")
 
 (define-constant +leave+ "Report it and leave " :test #'string=
-  :documentation "The beginning of the report of the restart ABORT of a call of users' code.")
+  :documentation "The beginning of the report of the restart ABORT that a call of users' code
+establishes.")
 
 (defun stoppable-p (condition)
-  "True if the work of this thread can be stopped, whatever CONDITION was signalled."
+  "True if the work of this thread can be stopped, regardless of CONDITION."
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
 
 (defvar *spoilt-by-leaving-p* (constantly nil)
-  "A function that is true where leaving the code would end the work in progress, such as a plan.
-The caller cannot retry it then.")
+  "A function that returns true if leaving the current code would end the work in progress, such as
+a plan. The caller then cannot retry the code.")
 
 (defun call-offering (function origin go-on again &aux (around *spoilt-by-leaving-p*))
-  "Call FUNCTION, users' code that ORIGIN names, with restarts: ABORT, which calls GO-ON; RETRY,
-which calls AGAIN, if that is possible; and STOP-SIMULATOR, if this thread's work can be stopped."
+  "Call FUNCTION, users' code that ORIGIN names, with restarts: ABORT calls GO-ON; RETRY, if
+possible, calls AGAIN; STOP-SIMULATOR, if possible, stops the work of this thread."
   (declare (type function function go-on again))
   (flet ((retriable-p (condition)
            (declare (ignore condition))
@@ -189,7 +194,7 @@ which calls AGAIN, if that is possible; and STOP-SIMULATOR, if this thread's wor
       (funcall function))))
 
 (defmacro offering ((origin go-on again) &body body)
-  "Run BODY as CALL-OFFERING would a function."
+  "Run BODY, users' code that ORIGIN names, with the restarts of CALL-OFFERING."
   (form-calling 'call-offering body origin go-on again))
 
 (defun our-abort-p (restart)
@@ -197,7 +202,7 @@ which calls AGAIN, if that is possible; and STOP-SIMULATOR, if this thread's wor
        (starts-with-subseq +leave+ (princ-to-string restart))))
 
 (defun continue-inside (condition)
-  "Continue after CONDITION, if its CONTINUE restart was established within users' code."
+  "Invoke the restart CONTINUE of CONDITION, if users' code has established it."
   (let ((restart (find-if (lambda (restart)
                             (or (our-abort-p restart) (eq 'continue (restart-name restart))))
                           (compute-restarts condition))))
@@ -205,8 +210,8 @@ which calls AGAIN, if that is possible; and STOP-SIMULATOR, if this thread's wor
       (invoke-restart restart))))
 
 (defun call-user-code (function origin &rest arguments)
-  "Call FUNCTION with ARGUMENTS and return its values. If it signals an error or is aborted, queue
-an error message that it came from ORIGIN (an item or list of items) and return NIL."
+  "Call FUNCTION with ARGUMENTS and return its values. If FUNCTION signals an error or is aborted,
+queue an error message that names ORIGIN (an item or list of items), and return NIL."
   (declare (dynamic-extent arguments))
   (prog (trouble (queue *message-queue*))
    again

@@ -10,7 +10,8 @@
 ;;; its position, also inside other forms.
 
 (defun reject-use-of (form expected &optional condition)
-  "Signal MALFORMED-DEFINITION about FORM, a use of a macro, perhaps because of CONDITION."
+  "Signal MALFORMED-DEFINITION about FORM, a use of a macro. EXPECTED describes a valid form;
+CONDITION is the error that occurred, or NIL."
   (reject-clause (if (consp (rest form))
                      (title (first form) (second form))
                      (string-downcase (first form)))
@@ -20,23 +21,23 @@
                               (abridged (string-right-trim "." (text-of-condition condition)))))))
 
 (defun call-blaming-form (function form)
-  "Call FUNCTION, which expands FORM. Errors that are not ours are reported as mistakes in FORM."
+  "Call FUNCTION, which expands FORM. Report errors other than ARS-MAGNA-ERROR as mistakes in FORM."
   (handler-case
       (call-blaming function (lambda (condition)
                                (reject-use-of form "forms that Lisp can compile" condition)))
     (storage-condition ()
-      (reject-use-of form "forms that are less deep, and macros that come to an end"))))
+      (reject-use-of form "less deeply nested forms, and macros without endless recursion"))))
 
 (defgeneric advice-on-use (operator form)
-  (:documentation "Return in words what to write instead of FORM, a use of the macro OPERATOR that
-does not fit its lambda list, or NIL.")
+  (:documentation "Return a text that says what to write in place of FORM, a use of the macro
+OPERATOR that does not fit its lambda list; or NIL.")
   (:method (operator form)
     (declare (ignore operator form))
     nil))
 
 (defun strange-keyword (parameters arguments)
-  "Return in words the first of ARGUMENTS in the place of a keyword that is none of PARAMETERS, of a
-macro's lambda list; or NIL."
+  "Return a text about the first of ARGUMENTS that stands in the place of a keyword, but is not a
+keyword of PARAMETERS, the lambda list of a macro; or about a keyword without a value; or NIL."
   (let* ((keys (member '&key parameters))
          (before (remove '&optional
                          (ldiff parameters
@@ -51,8 +52,8 @@ macro's lambda list; or NIL."
             return (format nil "~(~S~) has no value" key))))
 
 (defun misfit-text (parameters arguments)
-  "Return in words the keyword, or form in place of a list, in ARGUMENTS that does not fit
-PARAMETERS; or NIL."
+  "Return a text about the first of ARGUMENTS that does not fit the lambda list PARAMETERS: a
+keyword, or a form in place of a list; or NIL."
   (when (proper-list-p arguments)
     (or (strange-keyword parameters arguments)
         (loop for parameter in parameters
@@ -64,7 +65,8 @@ PARAMETERS; or NIL."
                                (misfit-text parameter argument)))))))
 
 (defun doubt-readtable (form)
-  "Warn if FORM contains, as a symbol, syntax of Nisp's reader, such as !>robot.cameras."
+  "Warn if FORM contains syntax of Nisp, such as !>robot.cameras, that the standard reader has read
+as a symbol."
   (let ((slot (find-part (lambda (part)
                            (and part (symbolp part)
                                 (< 2 (length (symbol-name part)))
@@ -75,8 +77,8 @@ PARAMETERS; or NIL."
                          with (in-readtable :nisp)." slot))))
 
 (defun call-fitting (form usage parse)
-  "Call the function that PARSE returns for FORM. Signals MALFORMED-DEFINITION with USAGE if it does
-not fit."
+  "Call PARSE, which parses FORM, and then the function that PARSE returns. Signals
+MALFORMED-DEFINITION with USAGE, a form that shows what fits, if FORM does not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that is a proper list"))
   (doubt-readtable form)
@@ -90,18 +92,21 @@ not fit."
    form))
 
 (defun expand-fitting (form environment usage parse)
-  "Do as CALL-FITTING; in other forms or a compiled file, return a form that signals its error."
+  "Return the value of CALL-FITTING. Inside another form or a compiled file, if CALL-FITTING signals
+MALFORMED-DEFINITION, return a form that signals the error later."
   (first (forms-or-rejection (lambda () (list (call-fitting form usage parse)))
                              (nested-p environment))))
 
 (defun variable-after (key lambda-list)
-  "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without both."
+  "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without KEY and the
+variable."
   (let ((rest (member key lambda-list)))
     (values (second rest) (append (ldiff lambda-list rest) (cddr rest)))))
 
 (defun user-macro-form (name lambda-list usage body)
-  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use that does not fit,
-or for which BODY signals an error, signals MALFORMED-DEFINITION; USAGE, a form, shows what fits."
+  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use of the macro that
+does not fit LAMBDA-LIST, or for which BODY signals an error, signals MALFORMED-DEFINITION, with the
+form USAGE as an example."
   (multiple-value-bind (body declarations documentation) (parse-body body :documentation t)
     (multiple-value-bind (environment rest) (variable-after '&environment lambda-list)
       (multiple-value-bind (whole parameters) (variable-after '&whole rest)
@@ -119,8 +124,8 @@ or for which BODY signals an error, signals MALFORMED-DEFINITION; USAGE, a form,
                                      (lambda () ,@body))))))))))))
 
 (defmacro define-user-macro (name lambda-list &body body)
-  "Define the macro NAME for users, like DEFMACRO. A use that does not fit LAMBDA-LIST, or for which
-BODY signals an error, signals MALFORMED-DEFINITION."
+  "Define the macro NAME for users, like DEFMACRO. A use of the macro that does not fit LAMBDA-LIST,
+or for which BODY signals an error, signals MALFORMED-DEFINITION."
   (let ((shown (nth-value 1 (variable-after
                              '&whole (nth-value 1 (variable-after '&environment lambda-list))))))
     `(progn
@@ -134,7 +139,8 @@ BODY signals an error, signals MALFORMED-DEFINITION."
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun test-meant (form)
-  "Return a list of the form meant by FORM, a test that is quoted or a function; else NIL."
+  "If FORM, a test, is quoted data or a function, and so always true, return a list of the form that
+the user probably meant; else NIL."
   (typecase form
     ((cons (eql quote) (cons (not null) null))
      (let ((data (second form)))
@@ -145,21 +151,22 @@ BODY signals an error, signals MALFORMED-DEFINITION."
      (and (string= "LAMBDA" (first form)) (list (body-form (cddr form)))))))
 
 (defun test-advice (form)
-  "Return in sentences that FORM, a test, is quoted or a function, and what to write; else NIL."
+  "If FORM, a test, is quoted data or a function, and so always true, return a text that says so and
+what to write; else NIL."
   (let ((meant (test-meant form)) (*print-case* :downcase) (*print-pretty* t)
         (*print-right-margin* 10000))
     (and meant
-         (format nil "~S is ~:[a function~;data~], which always counts as true. Write the form ~
-                      alone: ~S."
+         (format nil "~S is ~:[a function~;data~], which always counts as true. Write only the ~
+                      form: ~S."
                  (abridged form) (eq 'quote (first form)) (abridged (first meant))))))
 
 (defun body-advice (forms)
-  "Return in sentences that FORMS, a body, is only a function, which is never called, and what to
-write; else NIL."
+  "If FORMS, a body, is only a lambda form, which is never called, return a text that says so and
+what to write; else NIL."
   (let ((form (first forms)) (*print-case* :downcase) (*print-pretty* nil))
     (and (typep form '(cons symbol (cons list)))
          (null (rest forms))
          (string= "LAMBDA" (first form))
-         (format nil "the body is a function, ~S, which is made and never called. Write what is in ~
-                      it alone: ~S."
+         (format nil "the body is a function, ~S, which is never called. Write only the body of ~
+                      the function: ~S."
                  (abridged form) (abridged (body-form (cddr form)))))))

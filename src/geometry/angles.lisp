@@ -33,7 +33,7 @@ WRONG-ARGUMENT."
 
 (declaim (inline reduced-angle))
 (defun reduced-angle (angle)
-  "Return ANGLE without whole turns, in (-pi, pi]."
+  "Return ANGLE without full turns, in the range (-pi, pi]."
   (declare (type double-float angle))
   (if (and (< #.(- pi) angle) (<= angle pi))
       angle
@@ -42,17 +42,16 @@ WRONG-ARGUMENT."
 
 (addition angle-difference)
 (defun angle-difference (a b)
-  "Return the angle A minus the angle B without whole turns: the signed turn, in (-pi, pi]
-radians, that leads from B to A (reading 50). Signals WRONG-ARGUMENT unless both are from -1e9 to
-1e9."
+  "Return the angle A minus the angle B without full turns: the signed turn, in (-pi, pi] radians,
+that leads from B to A (reading 50). Signals WRONG-ARGUMENT unless A and B are from -1e9 to 1e9."
   (check-angle angle-difference a)
   (check-angle angle-difference b)
   (reduced-angle (- (double a) (double b))))
 
 (addition nearest-angle)
 (defun nearest-angle (angle candidate &rest more)
-  "Return the one of CANDIDATE and MORE that is the least turn away from ANGLE, all in radians,
-as it was given; the first of equals. Signals WRONG-ARGUMENT."
+  "Return the candidate, among CANDIDATE and MORE, from which the turn to ANGLE is smallest. All
+angles are in radians. If several are equally near, return the first. Signals WRONG-ARGUMENT."
   (declare (dynamic-extent more))
   (let ((least (abs (angle-difference candidate angle))))
     (dolist (other more candidate)

@@ -6,8 +6,8 @@
 ;;; axes. Where the table says x, the operand is an element: a number or a point.
 
 (defmacro define-comparison (name combine (low-a high-a low-b high-b) documentation form)
-  "Define NAME of two operands, whose bounds along an axis the four variables hold in FORM; COMBINE
-joins the values of two axes."
+  "Define NAME, a function of two intervals. In FORM, the four variables hold the bounds of both
+intervals along an axis. COMBINE joins the values of FORM for two axes."
   `(progn
      (public ,name)
      (defun ,name (a b)
@@ -24,7 +24,8 @@ joins the values of two axes."
                       (compare (low-y a) (high-y a) (low-y b) (high-y b)))))))))
 
 (define-comparison interval-intersect? and (low-a high-a low-b high-b)
-  "True if the intervals A and B share an element, perhaps a bound (manual, Table 3.2)."
+  "True if the intervals A and B have a common element, even if it is only a bound (manual, Table
+3.2)."
   (and (<= low-a high-b) (<= low-b high-a)))
 
 (define-comparison interval-subset? and (low-a high-a low-b high-b)
@@ -32,19 +33,19 @@ joins the values of two axes."
   (and (<= low-b low-a) (<= high-a high-b)))
 
 (define-comparison less and (low-a high-a low-b high-b)
-  "True if every element of the interval A is less than every element of B, of point intervals
-along both axes (manual, Table 3.2)."
+  "True if every element of the interval A is less than every element of the interval B. For point
+intervals, this must be true along both axes (manual, Table 3.2)."
   (< high-a low-b))
 
 (define-comparison greater and (low-a high-a low-b high-b)
-  "True if every element of the interval A is greater than every element of B, of point
-intervals along both axes (manual, Table 3.2)."
+  "True if every element of the interval A is greater than every element of the interval B. For
+point intervals, this must be true along both axes (manual, Table 3.2)."
   (> low-a high-b))
 
 ;; As reading 46 says.
 (define-comparison interval-dist max (low-a high-a low-b high-b)
-  "Return the gap between the intervals A and B, of point intervals the wider of the gaps along
-the two axes; 0 only if they intersect (manual, Table 3.2)."
+  "Return the gap between the intervals A and B; 0 only if they intersect. For point intervals,
+return the wider of the gaps along the two axes (manual, Table 3.2)."
   (max 0d0 (- low-a high-b) (- low-b high-a)))
 
 (public in-interval)
@@ -64,7 +65,7 @@ the two axes; 0 only if they intersect (manual, Table 3.2)."
 
 (public interval-width)
 (defun interval-width (interval)
-  "Return the largest distance between two elements of INTERVAL: of a point interval, its
+  "Return the largest distance between two elements of INTERVAL. For a point interval, this is the
 diagonal (manual, Table 3.2; reading 45)."
   (dispatch interval-width (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (- (high interval) (low interval)))
@@ -73,8 +74,8 @@ diagonal (manual, Table 3.2; reading 45)."
 
 (public interval-overlap-width)
 (defun interval-overlap-width (a b)
-  "Return the width of what the intervals A and B have in common; 0 if
-nothing (manual, Table 3.2; reading 47)."
+  "Return the width of the intersection of the intervals A and B; 0 if they do not intersect
+(manual, Table 3.2; reading 47)."
   (flet ((width ()
            (let ((common (interval-intersect a b)))
              (if common (interval-width common) 0d0))))
@@ -84,7 +85,7 @@ nothing (manual, Table 3.2; reading 47)."
 
 (public nominal)
 (defun nominal (interval)
-  "Return the centre of INTERVAL, the best estimate: a number, or a fresh PT (manual, Table 3.2)."
+  "Return the centre of INTERVAL, the best estimate: a number, or a new PT (manual, Table 3.2)."
   (dispatch nominal (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (centre (low interval) (high interval)))
     ((region) (%make-pt (centre (low-x interval) (high-x interval))
@@ -98,8 +99,8 @@ nothing (manual, Table 3.2; reading 47)."
 
 (public interval-intersect!)
 (defun interval-intersect! (a b)
-  "Change A into what the intervals A and B have in common, and return A. If that is nothing,
-leave A as it is and return NIL (manual, Table 3.2; reading 44)."
+  "Change A into the intersection of the intervals A and B, and return A. If they do not intersect,
+leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
   (dispatch interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span)
      (when (interval-intersect? a b)
@@ -112,8 +113,8 @@ leave A as it is and return NIL (manual, Table 3.2; reading 44)."
 
 (public interval-intersect)
 (defun interval-intersect (a b)
-  "Return what the intervals A and B have in common, as a fresh interval of their kind; NIL if
-that is nothing (manual, Table 3.2)."
+  "Return the intersection of the intervals A and B, a new interval; NIL if they do not intersect
+(manual, Table 3.2)."
   (dispatch interval-intersect (a b) "two intervals or two point intervals"
     ((span span) (interval-intersect! (lift a) b))
     ((region region) (interval-intersect! (lift a) b))))
@@ -126,7 +127,8 @@ that is nothing (manual, Table 3.2)."
 
 (public interval-lbi!)
 (defun interval-lbi! (a b)
-  "Grow the interval A as little as possible to contain B too; return A (manual, Table 3.2)."
+  "Grow the interval A as little as possible so that it contains the interval B, and return A
+(manual, Table 3.2)."
   (dispatch interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span) (%bound! a (low b) (high b)))
     ((pt-interval region)
@@ -143,7 +145,8 @@ that is nothing (manual, Table 3.2)."
 
 (public add-to-lbi!)
 (defun add-to-lbi! (interval x)
-  "Grow INTERVAL minimally to contain the number or point X; return it (manual, Table 3.2)."
+  "Grow INTERVAL as little as possible so that it contains the number or point X, and return
+INTERVAL (manual, Table 3.2)."
   (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((interval finite) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))
@@ -157,8 +160,8 @@ that is nothing (manual, Table 3.2)."
 
 (public interval-lift)
 (defun interval-lift (x)
-  "Return the interval that contains only X: an INTERVAL of a number, a PT-INTERVAL of a point
-(manual, Table 3.2)."
+  "Return the interval that contains only X: an INTERVAL if X is a number, a PT-INTERVAL if X is a
+point (manual, Table 3.2)."
   (dispatch interval-lift (x) "a number or a PT"
     (((or finite pt)) (lift x))))
 
@@ -178,7 +181,7 @@ that is nothing (manual, Table 3.2)."
 
 (declaim (inline %grown))
 (defun %grown (interval amount)
-  "Return the bounds of INTERVAL moved outward by AMOUNT. A negative AMOUNT moves them inward, at
+  "Return the bounds of INTERVAL, moved outward by AMOUNT. A negative AMOUNT moves them inward, at
 most to the centre."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
@@ -189,8 +192,8 @@ most to the centre."
 
 (public grow-interval!)
 (defun grow-interval! (interval amount)
-  "Push each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
-AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
+  "Move each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
+AMOUNT shrinks INTERVAL, at most to its centre (manual, Table 3.2)."
   (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((interval finite)
      (multiple-value-call #'%set-interval! interval (%grown interval (double amount))))
@@ -202,8 +205,8 @@ AMOUNT shrinks it, at most to its centre (manual, Table 3.2)."
 
 (public grow-interval)
 (defun grow-interval (interval amount)
-  "Return INTERVAL with each boundary pushed outward by the number AMOUNT, which may be negative;
-INTERVAL then shrinks, at most to its centre (manual, Table 3.2)."
+  "Return a new interval: INTERVAL with each boundary moved outward by the number AMOUNT. A negative
+AMOUNT shrinks the new interval, at most to the centre of INTERVAL (manual, Table 3.2)."
   (dispatch grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((span finite) (grow-interval! (lift interval) amount))
     ((region finite) (grow-interval! (lift interval) amount))))

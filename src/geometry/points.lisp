@@ -11,11 +11,11 @@
   '(and real (satisfies finite-p)))
 
 (deftype span ()
-  "What has one dimension."
+  "The type of operands with one dimension: numbers and intervals."
   '(or finite interval))
 
 (deftype region ()
-  "What has two dimensions."
+  "The type of operands with two dimensions: points and point intervals."
   '(or pt pt-interval))
 
 (declaim (inline low high low-x high-x low-y high-y))
@@ -39,13 +39,15 @@
   (if (pt-p region) (%pt-y region) (%interval-max (%pt-interval-y region))))
 
 (defun reject-operand (operator name value expected)
-  "Signal WRONG-ARGUMENT: OPERATOR takes, as its operand NAME, no VALUE but what EXPECTED says."
+  "Signal WRONG-ARGUMENT: Signal WRONG-ARGUMENT, because OPERATOR cannot use VALUE as its operand
+NAME. The text EXPECTED says which operands are possible."
   (reject-argument operator name value
                    (if (and (realp value) (not (finite-p value))) +number-text+ expected)))
 
 (defmacro dispatch (operator operands expected &body clauses)
-  "Evaluate the first of CLAUSES, ((TYPE...) FORM...), whose types the variables OPERANDS have.
-Signals WRONG-ARGUMENT, with EXPECTED in words, if there is none or the result is too large."
+  "Evaluate the forms of the first clause in CLAUSES, of the form ((TYPE...) FORM...), whose types
+fit the values of the variables OPERANDS. Signals WRONG-ARGUMENT, with the text EXPECTED, if no
+clause fits or the result is too large."
   (flet ((test (types)
            `(and ,@(loop for operand in operands
                          for type in types
@@ -82,7 +84,7 @@ Signals WRONG-ARGUMENT, with EXPECTED in words, if there is none or the result i
   (%set-interval! interval (- 0d0 (%interval-max interval)) (- 0d0 (%interval-min interval))))
 
 (defun %products (interval low high)
-  "Return the least and the greatest product of numbers in INTERVAL and from LOW to HIGH."
+  "Return the least and the greatest product of a number in INTERVAL and a number from LOW to HIGH."
   (let ((a (* (%interval-min interval) low))
         (b (* (%interval-min interval) high))
         (c (* (%interval-max interval) low))
@@ -101,8 +103,9 @@ Table 3.1)."
 
 (public add)
 (defun add (a b)
-  "Return the sum of A and B: two points (as vectors), or two intervals or two point intervals,
-of which one may be an element (manual, Table 3.1)."
+  "Return the sum of A and B. They are two points (as vectors), two intervals, or two point
+intervals. One of two intervals may be a number, and one of two point intervals a point (manual,
+Table 3.1)."
   (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((finite finite) (+ (double a) (double b)))
@@ -111,7 +114,7 @@ of which one may be an element (manual, Table 3.1)."
 
 (public subtract!)
 (defun subtract! (a b)
-  "Change A into A minus B, and return A. Of intervals, the result holds every difference of
+  "Change A into A minus B, and return A. For intervals, the result contains all differences of
 their elements (manual, Table 3.1; reading 48)."
   (dispatch subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
@@ -122,8 +125,8 @@ their elements (manual, Table 3.1; reading 48)."
 
 (public subtract)
 (defun subtract (a b)
-  "Return A minus B: two points (as vectors), or two intervals or two point intervals, of which
-one may be an element (manual, Table 3.1)."
+  "Return A minus B. They are two points (as vectors), two intervals, or two point intervals. One of
+two intervals may be a number, and one of two point intervals a point (manual, Table 3.1)."
   (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((finite finite) (- (double a) (double b)))
@@ -132,7 +135,8 @@ one may be an element (manual, Table 3.1)."
 
 (public neg!)
 (defun neg! (a)
-  "Change A into its negative, and return A. An interval swaps its bounds (manual, Table 3.1)."
+  "Change A into its negative, and return A. The bounds of an interval are swapped (manual, Table
+3.1)."
   (dispatch neg! (a) "a PT, INTERVAL or PT-INTERVAL"
     ((pt) (set-pt! a (- 0d0 (%pt-x a)) (- 0d0 (%pt-y a))))
     ((interval) (%neg! a))
@@ -150,8 +154,8 @@ one may be an element (manual, Table 3.1)."
 
 (public mul!)
 (defun mul! (a factor)
-  "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an
-interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1)."
+  "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an interval.
+If A is an interval, FACTOR may be an interval too (manual, Table 3.1)."
   (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
     ((pt finite) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
@@ -166,8 +170,8 @@ interval; the FACTOR of an interval may be an interval itself (manual, Table 3.1
 
 (public mul)
 (defun mul (a factor)
-  "Return A, a point, number, interval or point interval, multiplied by the number FACTOR; an
-interval as FACTOR gives the interval or point interval of all products (manual, Table 3.1)."
+  "Return A, a point, number, interval or point interval, multiplied by the number FACTOR. If FACTOR
+is an interval, return the interval or point interval of all products (manual, Table 3.1)."
   (dispatch mul (a factor) "a point, interval or point interval and a number"
     ((pt finite) (mul! (copy-obj a) factor))
     ((finite finite) (* (double a) (double factor)))
@@ -179,7 +183,8 @@ interval as FACTOR gives the interval or point interval of all products (manual,
 (declaim (inline length-of least-size greatest-size))
 
 (defun scaled-length (x y most)
-  "Return the length of (X,Y), of which MOST is the greater size, where squares are no floats."
+  "Return the length of the vector (X, Y) if the squares of X and Y overflow or underflow. MOST is
+the larger of their absolute values."
   (declare (type double-float x y most))
   ;; So that a box's sides and diagonals can be added.
   (when (<= 1d308 most) (error 'floating-point-overflow :operation 'norm :operands (list x y)))
@@ -201,8 +206,8 @@ interval as FACTOR gives the interval or point interval of all products (manual,
 
 (public norm)
 (defun norm (a)
-  "Return the Euclidean length of the point A as a vector, in metres; of an interval or point
-interval, the INTERVAL of the lengths of its elements (manual, Table 3.1)."
+  "Return the Euclidean length of the vector to the point A, in metres. If A is an interval or point
+interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)."
   (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
     ((finite) (abs (double a)))
@@ -214,9 +219,9 @@ interval, the INTERVAL of the lengths of its elements (manual, Table 3.1)."
 
 (public dist)
 (defun dist (a b)
-  "Return the Euclidean distance between the points A and B, in metres; if either is an interval
-or point interval, the INTERVAL of the distances between their
-elements (manual, Table 3.1; reading 42)."
+  "Return the Euclidean distance between the points A and B, in metres. If A or B is an interval or
+point interval, return the INTERVAL of the distances between their elements (manual, Table 3.1;
+reading 42)."
   (dispatch dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))

@@ -17,11 +17,12 @@
 (define-condition beyond-floats (wrong-argument)
   ()
   (:default-initargs :expected "operands whose result is not beyond 1.7e308 either way")
-  (:documentation "The operands of an operation have a result beyond double-floats."))
+  (:documentation "The result of an operation is too large for a double-float."))
 
 ;; An operation that uses another one reports its own operands.
 (defmacro within-floats ((operator operand) &body body)
-  "Evaluate BODY. Signal WRONG-ARGUMENT about OPERAND, a variable, if a number overflows."
+  "Evaluate BODY. Run BODY. If a floating-point number overflows, signal WRONG-ARGUMENT about the
+variable OPERAND."
   `(handler-case (progn ,@body)
      ((or floating-point-overflow beyond-floats) ()
        (error 'beyond-floats :operator ',operator :name ',operand :value ,operand))))
@@ -40,8 +41,8 @@
 
 (addition make-pt)
 (defun make-pt (x y)
-  "Return the point (X, Y); both are real numbers, in metres, up to 1.7e308 either
-way. Written (make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
+  "Return the point (X, Y). X and Y are real numbers, in metres, from -1.7e308 to 1.7e308. Written
+(make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
   (check-finite make-pt x)
   (check-finite make-pt y)
   (%make-pt (double x) (double y)))
@@ -89,7 +90,7 @@ CHECK, then stores VALUE as a double-float."
 
 (addition make-interval)
 (defun make-interval (min max)
-  "Return the interval from MIN to MAX, real numbers up to 1.7e308 either way. MIN above MAX is an
+  "Return the interval from MIN to MAX, real numbers from -1.7e308 to 1.7e308. MIN above MAX is an
 error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
   (check-finite make-interval min)
   (check-finite make-interval max)
@@ -99,16 +100,17 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
 (define-number-accessor interval-min (%interval-min min interval)
     (check-argument interval-min min (and (finite-p min) (<= min (%interval-max interval)))
                     "a number that is not above the max; set the max first")
-  "Return the lower bound of INTERVAL. Can be set, not above the upper bound.")
+  "Return the lower bound of INTERVAL. Can be set to a number that is not above the upper bound.")
 
 (define-number-accessor interval-max (%interval-max max interval)
     (check-argument interval-max max (and (finite-p max) (>= max (%interval-min interval)))
                     "a number that is not below the min; set the min first")
-  "Return the upper bound of INTERVAL. Can be set, not below the lower bound.")
+  "Return the upper bound of INTERVAL. Can be set to a number that is not below the lower bound.")
 
 (declaim (inline set-interval!))
 (defun set-interval! (interval min max)
-  "Make INTERVAL reach from MIN to MAX, real numbers, and return it. MIN above MAX is an error."
+  "Set the bounds of INTERVAL to MIN and MAX, real numbers, and return INTERVAL. MIN above MAX is an
+error."
   (check-argument set-interval! min (<= min max) "a number that is not above the max")
   (%set-interval! interval (double min) (double max)))
 
@@ -125,8 +127,8 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
 (addition make-pt-interval)
 (defun make-pt-interval (a b)
   "Return the box whose sides are the intervals A (along x) and B (along y), or whose opposite
-corners are the points A and B, in any order. The intervals are copied; a number stands for the
-interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading 43."
+corners are the points A and B, in any order. The intervals are copied. A number stands for the
+interval that contains only this number. Written (make PT-INTERVAL A B) in Nisp. See reading 43."
   (cond ((and (pt-p a) (pt-p b))
          (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
                             (span-between (%pt-y a) (%pt-y b))))
@@ -142,7 +144,8 @@ interval that holds only it. Written (make PT-INTERVAL A B) in Nisp. See reading
   (%make-interval (min a b) (max a b)))
 
 (defun lift (x)
-  "Return a fresh interval or point interval that holds just what X is or holds."
+  "Return a new interval or point interval: a copy of X, or, if X is a number or point, the interval
+that contains only X."
   (etypecase x
     (real (let ((x (double x))) (%make-interval x x)))
     (interval (%make-interval (%interval-min x) (%interval-max x)))
@@ -157,8 +160,9 @@ function copies the bounds of an interval into that side."
      (settable ,name)
      (declaim (inline ,name))
      (defun ,name (pt-interval)
-       ,(format nil "Return the INTERVAL along ~A of PT-INTERVAL, its own: changing it changes ~
-                     PT-INTERVAL. Setting~%it copies the bounds of an interval." axis)
+       ,(format nil "Return the INTERVAL along ~A of PT-INTERVAL, not a copy: changing the ~
+                     INTERVAL changes~%PT-INTERVAL. Can be set to an INTERVAL, whose bounds are ~
+                     copied." axis)
        (,raw pt-interval))
      (defun (setf ,name) (interval pt-interval)
        (check-argument ,name interval (interval-p interval) "an interval")
@@ -173,13 +177,13 @@ function copies the bounds of an interval into that side."
 
 (addition pt-interval-dx)
 (defun pt-interval-dx (pt-interval)
-  "Return how wide PT-INTERVAL is along x, in metres."
+  "Return the width of PT-INTERVAL along x, in metres."
   (within-floats (pt-interval-dx pt-interval)
     (side-length (%pt-interval-x pt-interval))))
 
 (addition pt-interval-dy)
 (defun pt-interval-dy (pt-interval)
-  "Return how wide PT-INTERVAL is along y, in metres."
+  "Return the width of PT-INTERVAL along y, in metres."
   (within-floats (pt-interval-dy pt-interval)
     (side-length (%pt-interval-y pt-interval))))
 
@@ -191,7 +195,8 @@ function copies the bounds of an interval into that side."
   pt-interval)
 
 (defun set-pt-interval! (pt-interval x-min x-max y-min y-max)
-  "Give PT-INTERVAL the bounds X-MIN to X-MAX and Y-MIN to Y-MAX, real numbers; return it."
+  "Set the bounds of PT-INTERVAL to X-MIN and X-MAX along x, and to Y-MIN and Y-MAX along y, real
+numbers. Return PT-INTERVAL."
   (check-argument set-pt-interval! x-min (<= x-min x-max) "a number that is not above x-max")
   (check-argument set-pt-interval! y-min (<= y-min y-max) "a number that is not above y-max")
   (%set-region! pt-interval (double x-min) (double x-max) (double y-min) (double y-max)))
@@ -200,8 +205,8 @@ function copies the bounds of an interval into that side."
 
 (public copy-obj)
 (defun copy-obj (object)
-  "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number
-is its own copy (manual 3.2.1; reading 234)."
+  "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number is
+returned itself (manual 3.2.1; reading 234)."
   (typecase object
     (real object)
     (pt (%make-pt (%pt-x object) (%pt-y object)))
@@ -210,9 +215,9 @@ is its own copy (manual 3.2.1; reading 234)."
 
 (public equal)
 (defun equal (a b)
-  "True if A and B are the same PT, INTERVAL or PT-INTERVAL value, exactly; of anything else, if
-they are CL:EQUAL (manual 3.2.1; reading 30). It can be the test of a hash table, whose keys must
-not be changed then."
+  "True if A and B are PTs, INTERVALs or PT-INTERVALs with exactly the same numbers. Other objects
+are compared by CL:EQUAL (manual 3.2.1; reading 30). This function can be the test of a hash table;
+keys of the table must not be modified."
   (typecase a
     (pt (and (pt-p b) (= (%pt-x a) (%pt-x b)) (= (%pt-y a) (%pt-y b))))
     (interval (and (interval-p b)
@@ -225,7 +230,7 @@ not be changed then."
 
 ;; 0 and -0 are the same here, and not to SXHASH.
 (defun hash (object)
-  "Return an integer for OBJECT; what is EQUAL has the same."
+  "Return a hash code, an integer, of OBJECT. Objects that are EQUAL have the same hash code."
   (flet ((mix (a b) (sxhash (list (+ 0d0 a) (+ 0d0 b)))))
     (typecase object
       (pt (mix (%pt-x object) (%pt-y object)))
@@ -237,13 +242,14 @@ not be changed then."
 (sb-ext:define-hash-table-test equal hash)
 
 (defun shown-number (number)
-  "Return NUMBER as it is shown: to a millionth, as far as floats of its size have that."
+  "Return NUMBER rounded for printing: to a millionth, if floats of its size are that exact."
   (if (< (abs number) 1d9)
       (+ 0d0 (/ (fround (* number 1d6)) 1d6))
       number))
 
 (defun print-value (object stream numbers control &rest parts)
-  "Print OBJECT unreadably, as NUMBERS to a millionth; for PRINC, its PARTS by CONTROL."
+  "Print OBJECT to STREAM. For PRINC, print PARTS with the format string CONTROL; for other
+functions, print #< > with NUMBERS rounded to a millionth."
   (if (or *print-escape* *print-readably*)
       (let ((*read-default-float-format* 'double-float))
         (print-unreadable-object (object stream)

@@ -7,18 +7,18 @@
           layout-number instance-slot copy-condition))
 
 (defmacro define-function-class (name documentation)
-  "Define the class NAME, of generic functions, with DOCUMENTATION."
+  "Define NAME, a class of generic functions, with DOCUMENTATION."
   `(defclass ,name (standard-generic-function)
      ()
      (:metaclass closer-mop:funcallable-standard-class)
      (:documentation ,documentation)))
 
 (defun generic-name (function)
-  "Return the name of the generic FUNCTION, a symbol or (SETF symbol)."
+  "Return the name of the generic function FUNCTION: a symbol or (SETF symbol)."
   (closer-mop:generic-function-name function))
 
 (defun methods-of-generic (function)
-  "Return a list of the methods of the generic FUNCTION."
+  "Return a list of the methods of the generic function FUNCTION."
   (closer-mop:generic-function-methods function))
 
 (defun methods-on-class (name)
@@ -42,7 +42,7 @@ there is none."
           (closer-mop:class-slots class)))
 
 (defun instance-slot-names (class)
-  "Return the names of the slots of CLASS with instance allocation."
+  "Return the names of those slots of CLASS that each instance has for itself."
   (mapcar #'closer-mop:slot-definition-name
           (remove :instance (closer-mop:class-slots class)
                   :key #'closer-mop:slot-definition-allocation :test-not #'eq)))
@@ -53,11 +53,11 @@ there is none."
 
 (declaim (inline layout-of layout-number instance-slot (setf instance-slot)))
 (defun layout-of (object)
-  "Return the layout of OBJECT, a structure: the same object for all with the same slots."
+  "Return the layout of the structure OBJECT. All structures of a type have the same layout."
   (internal (:sb-kernel #:%instance-wrapper #:%instance-layout) object))
 
 (defun layout-number (layout)
-  "Return a number of LAYOUT, which few others share."
+  "Return a hash number of LAYOUT. Few other layouts have the same number."
   (internal (:sb-kernel #:wrapper-clos-hash #:layout-clos-hash) layout))
 
 (defun instance-slot (object index)

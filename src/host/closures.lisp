@@ -13,11 +13,12 @@
 #+#.(cl:if (cl:find-package "SB-EVAL") '(:and) '(:or))
 (progn
   (defun environment-p (object)
-    "True if OBJECT is an environment of the interpreter's."
+    "True if OBJECT is an environment of SBCL's interpreter."
     (internal (:sb-eval #:env-p) object))
 
   (defun environment-values (environment)
-    "Return a list of the values of variables and functions in ENVIRONMENT and those around it."
+    "Return a list of the values of the variables and functions in ENVIRONMENT and in the
+environments around ENVIRONMENT."
     (loop for each = environment then (internal (:sb-eval #:env-parent) each)
           while each
           append (mapcar #'cdr (internal (:sb-eval #:env-vars) each))
@@ -44,7 +45,7 @@
                                          function)))
 
   (defun same-interpreted-p (function other)
-    "True if FUNCTION and OTHER are interpreted and were made by the same form."
+    "True if FUNCTION and OTHER are interpreted functions made by the same form."
     (and (interpreted-p function)
          (interpreted-p other)
          (eq (internal (:sb-eval #:interpreted-function-body) function)
@@ -66,7 +67,7 @@
   (defun same-interpreted-p (function other) (eq function other)))
 
 (defun fixed-slot-p (name)
-  "True unless the slot NAME of environments holds what belongs to their users."
+  "True if the slot NAME of an interpreter's environment never holds users' variables or functions."
   (not (member name '("PARENT" "VARS" "FUNS") :test #'string=)))
 
 ;;; A closure is code and values. A closed-over variable that is assigned to is a CELL, which all
@@ -88,7 +89,7 @@
            (interpreted-closure-p object))))
 
 (defun closure-values (closure)
-  "Return a list of what CLOSURE closes over."
+  "Return a list of the values and cells that CLOSURE closes over."
   (if (compiled-closure-p closure)
       (internal (:sb-kernel #:%closure-values) closure)
       (list (interpreted-environment closure))))
@@ -98,14 +99,14 @@
   "The function that copies a closure.")
 
 (defun copy-closure (closure)
-  "Return a new closure of the same code over the same values and cells."
+  "Return a new closure with the code, values and cells of CLOSURE."
   (if (compiled-closure-p closure)
       (funcall (the function **closure-copier**) closure)
       (copy-interpreted closure)))
 
 (defun replace-closure-values (closure function)
-  "Replace each value and cell that CLOSURE closes over by what FUNCTION returns for it. Return
-CLOSURE."
+  "Call FUNCTION with each value and cell that CLOSURE closes over, and replace the value or cell by
+the result. Return CLOSURE."
   (declare (type function function))
   (if (compiled-closure-p closure)
       (let ((count 0))
@@ -123,23 +124,23 @@ CLOSURE."
 
 (declaim (inline value-cell-p))
 (defun value-cell-p (object)
-  "True if OBJECT is the cell of a variable."
+  "True if OBJECT is a cell: the place of a closed-over variable that is assigned to."
   (and (internal (:sb-kernel #:%other-pointer-p) object)
        (= (internal-value :sb-vm #:value-cell-widetag)
           (internal (:sb-kernel #:%other-pointer-widetag) object))))
 
 (defun cell-value (cell)
-  "Return the value of the variable of CELL. Can be set."
+  "Return the value of the closed-over variable whose place is CELL. Can be set."
   (internal (:sb-kernel #:value-cell-ref) cell))
 
 (defun (setf cell-value) (value cell)
   (internal (:sb-kernel #:value-cell-set) cell value))
 
 (defun exit-cell-p (cell)
-  "True if CELL is of a block or tag that closures exit to and that has not been exited. It holds a
-stack address, which looks like an integer that no program would use."
+  "True if CELL belongs to a block or tag that a closure can exit to, and the block was not exited.
+Such a cell holds a stack address: an integer too large for other uses."
   (typep (cell-value cell) '(integer #.(ash #x700000000000 -1) #.(ash #x7FFFFFFFFFFF -1))))
 
 (defun make-value-cell (value)
-  "Return a new cell for a variable with VALUE."
+  "Return a new cell for a closed-over variable with VALUE."
   (internal (:sb-kernel #:make-value-cell) value))

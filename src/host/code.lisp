@@ -19,14 +19,14 @@
     (progn code '())))
 
 (defun cross-referenced-names (function)
-  "Return the macros, constants, variables and inline functions that FUNCTION uses."
+  "Return the names of the macros, constants, variables and inline functions that FUNCTION uses."
   (let ((references (internal (:sb-kernel #:%simple-fun-xrefs) function)))
     (and (vectorp references)
          (remove-if-not (lambda (object) (typep object '(and (or symbol cons) (not null))))
                         (coerce references 'list)))))
 
 (defun names-used (code)
-  "Return the names that the functions in CODE use, and the types of these functions."
+  "Return a list of the names that the functions in CODE use, and of the types of these functions."
   (loop for index below (internal (:sb-kernel #:code-n-entries) code)
         for function = (internal (:sb-kernel #:%code-entry-point) code index)
         append (cross-referenced-names function)
@@ -36,7 +36,7 @@
   (internal (:sb-kernel #:fun-code-header) (internal (:sb-kernel #:%fun-fun) function)))
 
 (defun same-code-p (function other)
-  "True if FUNCTION and OTHER are the same function or closures of the same code."
+  "True if FUNCTION and OTHER are the same function, or are closures of the same code."
   (if (or (interpreted-p function) (interpreted-p other))
       (same-interpreted-p function other)
       (eq (internal (:sb-kernel #:%fun-fun) function) (internal (:sb-kernel #:%fun-fun) other))))
@@ -50,7 +50,7 @@
   (eq 'linked-names
       (first (constants-from (code-of #'linked-names)
                              (internal-value :sb-vm #:code-constants-offset))))
-  "True if the descriptions of functions precede the constants of code.")
+  "True if this SBCL stores the descriptions of functions before the constants of code.")
 
 (defun first-constant (code)
   "Return the index of the first constant of CODE after the descriptions of its functions."
@@ -61,14 +61,16 @@
          0)))
 
 (defun code-constants (function)
-  "Return the constants of FUNCTION's code, functions compiled with it, and the names that it uses."
+  "Return a list of the constants in the code of FUNCTION, the functions compiled with FUNCTION, and
+the names that they use."
   (let ((code (code-of function)))
     (append (constants-from code (first-constant code))
             (linked-names code)
             (names-used code))))
 
 (defun constant-or-called-name (constant)
-  "Return the name in CONSTANT, of code, if it is a call by name; else CONSTANT."
+  "If CONSTANT, a constant of code, refers to a function by name, return that name; else return
+CONSTANT."
   (if (internal-type-p constant :sb-kernel #:fdefn)
       (internal (:sb-kernel #:fdefn-name) constant)
       constant))
@@ -83,8 +85,8 @@
   (internal (:sb-kernel #:%fun-lambda-list) function))
 
 (defun code-references (function)
-  "Return a list of what FUNCTION refers to, without numbers: function names (symbols or lists),
-symbols, other functions, constants and closed-over values."
+  "Return a list of the objects that FUNCTION refers to: function names (symbols or lists), symbols,
+other functions, constants and closed-over values. Numbers, characters and strings are left out."
   (remove-if
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
@@ -93,34 +95,36 @@ symbols, other functions, constants and closed-over values."
                (when (closure-p function) (closure-values function))))))
 
 (defun lambda-list-of (name)
-  "Return the lambda list of the function or macro called NAME, a symbol, or of a function itself."
+  "Return the lambda list of NAME: a function, or the name of a function or macro."
   (sb-introspect:function-lambda-list name))
 
 (defun takes-count-p (lambda-list count)
-  "True if LAMBDA-LIST, an ordinary one, accepts COUNT arguments, any of which may be keywords."
+  "True if a function with the ordinary lambda list LAMBDA-LIST accepts COUNT arguments. Keywords
+and their values count as arguments."
   (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
     (and (<= (length required) count)
          (or rest-p keys (<= count (+ (length required) (length optional)))))))
 
 (defun callable-with-p (function count)
-  "True if FUNCTION, or the function of that name, accepts COUNT arguments or is not known."
+  "True if FUNCTION, a function or its name, accepts COUNT arguments, or if its lambda list is
+unknown."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
     (or unknown-p (takes-count-p list count))))
 
 ;;; The source files of functions. SBCL does not know the file of forms that are evaluated singly.
 
 (defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
-  "The write dates of files whose forms were evaluated singly, by namestring.")
+  "A table from the names of files whose forms were evaluated one by one to their write dates.")
 
 (defun evaluated-file-p (namestring)
-  "True if NAMESTRING is the name of a file whose forms were evaluated singly."
+  "True if NAMESTRING is the name of a file whose forms were evaluated one by one."
   (and namestring
        (not (many-files-p namestring))
        (gethash (native-name namestring) *dates-of-files*)))
 
 (defun call-as-from-file (function path)
-  "Call FUNCTION, which evaluates forms read from the file PATH. Functions defined by it are
-recorded as from there."
+  "Call FUNCTION, which evaluates forms read from the file PATH. Functions that FUNCTION defines are
+recorded as defined in PATH."
   (let ((name (native-name path)) (errors *error-output*))
     (setf (gethash name *dates-of-files*) (file-write-date path))
     ;; The summary that a unit was left is useless here: the caller knows.
@@ -130,7 +134,8 @@ recorded as from there."
         (let ((*error-output* errors)) (funcall function))))))
 
 (defun file-of-source (source)
-  "Return the file of SBCL's definition SOURCE and its write date then; NIL if it was typed."
+  "Return the file of SOURCE, a definition source of SBCL, and the write date of the file at the
+time of the definition; NIL if the definition was typed."
   (let ((path (and source (sb-introspect:definition-source-pathname source))))
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
@@ -138,7 +143,7 @@ recorded as from there."
                             (gethash name *dates-of-files*)))))))
 
 (defun file-of-code (function)
-  "Return what FUNCTION-FILE does, by what is kept with the code of FUNCTION alone."
+  "Return the values of FUNCTION-FILE, using only the debug information in the code of FUNCTION."
   (let* ((source (internal (:sb-c #:debug-info-source)
                            (internal (:sb-kernel #:%code-debug-info) (code-of function))))
          (name (internal (:sb-c #:debug-source-namestring) source)))
@@ -147,15 +152,16 @@ recorded as from there."
                  (internal (:sb-c #:debug-source-created) source)))))
 
 (defun function-file (function)
-  "Return the native name of the file that FUNCTION was compiled from, and its write date at that
-time; NIL if it was typed."
+  "Return the native name of the file that FUNCTION was compiled from, and the write date of the
+file at that time; NIL if FUNCTION was typed."
   (handler-case (file-of-source (sb-introspect:find-definition-source function))
     ;; Of a file compiled by the Lisp that saved this core, SBCL may have kept the positions of the
     ;; first forms only, and looks for those of later ones.
     (error () (ignore-errors (file-of-code function)))))
 
 (defun files-besides-functions (symbol)
-  "Return lists (file written), as of FUNCTION-FILE, for the other definitions of SYMBOL."
+  "Return lists (file write-date), with values as of FUNCTION-FILE, for the definitions of SYMBOL as
+other things than a function."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
                       :structure :condition)
         append (loop for source in (ignore-errors
@@ -167,8 +173,8 @@ time; NIL if it was typed."
 ;;; definitions are reported as declarations of that name, since no other type is unused.
 
 (defun tell-sources (function)
-  "Add the result of FUNCTION, called with a symbol, to the definition sources that Lisp reports for
-it: lists (file position operator)."
+  "Make Lisp report further definition sources of symbols. FUNCTION returns those of a symbol: lists
+(file position operator)."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

@@ -18,7 +18,8 @@
   (and (boundp variable) (symbol-value variable)))
 
 (defun show-lambda-list (name lambda-list &optional (function (macro-function name)))
-  "Show LAMBDA-LIST to those who ask for the arguments of FUNCTION, by default the macro NAME."
+  "Make editors and DESCRIBE show LAMBDA-LIST as the arguments of FUNCTION, by default the function
+of the macro NAME."
   (when (compiled-function-p function)
     (funcall (fdefinition `(setf ,(internal-name :sb-c '#:%simple-fun-arglist)))
              lambda-list function)))
@@ -30,21 +31,21 @@
 ;;; Places.
 
 (defun places ()
-  "Return the table of source positions of the current compilation, or NIL."
+  "Return the table of the source locations of forms in the current compilation, or NIL."
   (let ((table (value-if-bound (compiler-variable #:*source-paths*))))
     (and (hash-table-p table) table)))
 
 (defun place-of (form)
-  "Return the position of FORM in the current compilation, or NIL."
+  "Return the source location of FORM in the current compilation, or NIL."
   (let ((places (places)))
     (and places (consp form) (values (gethash form places)))))
 
 (defun in-source-p (form)
-  "True if FORM was read from the source being compiled, or was given such a position."
+  "True if FORM has a source location in the current compilation."
   (and (place-of form) t))
 
 (defun keep-place (new old)
-  "Give NEW the position of OLD, unless it has one. Return NEW."
+  "Give the form NEW the source location of the form OLD, unless NEW has one. Return NEW."
   (let ((place (and (consp new) (not (eq new old)) (place-of old))))
     (when (and place (not (place-of new)))
       (setf (gethash new (places)) place))
@@ -60,7 +61,7 @@
 ;;; where it is from.
 
 (defun edited-file ()
-  "Return the name of the file of which an editor compiles a piece, a string, or NIL."
+  "If an editor compiles a part of a file, return the name of that file, a string; else NIL."
   (let ((file (getf (value-if-bound (compiler-variable #:*source-plist*)) :emacs-filename)))
     (and *compile-file-truename* (stringp file) file)))
 
@@ -71,16 +72,17 @@
   (internal (:sb-c #:find-error-context) nil))
 
 (defun context-original-form (context)
-  "Return the text of the form of CONTEXT, an error context."
+  "Return the text of the form that CONTEXT, an error context of the compiler, is about."
   (internal (:sb-c #:compiler-error-context-original-form) context))
 
 (defun compiler-error-p (condition)
-  "True if CONDITION says that the compiler cannot read or compile a form, and continues. Its cause
-is its ENCAPSULATED-CONDITION."
+  "True if CONDITION says that the compiler cannot read or compile a form, and continues with the
+next form. ENCAPSULATED-CONDITION returns the cause of CONDITION."
   (internal-type-p condition :sb-c #:compiler-error))
 
 (defun wrap-unit-summaries (wrapper)
-  "Call WRAPPER with SBCL's function that reports the end of a unit, and true if it was aborted."
+  "When a compilation unit ends, call WRAPPER with SBCL's function that reports the end, and true if
+the unit was aborted."
   (if-internal (:sb-c #:summarize-compilation-unit)
     (wrap-function (internal-name :sb-c '#:summarize-compilation-unit) wrapper)
     wrapper))
@@ -88,10 +90,12 @@ is its ENCAPSULATED-CONDITION."
 ;;; SBCL also records where each top-level form begins in the text.
 
 (defvar *kept-place* nil
-  "While deferred work is done: a list of a form and its position in the text.")
+  "While deferred work is done: a list (form . location) of the form it is about and its location in
+the text.")
 
 (defun place-at (path)
-  "Return the PLACE-IN-TEXT of the form at PATH, innermost number first; NIL if it is not known."
+  "Return the location in the text, as of LOCATION-IN-TEXT, of the form with the source path PATH, a
+list of numbers, the innermost first; NIL if the location is unknown."
   (destructuring-bind (&optional top . numbers) (reverse path)
     (let* ((info (value-if-bound (compiler-variable #:*source-info*)))
            (positions (and info
@@ -101,8 +105,8 @@ is its ENCAPSULATED-CONDITION."
            (cons (aref positions top) numbers)))))
 
 (defun compiler-place ()
-  "Return the pathname of the file that is being compiled, and the PLACE-IN-TEXT of the current
-form, or NIL if that is not known. Return NIL if no file is being compiled."
+  "Return the pathname of the file that is being compiled, and the location of the current form, as
+of LOCATION-IN-TEXT, or NIL if unknown. Return NIL if no file is being compiled."
   (let* ((context (and *compile-file-truename* (error-context)))
          (file (and context (internal (:sb-c #:compiler-error-context-file-name) context))))
     (when (pathnamep file)
@@ -110,9 +114,9 @@ form, or NIL if that is not known. Return NIL if no file is being compiled."
                                        context))))))
 
 (defun place-in-text (form)
-  "Return the position of FORM in the text that is being compiled or loaded, or NIL if it is not
-known: a list of the position after which the top-level form begins, then of the indices, from 0, of
-the elements that lead to FORM."
+  "Return the location of FORM in the text that is being compiled or loaded; NIL if unknown. A
+location is a list (position index...): the position after which the top-level form begins, and the
+indices, from 0, of the elements that lead to FORM."
   (cond
     ((and *kept-place* (eq form (first *kept-place*))) (rest *kept-place*))
     ((edited-file) nil)
@@ -125,8 +129,9 @@ the elements that lead to FORM."
 ;;; left to the unit around it.
 
 (defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
-  "What is compiled or loaded as a whole, within OUTER. TASKS are, by form, lists of a function to
-call at the end and the form's positions, for the compiler and in the text."
+  "Files or forms that are compiled or loaded as a whole, within the unit OUTER. TASKS is a table
+from a form to a list: a function to call at the end of the unit, the compiler's error context for
+the form, and the form's location in the text."
   (kind :load :type (member :load :compilation) :read-only t)
   (outer nil :type (or null unit) :read-only t)
   (files-p nil :type boolean)
@@ -135,14 +140,15 @@ call at the end and the form's positions, for the compiler and in the text."
 (defvar *unit* nil "The unit that is being compiled or loaded, or NIL.")
 
 (defun at-end-of-unit (form function)
-  "Call FUNCTION once, at the end of the unit of FORM. The compiler attributes its warnings to FORM.
-Without a compiler, do nothing."
+  "Call FUNCTION once, at the end of the compilation unit that contains FORM. The compiler
+attributes the warnings of FUNCTION to FORM. Outside of compiling and loading, do nothing."
   (when (and *unit* (not (gethash form (unit-tasks *unit*))))
     (setf (gethash form (unit-tasks *unit*))
           (list function (call-at-place form #'error-context) (place-in-text form)))))
 
 (defun call-noting-warnings (function)
-  "Call FUNCTION and report its warnings as the compiler's. Return COMPILE-FILE's last two values."
+  "Call FUNCTION and report its warnings as those of the compiler. Return two values: whether there
+were warnings, and whether there were others than style warnings."
   (let ((warned nil) (failed nil))
     (with-compilation-unit ()
       (progv (list (compiler-variable #:*last-message-count*)
@@ -175,7 +181,8 @@ Without a compiler, do nothing."
         do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
 
 (defun call-in-unit (kind function &optional own)
-  "Call FUNCTION in a unit of KIND, the current one if it can be used, a new one if OWN is true."
+  "Call FUNCTION in a unit of KIND: in the current unit if its kind fits and OWN is false, else in a
+new unit."
   (if (and *unit* (not own) (member (unit-kind *unit*) (list kind :compilation)))
       (funcall function)
       (let ((*unit* (make-unit kind (and (not own) *unit*))))
@@ -189,7 +196,7 @@ Without a compiler, do nothing."
   (call-in-unit :load function t))
 
 (defun compile-in-unit (function)
-  "Call FUNCTION, which compiles a file and returns what COMPILE-FILE does. Return that."
+  "Call FUNCTION, which compiles a file, in a compilation unit. Return the values of COMPILE-FILE."
   (cond ((and *unit* (eq :compilation (unit-kind *unit*)))
          (setf (unit-files-p *unit*) t)
          (funcall function))
@@ -201,7 +208,8 @@ Without a compiler, do nothing."
 
 ;; A file compiled or loaded meanwhile has definitions of its own.
 (defun apply-in-own-file (function arguments)
-  "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS. Definitions count as that file's."
+  "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS. Definitions are recorded as defined
+in that file."
   (let ((name (compiler-variable #:*source-namestring*)))
     (progv (and (evaluated-file-p (symbol-value name)) (list name)) '(nil)
       (apply function arguments))))
@@ -223,31 +231,32 @@ Without a compiler, do nothing."
 ;;;; The position of LOAD in a file that it cannot read
 
 (defun form-start (stream)
-  "Return the position, in characters, of the form that LOAD reads from STREAM, or 0 if not even its
-first character can be read; NIL for other streams."
+  "Return the position, in characters, of the form that LOAD is reading from STREAM; 0 if LOAD
+cannot read even its first character; NIL if LOAD is not reading STREAM."
   (and (internal-type-p stream :sb-int #:form-tracking-stream)
        (or (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream) 0)))
 
 (defun line-of-next (stream)
-  "Return the number of the line that holds the next character LOAD reads from STREAM, for which
-FORM-START must not return NIL."
+  "Return the number of the line of the next character that LOAD will read from STREAM. FORM-START
+must not return NIL for STREAM."
   (car (internal (:sb-int #:line/col-from-charpos) stream)))
 
 ;; A word may end by the newline after it, which has been read by then.
 (defun line-reached (stream)
-  "Return the number of the line that holds the last character LOAD has read from STREAM, for which
-FORM-START must not return NIL."
+  "Return the number of the line of the last character that LOAD has read from STREAM. FORM-START
+must not return NIL for STREAM."
   (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)
     (if (plusp column) line (max 1 (1- line)))))
 
 (defun encapsulated-condition (condition)
-  "Return the condition that CONDITION wraps to add a position, as LOAD's do; NIL for others."
+  "If CONDITION only adds a position to another condition, as conditions of LOAD do, return that
+other condition; else NIL."
   (and (internal-type-p condition :sb-int #:encapsulated-condition)
        (internal (:sb-int #:encapsulated-condition) condition)))
 
 (defun undecodable-format (condition)
-  "Return the name, a string, of the external format in which a stream has bytes that are no text,
-if that is what CONDITION says; else NIL."
+  "If CONDITION says that a stream has bytes that are not valid text in its external format, return
+the name of that format, a string; else NIL."
   (when (internal-type-p condition :sb-int #:stream-decoding-error)
     (let ((format (if-internal (:sb-kernel #:character-coding-error-external-format)
                     (internal (:sb-kernel #:character-coding-error-external-format) condition)

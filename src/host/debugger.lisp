@@ -10,7 +10,8 @@
 ;;; A debugger of Lisp or an editor writes a report as PRINC does.
 
 (defvar *report-addition* (constantly nil)
-  "A function of an error of Lisp's own that returns a sentence to append to its report, or NIL.")
+  "A function that is called with an error of Lisp's own. It returns a sentence to append to the
+report of the error, or NIL.")
 
 (defun write-addition (condition stream)
   (unless *print-escape*
@@ -24,45 +25,50 @@
 
 ;;;; The front end, such as the prompt, that can ask a person
 
-(defvar *front-end* nil "The front end that can ask people, an object; NIL if there is none.")
+(defvar *front-end* nil "The front end that can ask the user, such as the prompt, an object; NIL if
+there is none.")
 
 (defgeneric serve-while-waiting (front-end)
-  (:documentation "Do the pending work of FRONT-END in this thread, which waits for another. Called
-now and then.")
+  (:documentation "Do the pending work of FRONT-END. A thread that waits for another thread calls
+this function repeatedly.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric hook-of-front-end (front-end)
-  (:documentation "Return the debugger hook of FRONT-END, or NIL, for use after an editor has
-disconnected.")
+  (:documentation "Return the debugger hook of FRONT-END, to be used after an editor has
+disconnected; or NIL.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric ask-how-to-go-on (front-end condition)
-  (:documentation "Let the user choose a restart for CONDITION, after another debugger has gone.
-Return if FRONT-END cannot ask.")
+  (:documentation "Let the user choose a restart for CONDITION, because the debugger of an editor
+has disconnected. Return only if FRONT-END cannot ask the user.")
   (:method (front-end condition) (declare (ignore front-end condition))))
 
 (defgeneric input-of-programs (front-end stream)
-  (:documentation "Return the stream that users' code in a run's threads reads instead of STREAM.")
+  (:documentation "Return the stream that users' code reads in place of STREAM, in a thread of a
+run.")
   (:method (front-end stream) (declare (ignore front-end)) stream))
 
 ;;;; Debuggers
 
 ;; One of our own hooks, perhaps around others of ours, does not show that a person is present.
 (defvar *answerer* nil
-  "The hook set last by CALL-ANSWERING-DEBUGGER, consed to the foreign hook before it; or NIL.")
+  "The pair (hook . foreign-hook) of the debugger hook that CALL-ANSWERING-DEBUGGER has set last,
+and the hook of another program that was set before; or NIL.")
 
 ;; The hook of an editor's server stays set when the editor disconnects.
 (defvar *editor-gone-p* (constantly nil)
-  "A function: true if the global debugger hook is that of an editor's server without an editor.")
+  "A function that returns true if the global debugger hook belongs to the server of an editor that
+has disconnected.")
 
 (defun stale-p (hook)
-  "True if HOOK is foreign and belongs to an editor that has disconnected."
+  "True if HOOK is not the simulator's, and belongs to an editor that has disconnected."
   (and (functionp hook)
        (not (eq hook (first *answerer*)))
        (funcall *editor-gone-p*)))
 
 (defun foreign-hook ()
-  "Return the debugger hook, or, if that is ours, the foreign one that was set before."
+  "Return the debugger hook. If the simulator has set it, return the hook of another program that
+was set before."
   (let ((hook (debugger-hook)))
     (if (and hook (eq hook (first *answerer*)))
         (rest *answerer*)
@@ -76,9 +82,9 @@ has set HOOK or *DEBUGGER-HOOK*."
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
 
 (defun debugger-hook ()
-  "Return the function that replaces Lisp's debugger in threads without a binding, called with a
-condition and itself; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK means that there is no
-debugger."
+  "Return the function that is called in place of Lisp's debugger, with a condition and the function
+itself, in threads that do not bind another; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK
+means that there is no debugger."
   (let ((hook sb-ext:*invoke-debugger-hook*))
     (if (stale-p hook) (hook-of-front-end *front-end*) hook)))
 
@@ -86,35 +92,35 @@ debugger."
   (setf sb-ext:*invoke-debugger-hook* function))
 
 (defun global-debugger-hook ()
-  "Return the global debugger hook, for threads without a binding, or NIL. Can be set."
+  "Return the debugger hook of all threads that do not bind another, or NIL. Can be set."
   (global-value 'sb-ext:*invoke-debugger-hook*))
 
 (defun (setf global-debugger-hook) (function)
   (setf (global-value 'sb-ext:*invoke-debugger-hook*) function))
 
 (defmacro with-debugger-hook ((function) &body body)
-  "Run BODY with FUNCTION as this thread's debugger hook. A running hook has none
-unless it uses this."
+  "Run BODY with FUNCTION as this thread's debugger hook. While a hook runs, its thread has no
+debugger hook, unless the hook uses this macro."
   `(let ((sb-ext:*invoke-debugger-hook* ,function)) ,@body))
 
 ;;; The call stack, and the terminal that threads share with the debugger.
 
 (defun calls-under-way (&optional (limit 100))
-  "Return a list of at most LIMIT calls in progress, the newest first, each as (function
-argument...) as far as the compiler has kept that."
+  "Return a list of at most LIMIT calls in progress, the newest first. A call is a list (function
+argument...), as far as the compiler has kept the arguments."
   (internal (:sb-debug #:list-backtrace) :count limit))
 
 (defun disabled-hook-p (hook)
-  "True if HOOK is the one that disables SBCL's debugger, as in scripts."
+  "True if HOOK is the debugger hook by which SBCL disables its debugger, for example in scripts."
   (and (symbolp hook) (string= hook "DEBUGGER-DISABLED-HOOK")))
 
 (defun take-foreground ()
-  "Wait until this thread has the terminal, as a thread that enters the debugger does."
+  "Wait until this thread has the terminal, as if it entered the debugger."
   (internal (:sb-thread #:get-foreground)))
 
 (defun yield-foreground ()
-  "Yield the terminal if another thread waits to enter Lisp's debugger. Return when that has left
-it."
+  "If another thread waits to enter Lisp's debugger, let it have the terminal. Return when that
+thread has left the debugger."
   (let ((threads (internal (:sb-thread #:interactive-threads))))
     (when (and (eq (first threads) sb-thread:*current-thread*) (rest threads))
       (sb-thread:release-foreground)

@@ -9,8 +9,8 @@
           lock-violation locked-symbol copy-nicknames))
 
 (defun function-arguments (name)
-  "Return the argument types of the function NAME, as in the type FUNCTION, and true; NIL and NIL if
-the compiler does not know them."
+  "Return the argument types of the function NAME, as in a type (FUNCTION (type...)), and true; NIL
+and NIL if the compiler does not know them."
   (let ((type (and (member (internal (:sb-int #:info) :function :where-from name)
                            '(:declared :defined))
                    (internal (:sb-kernel #:type-specifier)
@@ -25,13 +25,14 @@ the compiler does not know them."
        (internal (:sb-int #:comma-expr) object)))
 
 (defun bound-in-walk-p (variable environment)
-  "True if VARIABLE is bound by a form that the walk at ENVIRONMENT is inside of."
+  "True if VARIABLE is bound by a form around the current form of the code walk with ENVIRONMENT."
   ;; Variables of the environment in which the walk began are entries; others are lists of these.
   (let ((found (internal (:sb-walker #:var-lexical-p) variable environment)))
     (and (consp found) (consp (first found)))))
 
 (defun variables-of-walk (environment)
-  "Return the variables, without symbol macros, bound by the forms around the walk at ENVIRONMENT."
+  "Return the variables, without symbol macros, that are bound by the forms around the current form
+of the code walk with ENVIRONMENT."
   (loop for (name . kind) in (internal (:sb-walker #:env-lexical-variables) environment)
         unless (member name seen)
           collect name into seen
@@ -76,7 +77,7 @@ and so on, or NIL if it is not known."
     (sb-cltl2:enclose (sb-cltl2:parse-macro name lambda-list body environment) environment)))
 
 (defun lisps-own-p (name)
-  "True if the symbol NAME belongs to Common Lisp or its implementation."
+  "True if the symbol NAME belongs to Common Lisp or to SBCL."
   (let ((package (symbol-package name)))
     (and package
          (or (eq package #.(find-package :cl))
@@ -85,8 +86,9 @@ and so on, or NIL if it is not known."
 ;;; Environments.
 
 (defun extended-environment (environment &rest additions &key &allow-other-keys)
-  "Return ENVIRONMENT extended by ADDITIONS: :variable and :function with lists of names, :macro
-with a list of (name expander), :symbol-macro with a list of (name expansion)."
+  "Return ENVIRONMENT, a lexical environment, extended by ADDITIONS: :variable and :function with
+lists of names, :macro with a list of (name expander), :symbol-macro with a list of (name
+expansion)."
   (apply #'sb-cltl2:augment-environment environment additions))
 
 ;;; Forms.
@@ -98,7 +100,7 @@ with a list of (name expander), :symbol-macro with a list of (name expansion)."
 
 ;; Environments of a walk do not show that its variables shadow symbol macros.
 (defun expand-in-walk (form environment)
-  "Return the expansion, by one step, of FORM, a macro call met by a walk at ENVIRONMENT."
+  "Return the expansion, by one step, of FORM, a macro call in a code walk with ENVIRONMENT."
   (let ((shadowing (remove :symbol-macro (variables-of-walk environment)
                            :key (lambda (name) (variable-kind name environment))
                            :test-not #'eq)))
@@ -114,7 +116,7 @@ with a list of (name expander), :symbol-macro with a list of (name expansion)."
 (defun walk-form (form environment visit)
   "Return FORM with each subform replaced by the value of VISIT, called with the subform and its
 environment, outermost first. A replacement is visited in turn, unless VISIT returns true as its
-second value. Replacements get the source position of what they replace."
+second value. A replacement gets the source location of the form that it replaces."
   (declare (type function visit))
   (let ((entered nil))
     (labels ((walk (form environment)
@@ -142,7 +144,7 @@ second value. Replacements get the source position of what they replace."
 ;;; A user's definition is often also the value of the variable of its name.
 
 (defun variable-name-trouble (name)
-  "Return in words why the symbol NAME cannot become a special variable, or NIL."
+  "Return a text that says why the symbol NAME cannot become a special variable, or NIL."
   (let ((package (symbol-package name)))
     (cond ((package-locked-p package) (format nil "belongs to ~A" (package-name package)))
           ((constantp name) "is a constant")
@@ -150,15 +152,15 @@ second value. Replacements get the source position of what they replace."
            "is a symbol macro or a global variable"))))
 
 (defun users-symbol-p (name)
-  "True if the symbol NAME is in a package that users may define names in."
+  "True if users may define the symbol NAME: it is not a keyword, and its package is not locked."
   (let ((package (symbol-package name)))
     (and package
          (not (keywordp name))
          (not (package-locked-p package)))))
 
 (defun variable-name-p (name)
-  "True if the symbol NAME can become a special variable. Constants cannot, nor symbols of locked
-packages, such as Common Lisp's or ours."
+  "True if the symbol NAME can become a special variable. Constants and symbols of locked packages,
+such as those of Common Lisp and of the simulator, cannot."
   (and name
        (symbol-package name)
        (null (variable-name-trouble name))))
@@ -170,8 +172,8 @@ packages, such as Common Lisp's or ours."
 ;;; Names that the compiler finds used but undefined.
 
 (defun undefined-name (condition)
-  "Return the name that CONDITION, a compiler warning, reports as undefined, and whether as a
-:FUNCTION or :VARIABLE; NIL if it reports something else."
+  "If CONDITION, a compiler warning, reports an undefined name, return the name and its kind,
+:FUNCTION or :VARIABLE; else NIL."
   (let ((arguments (and (typep condition '(and warning simple-condition))
                         (simple-condition-format-arguments condition))))
     (when (and (proper-list-p arguments)
@@ -180,7 +182,7 @@ packages, such as Common Lisp's or ours."
       (values (second arguments) (first arguments)))))
 
 (defun still-undefined-p (name kind)
-  "True if NAME is not defined as KIND, a :FUNCTION or :VARIABLE, now either."
+  "True if NAME is still undefined as KIND, a :FUNCTION or :VARIABLE."
   (ecase kind
     (:function (not (fboundp name)))
     (:variable (not (or (boundp name) (known-variable-p name nil))))))
@@ -190,11 +192,11 @@ packages, such as Common Lisp's or ours."
 ;;; Names of a locked package cannot be redefined by accident.
 
 (deftype lock-violation ()
-  "The condition that a name of a locked package would be redefined."
+  "The type of the error that a name of a locked package would be redefined."
   'sb-ext:package-lock-violation)
 
 (defun locked-symbol (condition)
-  "Return the symbol that CONDITION, a LOCK-VIOLATION, is about, or NIL."
+  "Return the symbol that a LOCK-VIOLATION, the error CONDITION, is about; or NIL."
   (ignore-errors (sb-ext:package-locked-error-symbol condition)))
 
 (defun copy-nicknames (from to)

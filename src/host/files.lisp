@@ -13,7 +13,7 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defconstant +illegible+ (code-char #xFFFD)
-    "The Unicode character for octets that are not valid text."))
+    "The Unicode character that replaces octets that are not valid text."))
 
 ;;; In a native name no character is special, unlike * in a Lisp pathname.
 
@@ -22,12 +22,12 @@
   (uiop:native-namestring path))
 
 (defun native-path (name)
-  "Return the pathname of NAME, a native name."
+  "Return the pathname of NAME, the operating system's name of a file."
   (uiop:parse-native-namestring name))
 
 ;; UIOP's function for directories puts a backslash before a star.
 (defun native-path-of-directory (name)
-  "Return the pathname of the directory NAME, a native name."
+  "Return the pathname of NAME, the operating system's name of a directory."
   (sb-ext:parse-native-namestring name nil *default-pathname-defaults* :as-directory t))
 
 (defun path-called (name &key directory)
@@ -48,16 +48,17 @@ true. ~ and ~/ are the home directory."
   (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
 
 (defun system-name (path)
-  "Return the name of PATH for system calls; a relative one starts in the BASE-DIRECTORY."
+  "Return the name of PATH for system calls. A relative PATH starts in the BASE-DIRECTORY."
   (native-name (merge-pathnames path (base-directory))))
 
 (defun many-files-p (name)
-  "True if NAME, a pathname or string, is wild, or has an unclosed [."
+  "True if NAME, a pathname or string, has wildcards, or an unclosed bracket ([)."
   (handler-case (wild-pathname-p name)
     (error () t)))
 
 (defun shown-name (file)
-  "Return FILE, a pathname or string, as a native name to show; the empty name as two quotes."
+  "Return FILE, a pathname or string, as a native name for messages. Show an empty name as two
+quotes."
   (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
@@ -71,36 +72,38 @@ true. ~ and ~/ are the home directory."
   (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun existing-path (path)
-  "Return the truename of the file PATH, or NIL if there is none or it is a directory."
+  "Return the truename of the file PATH; NIL if it does not exist or is a directory."
   (uiop:file-exists-p path))
 
 (defun missing-directory (path)
-  "Return the directory of PATH, a pathname or string, as a name if it does not exist, else NIL."
+  "If the directory of PATH, a pathname or string, does not exist, return the name of the directory;
+else NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
     (unless (or (many-files-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))
 
 (defun replace-file (file by)
-  "Rename the file BY to FILE and replace what is there, atomically. Both are pathnames; a missing
-directory is filled in, nothing else. Signals an error if the system refuses."
+  "Rename the file BY to FILE, and replace an existing FILE, atomically. FILE and BY are pathnames;
+relative ones start in the BASE-DIRECTORY. Signals an error if the system refuses."
   (sb-posix:rename (system-name by) (system-name file))
   (values))
 
 (defun copy-permissions (file from)
-  "Give FILE the permissions of the file FROM, if there is one."
+  "Give FILE the permissions of the file FROM, if FROM exists."
   (let ((status (ignore-errors (sb-posix:stat (system-name from)))))
     (when status
       (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun plain-file-p (path)
-  "True if PATH is a regular file: no directory, device or pipe. Signals an error if it does not
+  "True if PATH is a regular file: no directory, device or pipe. Signals an error if PATH does not
 exist."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-unprotected (path)
-  "Signal an error if the file PATH, a pathname, exists and this process, or nobody, may write it."
+  "Signal an error if the file PATH, a pathname, exists and is write-protected, or this process may
+not write it."
   (let ((name (system-name path)))
     (when (and (existing-path path)
                (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
@@ -115,19 +118,21 @@ exist."
          (not (ignore-errors (sb-posix:stat name))))))
 
 (defparameter *many-files-text*
-  "its name stands for many files; write \\\\ before each * ? and [ in a string of Lisp"
-  "Why a wild name cannot be used.")
+  "its name has wildcards; in a Lisp string, write \\\\ before each * ? and ["
+  "The reason why a name with wildcards cannot be used.")
 
 (defun unusable-file-text (path)
-  "Return in words why PATH, a pathname or string, names no regular file, or NIL."
+  "Return a text that says why PATH, a pathname or string, cannot be used as a regular file, or
+NIL."
   (cond ((many-files-p path) *many-files-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
         ((not (ignore-errors (sb-posix:stat (system-name path))))
-         "there is no such file, or none that may be seen")
+         "it does not exist, or cannot be accessed")
         ((not (plain-file-p path)) "it is a directory or a device")))
 
 (defun check-name-legible (path)
-  "Signal an error if the name PATH has a byte that is not valid text: other names look the same."
+  "Signal an error if the name PATH has bytes that are not valid text. (Different names of that sort
+look the same.)"
   (when (find +illegible+ (native-name path))
     (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
 
@@ -163,16 +168,16 @@ invalid octet."
                  (native-name path)))))))
 
 (defun make-new-directory (path)
-  "Create the directory PATH in an existing one. True if it did not exist before."
+  "Create the directory PATH; its parent must exist. Return true if PATH did not exist before."
   (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o700) t)
     (sb-posix:syscall-error (condition)
       ;; The owner may have removed it by now.
       (unless (= sb-posix:eexist (sb-posix:syscall-errno condition)) (error condition)))))
 
 (defun call-with-file-lock (function path refused)
-  "Call FUNCTION while this process has a lock on the file PATH, which is created if missing. Return
-true and FUNCTION's value, or NIL if another process has the lock. Call REFUSED instead if PATH
-cannot be written. The system releases the lock when this process ends."
+  "Call FUNCTION while this process has a lock on the file PATH, which is created if it does not
+exist. Return true and the value of FUNCTION; NIL if another process has the lock. If PATH cannot be
+written, call REFUSED instead of FUNCTION. The system releases the lock when this process ends."
   (let ((descriptor (handler-case (sb-posix:open (system-name path)
                                                  (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)
                       (sb-posix:syscall-error () (funcall refused)))))
@@ -183,7 +188,7 @@ cannot be written. The system releases the lock when this process ends."
       (sb-posix:close descriptor))))
 
 (defun process-number ()
-  "Return the process ID."
+  "Return the ID of this process."
   (sb-posix:getpid))
 
 (defun process-running-p (number)
@@ -195,11 +200,11 @@ cannot be written. The system releases the lock when this process ends."
 ;;; and process, so files of killed processes can be recognized.
 
 (defun host-file-prefix ()
-  "Return the prefix of temporary files of this host's processes."
+  "Return the prefix of the names of temporary files of all processes on this computer."
   (format nil "ars-magna-~A-" (machine-instance)))
 
 (defun temporary-file-prefix ()
-  "Return the prefix of temporary files of this process."
+  "Return the prefix of the names of temporary files of this process."
   (format nil "~A~D-" (host-file-prefix) (process-number)))
 
 (defun abandoned-file-p (file)
@@ -220,21 +225,22 @@ cannot be written. The system releases the lock when this process ends."
   (uiop:getenv name))
 
 (defun real-microseconds ()
-  "Return the real time in microseconds since some moment. No result may depend on it."
+  "Return the real time in microseconds since an arbitrary moment. Results of runs must not depend
+on the real time."
   ;; Lisp's own clock has steps of 4000.
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
 
 (defun date-and-time ()
-  "Return the date and the time in UTC, as text. No result may depend on it."
+  "Return the date and the time in UTC, as text. Results of runs must not depend on them."
   (multiple-value-bind (second minute hour day month year)
       (decode-universal-time (get-universal-time) 0)
     (format nil "~D-~2,'0D-~2,'0D ~2,'0D:~2,'0D:~2,'0D UTC" year month day hour minute second)))
 
 (defun run-command (program arguments &key input output)
   "Run PROGRAM, searched in PATH, with the strings ARGUMENTS, and wait for its end. INPUT is a
-stream, :INTERACTIVE for this Lisp's own input, or NIL. Return the exit status, or NIL if it cannot
-be run, and its output as a string if OUTPUT is :STRING."
+stream, :INTERACTIVE for this Lisp's own input, or NIL. Return the exit status of PROGRAM, or NIL if
+it cannot be run. If OUTPUT is :STRING, return the output as a string, as a second value."
   (handler-case
       (multiple-value-bind (text errors status)
           (uiop:run-program (cons program arguments)
@@ -246,13 +252,14 @@ be run, and its output as a string if OUTPUT is :STRING."
 
 (defparameter *tied-start*
   "setpriv --pdeathsig TERM true 2>/dev/null && exec setpriv --pdeathsig TERM \"$@\"; exec \"$@\""
-  "Shell code that runs a program and terminates it when this process ends, however that ends, on
-systems that can.")
+  "Shell code that runs a program. On systems with the command setpriv, the program is terminated
+when this process ends for any reason.")
 
 (defun run-tied (program arguments &rest streams)
-  "Run PROGRAM, searched in PATH, with ARGUMENTS and STREAMS, keywords of UIOP:LAUNCH-PROGRAM, and
-wait. It is terminated on a non-local exit or when this process ends. Return the shell's exit
-status, or NIL if nothing can be run, and with :ERROR-OUTPUT :STREAM the error output, a string."
+  "Run PROGRAM, searched in PATH, with the strings ARGUMENTS, and wait for its end. STREAMS are
+keywords of UIOP:LAUNCH-PROGRAM. PROGRAM is terminated on a non-local exit, or when this process
+ends. Return the exit status of the shell, or NIL if it cannot be run; with :ERROR-OUTPUT :STREAM
+also the error output, a string."
   (let ((process (handler-case (apply #'uiop:launch-program
                                       (list* "sh" "-c" *tied-start* "sh" program arguments)
                                       streams)
@@ -270,14 +277,14 @@ status, or NIL if nothing can be run, and with :ERROR-OUTPUT :STREAM the error o
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Do as RUN-TIED with PROGRAM and ARGUMENTS, on this process's own streams. Return the exit status
-or NIL."
+  "Run PROGRAM with ARGUMENTS as RUN-TIED does, on the standard streams of this process. Return the
+exit status or NIL."
   (run-tied program arguments
             :input :interactive :output :interactive :error-output :interactive))
 
 (defun run-filter (program arguments input output)
-  "Do as RUN-TIED with PROGRAM and ARGUMENTS, with the string INPUT as input and the stream OUTPUT,
-to a file, as output. Return the exit status, or NIL if there is no such program, and the error
+  "Run PROGRAM with ARGUMENTS as RUN-TIED does. Its input is the string INPUT; its output goes to
+OUTPUT, a stream to a file. Return the exit status, or NIL if PROGRAM does not exist, and the error
 output as a string."
   (with-input-from-string (in input)
     (multiple-value-bind (status errors)
@@ -303,7 +310,8 @@ output as a string."
                                                   :external-format '(:utf-8 :replacement #\?)))
 
 (defun input-within-p (stream seconds)
-  "Wait at most SECONDS until STREAM, on a descriptor, has input or is at its end. True if so."
+  "Wait at most SECONDS until STREAM, a stream on a file descriptor, has input or is at its end.
+Return true if so."
   (or (listen stream)
       (internal (:sb-sys #:wait-until-fd-usable)
                 (internal (:sb-sys #:fd-stream-fd) stream) :input seconds)))
@@ -314,7 +322,7 @@ output as a string."
   "The system's request number for the size of a terminal window.")
 
 (defun rows-and-columns ()
-  "Return the rows and columns of the window of this process's terminal; zeros if not known."
+  "Return the numbers of rows and columns of the terminal window; zeros if unknown."
   (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
     (setf (sb-alien:deref size 0) 0
           (sb-alien:deref size 1) 0)
@@ -325,7 +333,8 @@ output as a string."
     (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
 
 (defun char-width (char)
-  "Return the columns that CHAR takes on a terminal: 0 for accents, 2 for East Asian characters."
+  "Return the number of columns that CHAR takes on a terminal: 0 for combining accents, 2 for East
+Asian characters, else 1."
   (cond ((member (internal (:sb-unicode #:general-category) char) '(:mn :me :cf)) 0)
         ((member (internal (:sb-unicode #:east-asian-width) char) '(:w :f)) 2)
         (t 1)))

@@ -19,12 +19,13 @@
 ;;; that was made outside.
 
 (defvar *holding* nil
-  "What defers the interrupts of this thread: NIL for nothing; :STRICTLY; or a function that calls
-another with interrupts allowed, if its second argument is true only where SBCL waits.")
+  "How this thread defers interrupts: NIL, not at all; :STRICTLY, everywhere; or a function
+(function waiting-p) that calls its first argument with interrupts allowed, if WAITING-P is true
+only while SBCL waits.")
 
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()
-  "True if interrupts of this thread are deferred here."
+  "True if this thread defers interrupts now."
   (and *holding* t))
 
 (defun call-deferring-interrupts (function)
@@ -40,7 +41,7 @@ another with interrupts allowed, if its second argument is true only where SBCL 
             (funcall function))))))
 
 (defun call-allowing-interrupts (function)
-  "Do what ALLOWING-INTERRUPTS does."
+  "Call FUNCTION with interrupts allowed, unless they are strictly deferred."
   (let ((holding *holding*))
     (etypecase holding
       (null (internal (:sb-sys #:with-interrupts) (funcall function)))
@@ -68,8 +69,8 @@ WITH-INTERRUPTIBLE-WAIT."
 
 ;; SBCL allows interrupts at the end of a protected form. That could skip what is to follow.
 (defmacro protecting-strictly (form &body cleanup)
-  "Do as UNWIND-PROTECT, with no interrupt between FORM and CLEANUP or in CLEANUP. In FORM
-interrupts are as outside."
+  "Evaluate FORM and then CLEANUP, as UNWIND-PROTECT does. No interrupt can occur between FORM and
+CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outside."
   `(internal (:sb-sys #:without-interrupts)
      (unwind-protect (internal (:sb-sys #:with-local-interrupts) ,form)
        ,@cleanup)))
@@ -77,10 +78,10 @@ interrupts are as outside."
 ;;; Strict deferral for functions: code in between cannot allow interrupts.
 
 (defvar *open-to-interrupts* #'funcall
-  "A function that calls another with interrupts allowed.")
+  "A function that calls its argument, a function, with interrupts allowed.")
 
 (defun call-holding-interrupts (function)
-  "Call FUNCTION with interrupts deferred, except in what CALL-OPEN-TO-INTERRUPTS calls."
+  "Call FUNCTION with interrupts deferred, except within CALL-OPEN-TO-INTERRUPTS."
   (internal (:sb-sys #:without-interrupts)
     (let* ((holding *holding*)
            (*open-to-interrupts* (lambda (function)
@@ -97,18 +98,19 @@ interrupts are as outside."
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
 
 (deftype deadline-passed ()
-  "The condition that a thread still waits for a stream, lock or other thread at its deadline."
+  "The type of the condition that is signalled if a thread still waits for a stream, lock or other
+thread at its deadline."
   (internal-name :sb-sys '#:deadline-timeout))
 
 (defmacro waiting-at-most ((seconds) &body body)
-  "Run BODY. Signals DEADLINE-PASSED where it still waits after SECONDS."
+  "Run BODY. Signals DEADLINE-PASSED if BODY waits for something after SECONDS have passed."
   `(internal (:sb-sys #:with-deadline) (:seconds ,seconds) ,@body))
 
 ;;; Cleanup that always completes.
 
 (declaim (inline call-interruptible))
 (defun call-interruptible (open-p function)
-  "Call FUNCTION, with interrupts allowed if OPEN-P."
+  "Call FUNCTION, with interrupts allowed if OPEN-P is true."
   (if open-p
       (call-allowing-interrupts function)
       (funcall (the function function))))
@@ -126,8 +128,9 @@ interrupts are as outside."
 
 ;; PROTECTING-STRICTLY is for little work that is done often; it allows no interrupts.
 (defmacro in-any-case (&body forms)
-  "Run FORMS in order, the later ones even after a non-local exit such as THROW. Interrupts are
-deferred until all are done, except at waits and in users' code. Return the values of the first."
+  "Evaluate FORMS in order. After a non-local exit such as THROW from a form, still evaluate the
+others. Interrupts are deferred until the end, except during waits and in users' code. Return the
+values of the first form."
   (let ((names (loop for nil in forms collect (gensym "PART"))))
     `(flet ,(loop for name in names
                   for form in forms
@@ -136,14 +139,15 @@ deferred until all are done, except at waits and in users' code. Return the valu
        (call-in-any-case ,@(loop for name in names collect `(function ,name))))))
 
 (defun call-each (function list)
-  "Call FUNCTION with each element of LIST in order, also with the rest after a non-local exit."
+  "Call FUNCTION with each element of LIST in order. After a non-local exit from a call, still call
+FUNCTION with the other elements."
   (unwind-protect (loop while list do (funcall function (pop list)))
     (when list (call-each function list))))
 
 ;;;; Time limits, and other conditions that are for callers
 
 (deftype time-limit ()
-  "The condition that the time for a form is up, as by WITH-TIMEOUT."
+  "The type of the condition that a form has exceeded its time limit, for example of WITH-TIMEOUT."
   'sb-ext:timeout)
 
 ;;; FiveAM signals failed checks and continues the test by the restart IGNORE-FAILURE. The caller of
@@ -156,15 +160,15 @@ deferred until all are done, except at waits and in users' code. Return the valu
        t))
 
 (defun let-callers-handle (condition)
-  "Let callers of the run handle CONDITION first, if it is for them. True if it is a time limit of
-theirs."
+  "If CONDITION is a time limit or a failed check of a test, signal it to the callers of the run
+first. Return true if CONDITION is a time limit."
   (let ((limit-p (typep condition 'time-limit)))
     (when (or limit-p (failed-check-p condition)) (signal condition))
     limit-p))
 
 (defun call-with-limit (function seconds give-up)
-  "Call FUNCTION. Each time SECONDS have passed without its return, call GIVE-UP in this thread,
-which may exit from it."
+  "Call FUNCTION. Whenever SECONDS have passed and FUNCTION has not returned, call GIVE-UP in this
+thread. GIVE-UP may make a non-local exit."
   ;; The timer may have interrupted this thread already when the call ends.
   (let* ((over nil)
          (timer (sb-ext:make-timer (lambda () (unless over (funcall give-up))))))
@@ -176,7 +180,7 @@ which may exit from it."
 ;;;; Signals from the system
 
 (deftype user-interrupt ()
-  "The condition that the user has pressed Ctrl-C."
+  "The type of the condition that the user has pressed Ctrl-C."
   (internal-name :sb-sys '#:interactive-interrupt))
 
 (defun signal-user-interrupt ()
@@ -192,21 +196,21 @@ which may exit from it."
                           (funcall function))))
 
 (defun call-on-interrupt (function)
-  "Call FUNCTION, in any thread, when Ctrl-C is pressed."
+  "When the user presses Ctrl-C, call FUNCTION, in any thread."
   (call-on-signal sb-posix:sigint function))
 
 (defun call-on-continuing (function)
-  "Call FUNCTION, in any thread, when this process continues after a stop, as by Ctrl-Z."
+  "When this process continues after a stop, for example by Ctrl-Z, call FUNCTION, in any thread."
   (call-on-signal sb-posix:sigcont function))
 
 ;;; In some states Lisp can no longer handle a signal, so the system itself ends the process. (It
 ;;; also does when the terminal closes, unless NOHUP is in effect.)
 
 (defun die-of-interrupts ()
-  "Let Ctrl-C end this process at once, as while its memory is being saved."
+  "Make Ctrl-C end this process at once, for example while its memory is being saved."
   (handle-signal sb-posix:sigint :default))
 
 (defun die-of-termination ()
-  "Let SIGTERM, or Ctrl-\\, end this process at once."
+  "Make SIGTERM and Ctrl-\\ end this process at once."
   (handle-signal sb-posix:sigterm :default)
   (handle-signal sb-posix:sigquit :default))

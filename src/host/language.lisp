@@ -9,23 +9,24 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
-    "The policy for functions that a profile pointed at: (declare #.*hot*)."))
+    "The optimisation policy for functions that take much time according to a profile: (declare
+#.*hot*)."))
 
 (deftype compiler-note ()
-  "The condition by which the compiler reports that code will be slow."
+  "The type of the condition by which the compiler reports that code will be slow."
   'sb-ext:compiler-note)
 
 (defmacro declaim-final (&rest types)
-  "Promise the compiler that the structure TYPES get no more subtypes."
+  "Promise the compiler that the structure types TYPES get no further subtypes."
   `(declaim (sb-ext:freeze-type ,@types)))
 
 ;; For values that were checked in a way that the compiler cannot see.
 (defmacro assume-type (type form)
-  "Return the value of FORM, which the compiler may assume to be of TYPE."
+  "Return the value of FORM. The compiler assumes, without a check, that it is of TYPE."
   `(sb-ext:truly-the ,type ,form))
 
 (defun form-calling (function body &rest arguments)
-  "Return a form that calls FUNCTION with a function that runs BODY, and then ARGUMENTS. That
+  "Return a form that calls FUNCTION with the arguments (lambda () BODY) and ARGUMENTS. The lambda
 function has dynamic extent."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
@@ -36,15 +37,15 @@ function has dynamic extent."
 (declaim (inline global-value (setf global-value)))
 (defun global-value (symbol)
   "Return the global value of the variable SYMBOL, regardless of bindings in this thread. Can be
-set. Signals UNBOUND-VARIABLE if it has none."
+set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
   (sb-ext:symbol-global-value symbol))
 
 (defun (setf global-value) (value symbol)
   (setf (sb-ext:symbol-global-value symbol) value))
 
 (defmacro define-global (name value documentation)
-  "Define the variable NAME with VALUE, computed at load time. It is never bound, so it is fast to
-read."
+  "Define the variable NAME with VALUE, computed at load time. Threads cannot bind such a variable,
+so reading it is fast."
   `(sb-ext:define-load-time-global ,name ,value ,documentation))
 
 ;;;; Hash tables
@@ -67,7 +68,8 @@ read."
   (sb-ext:make-weak-pointer object))
 
 (defun weak-value (weak)
-  "Return the object of WEAK, of MAKE-WEAK, or NIL if it was collected."
+  "Return the object that WEAK, a weak reference, refers to; NIL if the object was garbage
+collected."
   (values (sb-ext:weak-pointer-value weak)))
 
 ;;;; Events
@@ -77,15 +79,17 @@ read."
 ;;; effect.
 
 (defmacro define-event (name documentation)
-  "Define NAME, a variable, as an event. DOCUMENTATION says what listeners are called with."
+  "Define the variable NAME as an event, a list of listeners. DOCUMENTATION says with which
+arguments listeners are called."
   `(defvar ,name '() ,documentation))
 
 (defmacro attend (event listener)
-  "Add the function named LISTENER to EVENT, to be called before those added earlier."
+  "Add the function named LISTENER to EVENT. It will be called before the listeners that were added
+earlier."
   `(pushnew ',listener ,event))
 
 (defun tell-listeners (listeners &rest arguments)
-  "Call LISTENERS, the value of an event, with ARGUMENTS."
+  "Call each function in LISTENERS, the value of an event variable, with ARGUMENTS."
   (dolist (listener listeners)
     (apply listener arguments)))
 
@@ -148,7 +152,7 @@ infinities, NaNs, and integers and ratios that are too large."
 
 (declaim (inline double))
 (defun double (number)
-  "Return NUMBER as a double-float. Does not cons for the usual kinds of numbers."
+  "Return NUMBER as a double-float. The usual types of numbers are converted without consing."
   (typecase number
     (double-float number)
     (fixnum (coerce number 'double-float))
@@ -161,18 +165,19 @@ infinities, NaNs, and integers and ratios that are too large."
 ;;; constants, the position of the next word, and 624 words.
 
 (deftype random-words ()
-  "The words of a random state."
+  "The type of the words of a random state."
   '(simple-array (unsigned-byte 32) (627)))
 
 (declaim (inline words-of-state fill-words))
 (defun words-of-state (state)
-  "Return the words of the random state STATE, not a copy."
+  "Return the words of the random state STATE itself, not a copy."
   (the random-words (internal (:sb-kernel #:random-state-state) state)))
 
 (defun fill-words (seed words)
-  "Seed WORDS, of a random state, with SEED, an integer of 32 bits."
+  "Fill WORDS, the words of a random state, from SEED, an integer of 32 bits."
   (internal (:sb-kernel #:init-random-state) seed words))
 
 (defun wrap-renewal (wrapper)
-  "Call WRAPPER, with SBCL's function and the words, when SBCL renews used-up words."
+  "When SBCL renews the used-up words of a random state, call WRAPPER with SBCL's function and the
+words."
   (wrap-function (internal-name :sb-kernel '#:random-mt19937-update) wrapper))

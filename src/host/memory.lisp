@@ -5,11 +5,12 @@
 (export '(heap-bytes make-room room-p dynamic-usage collections regain-room stack-full-p))
 
 (defun dynamic-usage ()
-  "Return how many bytes objects take, garbage included."
+  "Return the number of bytes on the heap that are in use, including garbage."
   (internal (:sb-kernel #:dynamic-usage)))
 
 (defun octets-before-garbage ()
-  "Return how many bytes are left before SBCL's next garbage collection; many if that is unknown."
+  "Return the number of bytes that can be allocated before SBCL's next garbage collection; a large
+number if that is unknown."
   (let ((trigger (ignore-errors
                   (internal (:sb-sys #:sap-ref-word)
                             (internal (:sb-sys #:foreign-symbol-sap) "auto_gc_trigger" t)
@@ -21,7 +22,7 @@
   (internal (:sb-sys #:scrub-control-stack)))
 
 (defun collections ()
-  "Return an object that is another one after each garbage collection."
+  "Return an object that is replaced by a new object after each garbage collection."
   (internal-value :sb-kernel #:*gc-epoch*))
 
 (defun heap-bytes ()
@@ -30,14 +31,14 @@
 
 ;; The stack is scrubbed, because its old values would keep objects alive.
 (defun make-room (octets)
-  "Collect garbage now if Lisp would while OCTETS of new objects are made. By then it would have to
-move these, since they can be reached."
+  "Collect garbage now, if otherwise a garbage collection would occur while new objects of OCTETS
+are allocated. A later collection would have to copy the new objects."
   (when (< (octets-before-garbage) octets (sb-ext:bytes-consed-between-gcs))
     (scrub-stack)
     (sb-ext:gc)))
 
 (defun room-p (octets)
-  "True if OCTETS of new objects fit on the heap. Collects garbage if they are many."
+  "True if new objects of OCTETS fit on the heap. Collects garbage first if OCTETS is large."
   (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
     (or (< octets (/ (heap-bytes) 100))
         (enough-p)
@@ -49,7 +50,7 @@ move these, since they can be reached."
 ;;; with that stack, then dies of its second overflow.
 
 (defun restore-stack ()
-  "Restore the guard pages of this thread's stack. Little of it may be in use."
+  "Restore the guard pages of this thread's stack. Only a small part of the stack may be in use."
   (let ((end (internal (:sb-kernel #:get-lisp-obj-address)
                        (internal-value :sb-vm #:*control-stack-start*))))
     ;; That page can always be written, and this closes the guard page if it is open.
@@ -65,8 +66,8 @@ move these, since they can be reached."
   (search "STACK" (string (type-of condition))))
 
 (defun regain-room (condition)
-  "Make room again after the code in which CONDITION was signalled has been left: for a full stack
-or a full heap."
+  "After a non-local exit because of CONDITION, a full stack or a full heap, restore the guard pages
+of the stack or collect garbage."
   (when (typep condition 'storage-condition)
     (if (stack-full-p condition)
         (restore-stack)

@@ -1,8 +1,9 @@
 ;;;; package.lisp -- the host layer: everything of SBCL that its manual does not document.
 
 (defpackage :ars-magna.host
-  (:documentation "What the simulator needs of SBCL and of libraries beyond Common Lisp, one
-part per file: threads, files, the compiler. No other folder names what SBCL does not document.")
+  (:documentation "The features of SBCL and of libraries that the simulator needs beyond Common
+Lisp, one part per file: threads, files, the compiler. Only this folder uses undocumented functions
+of SBCL.")
   (:use :cl)
   (:import-from :alexandria
                 #:clamp #:ensure-list #:once-only #:parse-body #:removef
@@ -27,8 +28,8 @@ part per file: threads, files, the compiler. No other folder names what SBCL doe
 (export 'define-package)
 
 (defmacro define-package (name &body options)
-  "Define the package NAME as DEFPACKAGE does. Its exports are in its files, so defining the package
-again, as in an editor, keeps them."
+  "Define the package NAME as DEFPACKAGE does. The files of the package contain its exports.
+Defining the package again, for example in an editor, keeps the exports."
   (let ((exported '()))
     (when (find-package name)
       (do-external-symbols (symbol name) (push (make-symbol (symbol-name symbol)) exported)))

@@ -12,17 +12,18 @@
 ;;; value.
 
 (deftype atomic-count ()
-  "The type of a structure's slot for ATOMIC-INCF and ATOMIC-DECF."
+  "The type of structure slots that ATOMIC-INCF and ATOMIC-DECF can change."
   'sb-ext:word)
 
 (defmacro swap-if (place old new)
-  "Atomically set PLACE to NEW if it is EQ to OLD. True if it was."
+  "Atomically set PLACE to NEW if the value of PLACE is EQ to OLD. Return true if PLACE was set."
   (with-gensyms (before)
     `(let ((,before ,old))
        (eq ,before (compare-and-swap ,place ,before ,new)))))
 
 (defmacro memory-barrier ()
-  "Order memory accesses: what this thread wrote before is visible before it reads or writes more."
+  "Order memory accesses: other threads see what this thread wrote before the barrier, before this
+thread reads or writes more."
   '(sb-thread:barrier (:memory)))
 
 ;;;; Threads and locks
@@ -31,7 +32,7 @@
 ;;; return may be interrupted, when the user asks for it.
 
 (defun make-lock (name)
-  "Return a new lock called NAME."
+  "Return a new lock named NAME."
   (bordeaux-threads:make-lock name))
 
 (defmacro with-lock ((lock) &body body)
@@ -39,18 +40,19 @@
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
 (defun call-if-free (lock function)
-  "Call FUNCTION while holding LOCK and return its value and true; NIL and false if another thread
-holds LOCK."
+  "If no other thread holds LOCK, call FUNCTION while holding LOCK, and return its value and true;
+else return NIL and false."
   (sb-thread:with-mutex (lock :wait-p nil)
     (return-from call-if-free (values (funcall function) t)))
   (values nil nil))
 
 (defun make-semaphore (name)
-  "Return a new semaphore called NAME with a count of 0."
+  "Return a new semaphore named NAME with a count of 0."
   (bordeaux-threads:make-semaphore :name name))
 
 (defun wait-on-semaphore (semaphore &optional seconds)
-  "Decrement SEMAPHORE; true if that succeeded within SECONDS (NIL: no limit)."
+  "Wait until SEMAPHORE can be decremented, at most SECONDS (NIL: no limit). Return true if it was
+decremented."
   (with-interruptible-wait
     (if seconds
         ;; SBCL accepts no timeout of 0.
@@ -58,21 +60,22 @@ holds LOCK."
         (bordeaux-threads:wait-on-semaphore semaphore))))
 
 (defun wait-a-while (semaphore seconds)
-  "Wait on SEMAPHORE for at most SECONDS, within a loop of such waits; true if that succeeded."
+  "Wait on SEMAPHORE for at most SECONDS, but first serve the front end and other threads that need
+the terminal. Return true if SEMAPHORE was decremented. Call this function in a loop."
   (yield-foreground)
   (serve-while-waiting *front-end*)
   (wait-on-semaphore semaphore seconds))
 
 (defun wait-patiently (semaphore seconds)
-  "Wait on SEMAPHORE for SECONDS in all, by repeated WAIT-A-WHILE; true if that succeeded. Time
-spent serving other threads does not count."
+  "Wait on SEMAPHORE for SECONDS in all, by short waits between which this thread serves others. The
+time for serving others does not count. Return true if SEMAPHORE was decremented."
   (loop for left = seconds then (- left 0.2)
         thereis (wait-a-while semaphore (min left 0.2))
         while (< 0.2 left)))
 
 (defun call-when-free (lock function)
-  "Call FUNCTION while holding LOCK, when no other thread holds it, and return its values. Meanwhile
-this thread serves others and allows interrupts."
+  "Wait until no other thread holds LOCK. Then call FUNCTION while holding LOCK, and return its
+values. While this thread waits, it serves the front end and allows interrupts."
   (loop
     (sb-thread:with-mutex (lock :timeout 0.2)
       (return-from call-when-free (funcall function)))
@@ -81,15 +84,17 @@ this thread serves others and allows interrupts."
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 
 (defun own-thread-p ()
-  "True if this thread is one of ours, not a REPL or another thread of a user."
+  "True if the simulator has started this thread: it is neither a REPL nor another thread of a
+user."
   *own-thread-p*)
 
 (defun users-thread-p ()
-  "True if a program has started this thread: it is neither ours nor Lisp's initial thread."
+  "True if a user's program has started this thread: it is neither a thread of the simulator nor the
+initial thread of Lisp."
   (not (or (own-thread-p) (sb-thread:main-thread-p))))
 
 (defun start-thread (function name)
-  "Call FUNCTION in a new thread called NAME; return the thread."
+  "Call FUNCTION in a new thread named NAME, and return the thread."
   (bordeaux-threads:make-thread (lambda () (let ((*own-thread-p* t)) (funcall function)))
                                 :name name))
 
@@ -100,14 +105,15 @@ this thread serves others and allows interrupts."
   (setf *leaving-p* t))
 
 (defun call-when-leaving (name)
-  "Let the function NAME be called when this Lisp exits, before its threads end."
+  "Register the function NAME to be called when this Lisp exits, before its threads end."
   (pushnew name sb-ext:*exit-hooks*))
 
 (call-when-leaving 'note-leaving)
 
 ;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
 (defun report-unit-end (function left-p)
-  "Let FUNCTION report that a unit ended, aborted if LEFT-P, unless it was because this Lisp exits."
+  "Call FUNCTION to report that a compilation unit has ended; if LEFT-P is true, it was aborted.
+Report nothing if the unit was aborted because this Lisp exits."
   (unless (and left-p *leaving-p* (own-thread-p))
     (funcall function left-p)))
 
@@ -120,7 +126,7 @@ this thread serves others and allows interrupts."
   (values))
 
 (defun interrupt-thread (thread function)
-  "Have THREAD call FUNCTION, without arguments, as soon as its interrupts are allowed. Return
+  "Make THREAD call FUNCTION, without arguments, as soon as THREAD allows interrupts. Return
 nothing."
   ;; This is an error if the thread has ended.
   (ignore-errors (bordeaux-threads:interrupt-thread thread function))
@@ -136,8 +142,8 @@ nothing."
   (bordeaux-threads:thread-yield))
 
 (defun spread-specials (function &rest symbols)
-  "Return a function that calls FUNCTION with the current values of SYMBOLS. Threads start with
-global values; this passes dynamic ones on."
+  "Return a function that calls FUNCTION with the current values of the variables SYMBOLS. New
+threads start with global values; such a function gives them the values bound in this thread."
   (let ((values (mapcar #'symbol-value symbols)))
     (lambda (&rest arguments)
       (progv symbols values (apply function arguments)))))
@@ -149,13 +155,15 @@ global values; this passes dynamic ones on."
 ;;; robot can explain why.
 
 (defvar *bound-names* (list '())
-  "A list whose element is a list (thread number name...) for each WITH-SIMULATION in progress.")
+  "A list of one element, which has a list (thread number name...) for each WITH-SIMULATION in
+progress.")
 
-(defvar *bindings-made* (list 0) "A list of one count: how often names have been bound so.")
+(defvar *bindings-made* (list 0) "A list of one integer: how many times CALL-TELLING-NAMES has bound
+names.")
 
 (defun call-telling-names (names function)
-  "Call FUNCTION with NAMES bound to robots for this thread only, recorded for other threads. Return
-its values."
+  "Call FUNCTION, in which this thread has bound NAMES to robots, and record the bindings for
+messages in other threads. Return the values of FUNCTION."
   (let ((entry (list* (current-thread) (incf (car *bindings-made*)) names)))
     (in-any-case
       (progn (atomic-push entry (car *bound-names*))
@@ -164,25 +172,26 @@ its values."
             until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
 (defun run-elsewhere-text ()
-  "Return in words how code in this thread gets at the run of another thread, or NIL if none has
-one."
+  "Return a text that says how code in this thread can use the run of another thread; NIL if no
+thread has bound a run."
   (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
     (and entry
-         (format nil "That of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is there only. Hand it ~
-                      over in a variable: (let ((simulation (current-simulation))) (make-thread ~
-                      (lambda () ... simulation)))."
+         (format nil "The simulation of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is known to ~
+                      that thread only. Pass it on in a variable: (let ((simulation ~
+                      (current-simulation))) (make-thread (lambda () ... simulation)))."
                  (cddr entry) (thread-name (first entry))))))
 
 (defun bound-elsewhere-text (name)
-  "Return in words how code in this thread gets at the robot that another thread has bound NAME to,
-and a number for that binding; NIL if there is none, or this thread has bound NAME too."
+  "Return a text that says how code in this thread can use the robot that another thread has bound
+NAME to, and the number of that binding. Return NIL if no other thread has bound NAME, or this
+thread has."
   (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
                                 (car *bound-names*)))
         (word (string-downcase name)))
     (unless (or (null entries) (find (current-thread) entries :key #'first))
-      (values (format nil "In this thread, ~A, ~A is the robot of the top level. That of ~
-                           (with-simulation (~A) ...), in ~A, is bound there only. Hand it over in ~
-                           a variable: (let ((robot ~A)) (make-thread (lambda () ... robot)))."
+      (values (format nil "In this thread, ~A, ~A is the robot of the top level. The robot of ~
+                           (with-simulation (~A) ...) is bound in ~A only. Pass it on in a ~
+                           variable: (let ((robot ~A)) (make-thread (lambda () ... robot)))."
                       (thread-name (current-thread)) word word
                       (thread-name (first (first entries))) word)
               (second (first entries))))))

@@ -21,7 +21,7 @@
 
   (defun internal-name (package &rest names)
     "Return the first symbol of NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an ERROR
-if it has none."
+if SBCL has none of NAMES."
     (or (find-internal package names)
         (error "SBCL ~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of ~
                 these, or add the new name to the files in src/host."
@@ -29,30 +29,32 @@ if it has none."
                (first *tried-versions*) (first (last *tried-versions*))))))
 
 (defmacro internal ((package &rest names) &rest arguments)
-  "Call the first function, macro or place of NAMES in SBCL's PACKAGE with ARGUMENTS."
+  "Call the first function or macro among NAMES that SBCL's PACKAGE has, with ARGUMENTS. The form
+can be a place for SETF."
   `(,(apply #'internal-name package names) ,@arguments))
 
 (defmacro if-internal ((package &rest names) then else)
-  "Do THEN if SBCL's PACKAGE has one of NAMES, else ELSE. Only the form needed is compiled."
+  "Evaluate THEN if SBCL's PACKAGE has one of NAMES, else ELSE. Only the form that is evaluated is
+compiled."
   (if (find-internal package names) then else))
 
 (defmacro internal-value (package &rest names)
-  "Return the value of the first variable or constant of NAMES in SBCL's PACKAGE."
+  "Return the value of the first variable or constant among NAMES that SBCL's PACKAGE has."
   (apply #'internal-name package names))
 
 (defmacro internal-type-p (object package &rest names)
-  "True if OBJECT is of the first type of NAMES in SBCL's PACKAGE."
+  "True if OBJECT is of the first type among NAMES that SBCL's PACKAGE has."
   `(typep ,object ',(apply #'internal-name package names)))
 
 (defun later-version-p (version other)
-  "True if VERSION, a string such as \"2.5.2.debian\", is later than OTHER."
+  "True if VERSION, a string such as \"2.5.2.debian\", is a later version than OTHER."
   (flet ((numbers (version)
            (let ((end (position-if-not (lambda (char) (find char ".0123456789")) version)))
              (string-right-trim "." (subseq version 0 end)))))
     (uiop:version< (numbers other) (numbers version))))
 
 (defun untried-host-text (&optional (version (lisp-implementation-version)))
-  "Return a warning sentence if VERSION of SBCL is later or earlier than all tested ones; else NIL."
+  "Return a warning if the VERSION of SBCL is later or earlier than all tested versions; else NIL."
   (flet ((sentence (than)
            (format nil "SBCL ~A is ~A than the versions ARS MAGNA was tested with, ~A to ~A."
                    version than (first *tried-versions*) (first (last *tried-versions*)))))
@@ -64,8 +66,8 @@ if it has none."
 ;;;; Functions of SBCL or a library, wrapped by ours
 
 (defun wrap-function (name wrapper &optional (type 'ars-magna))
-  "Call WRAPPER instead of the function NAME, which is not ours, with that function and its
-arguments. A second wrapper of the same TYPE, a symbol, replaces the first."
+  "Wrap NAME, a function of SBCL or a library: WRAPPER is called instead, with the original function
+and its arguments. A second wrapper of the same TYPE, a symbol, replaces the first."
   (internal (:sb-int #:encapsulate) name type wrapper))
 
 (defun unwrap-function (name &optional (type 'ars-magna))
@@ -73,5 +75,5 @@ arguments. A second wrapper of the same TYPE, a symbol, replaces the first."
   (internal (:sb-int #:unencapsulate) name type))
 
 (defun wrapped-p (name &optional (type 'ars-magna))
-  "True if the function NAME has a wrapper of TYPE."
+  "True if the function NAME has a wrapper of TYPE, a symbol."
   (internal (:sb-int #:encapsulated-p) name type))

@@ -15,23 +15,26 @@
 (public \\)
 (defmacro \\ (lambda-list &body body)
   "Return the function (lambda LAMBDA-LIST BODY...); a hyphen and a type may follow each parameter
-(manual 3.1). The name is one backslash, typed as two. See reading 4."
+(manual 3.1). The operator is one backslash, which is typed as two. See reading 4."
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
 (defun check-continuation (lambda-list body)
-  "Signal MALFORMED-DEFINITION, or warn, if a CONTINUATION has its BODY in place of LAMBDA-LIST."
+  "Signal MALFORMED-DEFINITION, or warn, if the form CONTINUATION has its body in place of
+LAMBDA-LIST."
   (let ((*print-pretty* nil) (*print-case* :downcase) (shown (abridged lambda-list)))
     (when (consp lambda-list)
       (cond ((some #'constantp (ldiff lambda-list (member-if #'lambda-keyword-p lambda-list)))
              (reject-clause "continuation" shown
-                            (format nil "parameters before what is to be done: (continuation (err ~
-                                         &rest results) ~S)" shown)))
+                            (format nil "parameters before the body: (continuation (err &rest ~
+                                         results) ~S)" shown)))
             ((and (null body) (symbolp (first lambda-list)) (fboundp (first lambda-list)))
-             (doubt-definition "continuation: ~S are its parameters, and nothing is done. Write ~
-                                (continuation (err &rest results) ~:*~S)." shown))))))
+             (doubt-definition "continuation: ~S is taken for the list of parameters, and the body ~
+                                is empty. Write (continuation (err &rest results) ~:*~S)."
+                               shown))))))
 
 (defun doubt-codes (variable body)
-  "Warn if BODY, of a CONTINUATION, compares its first parameter VARIABLE with a wrong error code."
+  "Warn if BODY, the body of a CONTINUATION, compares the first parameter, VARIABLE, with a keyword
+that is no error code."
   (map-comparisons (lambda (subject word form)
                      (declare (ignore form))
                      (cl:let ((doubt (and (eq subject variable) (code-doubt word))))
@@ -40,8 +43,8 @@
 
 (public continuation)
 (defmacro continuation (lambda-list &body body)
-  "Return a function for a robot command to call with an error code (NIL: none) and what else it
-reports. Like LAMBDA, but types may follow the parameters and unused ones cause no warning
+  "Return a function that a robot command calls with an error code (NIL: no error) and its results.
+The form is like LAMBDA, but types may follow the parameters, and unused parameters cause no warning
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)
@@ -52,8 +55,8 @@ reports. Like LAMBDA, but types may follow the parameters and unused ones cause 
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun expand-procedure (operator name definition)
-    "Return the DEFUN for what follows NAME in an OPERATOR form: a hyphen and the result type, if
-given, then the parameters and the body."
+    "Return the DEFUN form for the form (OPERATOR NAME REST...). REST is an optional hyphen and
+result type, then the parameters and the body."
     (let ((definition (if (hyphen-p (first definition)) (cddr definition) definition))
           (operator (format nil "~(~A ~A~)" operator name)))
       (check-function-name operator name)
@@ -81,11 +84,11 @@ follow the parameters (manual 3.1)."
 
 (define-record (matchvar (:constructor %make-matchvar (name))
                          (:predicate matchvar-p "True of a matchvar: ?x, or the anonymous ?()."))
-  "A place in a pattern that matches anything: ?x, and ?() with no name (manual 5.5.1)."
+  "A variable in a pattern, which matches anything: ?x, or ?() without a name (manual 5.5.1)."
   (name nil symbol "the symbol that a matchvar is called, NIL for the anonymous one" :export))
 
 (defun make-matchvar (name)
-  "Return the matchvar called NAME, a symbol; NIL names the anonymous one."
+  "Return the matchvar named NAME, a symbol. If NAME is NIL, return an anonymous matchvar."
   (check-argument make-matchvar name (symbolp name) "a symbol")
   (or (get name 'matchvar)
       (setf (get name 'matchvar) (%make-matchvar name))))
@@ -120,7 +123,8 @@ follow the parameters (manual 3.1)."
                 temporaries)))))
 
 (defun pattern-test (pattern datum temporaries)
-  "Return a form that tests if PATTERN matches the variable DATUM, and TEMPORARIES with new ones."
+  "Return a form that tests if PATTERN matches the value of the variable DATUM, and TEMPORARIES with
+the temporary variables for the matchvars in PATTERN."
   (cond ((matchvar-p pattern) (matchvar-test (matchvar-name pattern) datum temporaries))
         ((consp pattern) (cons-test pattern datum temporaries))
         ((null pattern) (values `(null ,datum) temporaries))
@@ -129,9 +133,9 @@ follow the parameters (manual 3.1)."
 
 (public matchq)
 (defmacro matchq (pattern datum)
-  "True if PATTERN, which is not evaluated, matches the value of DATUM. ?x matches anything, a
-second ?x only the same again; if all matches, each variable x is set to what its ?x matched. ?()
-matches anything, symbols match by name, numbers by value (manual 5.1.1; reading 34)."
+  "True if PATTERN, which is not evaluated, matches the value of DATUM. ?x matches anything, but all
+?x must match the same value. If PATTERN matches, each variable x is set to the value that ?x has
+matched. ?() matches anything; symbols match by name, numbers by value (manual 5.1.1; reading 34)."
   (with-gensyms (value)
     (multiple-value-bind (test temporaries) (pattern-test pattern value '())
       `(cl:let ((,value ,datum) ,@(mapcar #'cdr temporaries))

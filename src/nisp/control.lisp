@@ -20,15 +20,16 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun loop-keyword (forms)
-    "Return :UNTIL or :WHILE if FORMS, of a loop, begin with that word."
+    "Return :UNTIL or :WHILE if FORMS, the body of a LOOP, begin with a symbol of that name; else
+NIL."
     (and (symbolp (first forms))
          (find (first forms) '(:until :while) :test #'string=))))
 
 (public loop)
 (defmacro loop (&rest forms)
-  "Evaluate the body forms again and again: (loop UNTIL test body...) until the test is true
-before a round, (loop WHILE test body...) while it is. Other FORMS mean what they mean to CL:LOOP
-(manual, Figure D.3)."
+  "Evaluate the body forms again and again: (loop UNTIL test body...) until the test is true, (loop
+WHILE test body...) while the test is true. The test comes before each round. Other FORMS have their
+meaning in CL:LOOP (manual, Figure D.3)."
   (cl:let ((keyword (loop-keyword forms)))
     (when keyword (doubt-test 'loop (second forms)))
     ;; What follows the test is no keyword of Lisp's LOOP.
@@ -38,12 +39,13 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 
 (public !=)
 (defmacro != (place value &rest more)
-  "Set PLACE to VALUE, and so on through MORE pairs: SETF (manual 3.1; reading 14)."
+  "Set PLACE to VALUE, and then each further place in MORE to the value that follows it, as SETF
+does (manual 3.1; reading 14)."
   `(setf ,place ,value ,@more))
 
 (public nop)
 (defun nop ()
-  "Do nothing, but let other threads run meanwhile. Return nothing (manual, Figure D.3)."
+  "Do nothing for a moment, so that other threads can run. Return nothing (manual, Figure D.3)."
   (yield-thread)
   (values))
 
@@ -72,7 +74,8 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 ;;; is loaded; after that the registry is only read.
 
 (defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
-  "A type. CLASS is its Lisp name, if it has SLOTS, an alist from names to names of readers."
+  "A type. A registered type of Nisp. CLASS is the Lisp class, if objects of the type have SLOTS, an
+alist from names of slots to names of readers."
   (name "" :type string :read-only t)
   (class nil :type symbol)
   (slots '() :type list)
@@ -80,7 +83,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
   (parameters '() :type list))
 
 (defvar *nisp-types* (make-hash-table :test 'equal)
-  "All registered types by name.")
+  "A table of all registered types by name.")
 
 (defun find-nisp-type (name)
   (values (gethash (string name) *nisp-types*)))
@@ -95,7 +98,8 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
              when (find-class symbol nil) collect (symbol-name symbol))))
 
 (defun known-types ()
-  "Return the names of the registered types and of the classes that NISP and ARS export, sorted."
+  "Return a sorted list of the names of all registered types and of the classes that NISP and ARS
+export."
   (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
                                    (names-of-classes "NISP")
                                    (names-of-classes "ARS"))
@@ -115,7 +119,7 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
   (member form lambda-list-keywords))
 
 (defun type-like (type)
-  "Return the name of a known type that TYPE, an unknown one, may be a misspelling of; or NIL."
+  "Return the name of a known type of which TYPE, an unknown type, may be a misspelling; or NIL."
   (and type
        (symbolp type)
        (not (find-nisp-type type))
@@ -128,7 +132,8 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
                       operator type (type-like type))))
 
 (defun without-types (operator list what)
-  "Return LIST, of WHAT in words, without hyphens and types. OPERATOR is named in errors."
+  "Return LIST without hyphens and types. The text WHAT describes the elements; error messages name
+OPERATOR."
   (unless (listp list) (reject-clause operator list (format nil "a list of ~A" what)))
   (loop with typed = t                  ; nothing to declare yet
         with tail = list
@@ -145,12 +150,12 @@ before a round, (loop WHILE test body...) while it is. Other FORMS mean what the
 
 (defun untyped-lambda-list (lambda-list &optional (operator "lambda"))
   "Return LAMBDA-LIST, an ordinary one in which a hyphen and a type may follow each variable, as
-an ordinary lambda list. OPERATOR, a string, is named in errors (manual 3.1)."
+an ordinary lambda list. Error messages name OPERATOR, a string (manual 3.1)."
   (without-types operator lambda-list "parameters"))
 
 (defun untyped-bindings (bindings &optional (operator "let"))
-  "Return BINDINGS as LET takes them, without the hyphen and type that may follow each one.
-OPERATOR, a string, is named in errors (manual 3.1)."
+  "Return BINDINGS, as CL:LET accepts them, without the hyphen and type that may follow each
+binding. Error messages name OPERATOR, a string (manual 3.1)."
   (without-types operator bindings "bindings"))
 
 (defun parameter-variables (parameter)

@@ -1,13 +1,15 @@
 ;;;; package.lisp -- the Nisp dialect, as far as the manual uses it (manual 3.1).
 
 (defpackage :ars-magna.slots
-  (:documentation "The accessors of slots by name, see types.lisp: !_X for the slot x of any type.")
+  (:documentation "The accessors of slots by name, such as !_X for the slot x of all types. See
+types.lisp.")
   (:use))
 
 (ars-magna.host:define-package :ars-magna.nisp
   (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
-of types and slots that other layers fill. Shadows LET, LOOP and IF by forms that understand
-everything the Common Lisp ones do; its own code is written with them.")
+of types and slots that other layers fill. The package replaces LET, LOOP and IF by extended
+versions, which accept everything that those of Common Lisp accept. The code of this layer uses the
+extended versions.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:let #:loop #:if)
   (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable

@@ -14,7 +14,7 @@
         (and function (not non-terminating)))))
 
 (defun read-escape (char stream token)
-  "Put what CHAR, a backslash or bar just read into TOKEN, escapes into TOKEN too."
+  "Add to TOKEN the characters that CHAR, a backslash or bar just read from STREAM, escapes."
   (if (char= char #\\)
       (vector-push-extend (read-char stream t nil t) token)
       (loop for next = (read-char stream t nil t)
@@ -22,7 +22,8 @@
             until (char= next #\|))))
 
 (defun read-token (stream)
-  "Return the characters of STREAM up to the end of the token, escapes included, as a string."
+  "Return the characters of STREAM up to the end of the token, including escape characters, as a
+string."
   (loop with token = (make-array 16 :element-type 'character :fill-pointer 0 :adjustable t)
         for char = (peek-char nil stream nil nil t)
         until (or (null char) (delimiter-p char))
@@ -34,20 +35,22 @@
   (reject-clause "Nisp's reader" text expected))
 
 (defun token-object (token)
-  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if it is incomplete."
+  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if TOKEN is
+incomplete."
   (let ((*readtable* (find-readtable :standard)))
     (handler-case (values (read-from-string token))
       ;; The text around TOKEN is complete, so that is no END-OF-FILE there.
       (end-of-file () (reject-syntax token "a name or number after ! or ?")))))
 
 (defun token-name (token)
-  "Return TOKEN as the name of a slot: the reader's upper case, no package."
+  "Return the name of the slot that TOKEN denotes, in upper case, as the reader converts it."
   (string-upcase (remove #\| token)))
 
 ;;; ! and its forms.
 
 (defun path-form (token)
-  "Return the form for !>TOKEN: each slot of the path read from what comes before it."
+  "Return the form for !>TOKEN, a path of slots: the first part is a variable, and each further part
+is a slot of the value before it."
   (let ((parts (uiop:split-string token :separator ".")))
     (when (or (null parts) (member "" parts :test #'string=))
       (reject-syntax (concatenate 'string "!>" token)
@@ -58,7 +61,8 @@
             :initial-value (token-object (first parts)))))
 
 (defun read-typed-accessor (stream)
-  "Return the reader function's name for the (TYPE slot) that comes next on STREAM (reading 33)."
+  "Read (TYPE slot) from STREAM, and return the name of the reader function of that slot (reading
+33)."
   (let ((form (read stream t nil t)))
     (unless *read-suppress*
       (unless (typep form '(cons symbol (cons symbol null)))
@@ -69,7 +73,7 @@
   (eql char (peek-char nil stream nil nil t)))
 
 (defun read-bang (stream char)
-  "Read what follows the ! that has just been read from STREAM (reading 32)."
+  "Read the form that follows a ! from STREAM; the ! itself is already read (reading 32)."
   (declare (ignore char))
   (let* ((token (read-token stream))
          (head (and (plusp (length token)) (char token 0)))
@@ -91,7 +95,7 @@
     (make-matchvar nil)))
 
 (defun read-query (stream char)
-  "Read what follows the ? that has just been read from STREAM: a matchvar's name, or ()."
+  "Read the name of a matchvar, or (), that follows a ? from STREAM; the ? itself is already read."
   (declare (ignore char))
   (let ((token (read-token stream)))
     (cond ((and (string= token "") (next-char-is #\( stream))
@@ -128,9 +132,8 @@
 
 (public dsklap)
 (defun dsklap (path)
-  "Load the Lisp file at PATH, or the ASDF system named by the last component of PATH, as in
-(dsklap \"ars-dir/ars-magna\"). Return true. It is an error if there is
-neither (manual A; reading 41)."
+  "Load the Lisp file at PATH, or the ASDF system named by the last component of PATH, as in (dsklap
+\"ars-dir/ars-magna\"). Return true. It is an error if neither exists (manual A; reading 41)."
   (check-argument dsklap path (typep path '(or string pathname symbol)) "a path or a system's name")
   (let* ((path (if (pathnamep path) (namestring path) (string path)))
          (file (probe-file (merge-pathnames path (make-pathname :type "lisp"))))
@@ -151,7 +154,8 @@ neither (manual A; reading 41)."
 ;;; compiled in Nisp's syntax, and kept like that.
 
 (defvar *library-readtable* (copy-readtable nil)
-  "The syntax of files of systems if Nisp's is current. Libraries may add to it from file to file.")
+  "The readtable for loading systems while Nisp's readtable is current. Libraries may modify this
+readtable.")
 
 (defmethod asdf:perform :around ((operation asdf:operation) (component asdf:cl-source-file))
   (if (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\!))

@@ -6,7 +6,7 @@
 
 (public void)
 (deftype void ()
-  "The type of no values (manual 3.1)."
+  "The result type of functions that return no values (manual 3.1)."
   nil)
 
 (public lst)
@@ -17,7 +17,7 @@
 
 (public ~)
 (deftype ~ (type)
-  "The type of #F and the objects of TYPE (manual 3.1)."
+  "The type of objects of TYPE, and of #F (manual 3.1)."
   `(or null ,type))
 
 (public thing-descriptor)
@@ -27,7 +27,7 @@
 
 (public robot-continuation)
 (deftype robot-continuation ()
-  "The type of what a robot command takes as its continuation, NIL for none (manual 3.1.1)."
+  "The type of continuations of robot commands: a function, or NIL for none (manual 3.1.1)."
   '(or function symbol))
 
 ;;; Making objects.
@@ -39,15 +39,16 @@
     name))
 
 (defmacro define-nisp-type (name lambda-list constructor)
-  "Let (make NAME arguments...) evaluate the form CONSTRUCTOR with LAMBDA-LIST bound to the
-arguments, or call it with them if it is written #'function."
+  "Define how (make NAME arguments...) makes an object. If CONSTRUCTOR has the form #'function, call
+that function with the arguments. Otherwise, evaluate the form CONSTRUCTOR with the variables in
+LAMBDA-LIST bound to the arguments."
   `(register-maker ',name ',lambda-list
                    ,(if (typep constructor '(cons (eql function)))
                         constructor
                         `(lambda ,lambda-list ,constructor))))
 
 (defun make-object (type &rest arguments)
-  "Return a new object of the type called TYPE, made from ARGUMENTS. Signals UNKNOWN-NAME for an
+  "Return a new object, made from ARGUMENTS, of the type named TYPE. Signals UNKNOWN-NAME for an
 unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
   (let* ((known (find-nisp-type type))
          (maker (and known (nisp-type-maker known))))
@@ -77,34 +78,36 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (define-function-class slot-accessor
-    "A function that reads or sets the slot of one name in objects of all types.")
+    "The class of functions that read or set the slot of one name in objects of all types.")
 
   (defun slot-accessor-name (slot)
-    "Return the symbol that names the accessor of the slot called SLOT."
+    "Return the symbol that names the accessor of the slot named SLOT."
     (intern (concatenate 'string "!_" (string slot)) :ars-magna.slots))
 
   (defun ensure-slot-accessor (slot)
-    "Return the name of the accessor of the slot called SLOT, defining it if need be."
+    "Return the name of the accessor of the slot named SLOT. If the accessor is not yet defined,
+define it."
     (let ((name (slot-accessor-name slot)))
       (unless (fboundp name)
         (ensure-generic-function `(setf ,name) :lambda-list '(value object)
                                                :generic-function-class 'slot-accessor)
         (ensure-generic-function name :lambda-list '(object)
                                       :generic-function-class 'slot-accessor
-                                      :documentation "Return the slot of OBJECT with this name."))
+                                      :documentation "Return the value of the slot of OBJECT that
+has the accessor's name."))
       name)))
 
 ;;; Which slots there are.
 
 (defun class-slots (class)
-  "Return an alist from names to readers of the slots of CLASS, inherited ones last."
+  "Return an alist from the names of the slots of CLASS to their readers. Inherited slots are last."
   (loop for class in (class-ancestors class)
         for type = (find-nisp-type (class-name class))
         when (and type (eq (nisp-type-class type) (class-name class)))
           append (nisp-type-slots type)))
 
 (defun own-slots (object)
-  "Return the names, symbols, of the slots of OBJECT if its class is a user's."
+  "If the class of OBJECT is a user's, return a list of the names, symbols, of its slots; else NIL."
   (let ((class (class-of object)))
     (when (and (typep class '(or structure-class standard-class))
                (users-symbol-p (class-name class))
@@ -112,7 +115,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
       (class-slot-names class))))
 
 (defun slot-names (object)
-  "Return the names of the slots of OBJECT that programs can reach, as strings."
+  "Return a list of the names, strings, of the slots of OBJECT that programs can use."
   (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
                                    (mapcar #'symbol-name (own-slots object)))
                            :test #'string=)
@@ -140,7 +143,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
 ;;; Registering them.
 
 (defun register-slot (class slot reader)
-  "Register READER, a function's name or NIL, for the slot called SLOT of CLASS."
+  "Register READER, the name of a function or NIL, as the reader of the slot named SLOT of CLASS."
   (let ((type (ensure-nisp-type class))
         (slot (string slot)))
     (setf (nisp-type-class type) class
@@ -148,16 +151,17 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
 (defun typed-reader (type slot)
-  "Return the name of the accessor of SLOT for TYPE, or for all types if TYPE has none of its own."
+  "Return the name of the accessor of SLOT for TYPE; if TYPE has no accessor of its own, that for
+all types."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
     (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
         (ensure-slot-accessor slot))))
 
 (defmacro define-nisp-slot (type name reader &optional writer)
-  "Let programs reach the slot NAME of objects of TYPE, a class, and of its subtypes. READER is
-the name of a function of the object; WRITER, if the slot can be set, is (SETF READER) or the
-name of a function of the value and the object."
+  "Let programs use the slot NAME of objects of TYPE, a class, and of its subclasses. READER is the
+name of a function of the object. WRITER, if the slot can be set, is (SETF READER) or the name of a
+function of the value and the object."
   (let ((accessor (slot-accessor-name name))
         (direct (and (symbolp reader)
                      (if writer
@@ -178,8 +182,8 @@ name of a function of the value and the object."
 ;;; Access by a name known at run time.
 
 (defun slot-ref (object slot)
-  "Return the slot of OBJECT called SLOT, a symbol or string. Can be set. Signals UNKNOWN-NAME,
-which lists the slots, if there is none of that name."
+  "Return the value of the slot of OBJECT named SLOT, a symbol or string. Can be set. Signals
+UNKNOWN-NAME, which lists the slots, if OBJECT has no such slot."
   (funcall (ensure-slot-accessor slot) object))
 
 (defun (setf slot-ref) (value object slot)

@@ -21,11 +21,11 @@
 (defconstant +page-mask+ (1- +page-size+))
 
 (define-kind (event :include request :constructor (%make-event (function)))
-    "A call of FUNCTION, with the event as its argument, in the tick TIME."
+    "An event: a call of FUNCTION, with the event as its argument, in the tick TIME."
   (:fixed
    (function #'identity function "the function of the event that is called in its tick" :export)
    (interrupt nil (or null function)
-              "the function of the event to call if it is interrupted" :export)
+              "the function, of the event, to call if the event is interrupted" :export)
    (resource nil t "the resource that the event occupies, or NIL" :export))
   (:state
    (time 0 tick-count "the tick that the event waits for" :export)
@@ -45,7 +45,7 @@
   (make-array +page-size+ :initial-element nil))
 
 (define-record (agenda (:constructor make-agenda () "Return an agenda without events, at tick 0."))
-  "The events of one simulation."
+  "The events of one simulation that wait for their ticks."
   (tick 0 tick-count "the tick that the agenda has reached" :writable :export)
   (near (make-wheel) wheel "the events of the current page")
   (far nil (or null wheel) "the events of the later pages of the volume; NIL before the first"
@@ -66,7 +66,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 (define-modify-macro append-event (event) add-behind)
 
 (defun detach-ring (last)
-  "Cut the ring whose last event is LAST; return its first event. NIL if LAST is NIL."
+  "Cut the ring whose last event is LAST, and return its first event; NIL if LAST is NIL."
   (and last (shiftf (event-next last) nil)))
 
 (defun put-in-bucket (agenda event)
@@ -82,7 +82,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
           (t (append-event (agenda-beyond agenda) event)))))
 
 (defun put-all-in-buckets (agenda event)
-  "Put EVENT and those that follow it into the buckets for their ticks; drop cancelled events."
+  "Put EVENT and the events that follow it into the buckets for their ticks. Drop cancelled events."
   (loop while event
         do (let ((next (event-next event)))
              (if (event-pending-p event)
@@ -108,7 +108,8 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
       (values (gethash resource (agenda-claims agenda)))))
 
 (defun set-pending-event (agenda event resource)
-  "Make EVENT, or none if it is NIL, the pending event of RESOURCE. See reading 81."
+  "Make EVENT the pending event of RESOURCE. If EVENT is NIL, RESOURCE then has no pending event.
+See reading 81."
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
         (event (setf (gethash resource (agenda-claims agenda)) event))
@@ -140,9 +141,9 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
   (put-in-bucket agenda event))
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
-  "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and
-return it. RESOURCE must have no pending event. INTERRUPT is called with the event if that is
-interrupted."
+  "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and return
+it. RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is called with the
+event."
   (let ((event (%make-event function)))
     (setf (event-resource event) resource
           (event-priority event) priority
@@ -174,7 +175,8 @@ interrupted."
     (funcall (event-function event) event)))
 
 (defun run-in-order (agenda event)
-  "Run EVENT and those that follow it, also after a non-local exit from one of them."
+  "Run EVENT and the events that follow it. After a non-local exit from an event, still run the
+rest."
   (declare #.*hot* (type agenda agenda))
   (unwind-protect
        (loop while event
@@ -204,7 +206,8 @@ interrupted."
 ;;; Listing and copying.
 
 (defun pending-events (agenda)
-  "Return a list of the events pending in AGENDA: by time, then by priority, then as queued."
+  "Return a list of the events pending in AGENDA, sorted by time, then by priority, then in the
+order of queueing."
   (let ((events '()))
     (flet ((note-bucket (last)
              (when last
@@ -236,11 +239,12 @@ interrupted."
 ;;; The last interruption on a resource.
 
 (defgeneric request-name (request)
-  (:documentation "Return the name of what REQUEST asks for, as shown to users.")
+  (:documentation "Return the name of the command or event that REQUEST requests, for messages.")
   (:method ((request request)) (request-operator request)))
 
 (define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
-  "A request of ASKER named WHAT was interrupted in TICK by one of BY-ASKER named BY."
+  "The record of an interruption in TICK: the request BY of BY-ASKER has interrupted the request
+WHAT of ASKER."
   (tick 0 tick-count "the tick of the interruption" :export)
   (what nil t "the name of what was interrupted" :export)
   (asker nil t "a note of who had asked for that" :export)
@@ -248,7 +252,8 @@ interrupted."
   (by-asker nil t "a note of who had asked for that" :export))
 
 (defun note-interruption (request rival tick)
-  "Record for users that RIVAL interrupts REQUEST on its resource in TICK."
+  "Record, for messages to users, that the request RIVAL interrupts REQUEST on its resource in
+TICK."
   (let ((resource (event-resource request)))
     (when (resource-p resource)
       (setf (resource-interruption resource)

@@ -7,21 +7,23 @@
 (addition ask)
 (defun ask (object function)
   "Call FUNCTION, without arguments, while the world of OBJECT, a simulation or robot, stands still.
-If this thread owns the world or no thread does, call it at once; else the owning thread calls it
-between two ticks. Return its values; its errors are signalled here. Signals MISUSE inside a tick of
-another world, and if FUNCTION is aborted."
+If this thread or no thread owns the world, call FUNCTION at once; else the thread that owns the
+world calls FUNCTION between two ticks. Return the values of FUNCTION. Errors of FUNCTION are
+signalled in this thread. Signals MISUSE inside a tick of another world, and if FUNCTION is
+aborted."
   (let ((custody (timeline-custody (timeline-of object))))
     (call-with-custody custody function (lambda () (ask-holder custody function)))))
 
 (addition asking)
 (defmacro asking ((object) &body body)
-  "Run BODY as ASK calls a function."
+  "Run BODY while the world of OBJECT, a simulation or robot, stands still, as ASK calls a function.
+Return its values."
   `(ask ,object (lambda () ,@body)))
 
 ;;; Questions of other threads.
 
 (defstruct (question (:constructor make-question (function)) (:copier nil))
-  "A function that another thread wants called, and the result."
+  "A question: a function that another thread has sent to be called, and its result."
   (function nil :type function :read-only t)
   (answered (make-semaphore "answer") :type t :read-only t)
   (values '() :type list)
@@ -69,11 +71,12 @@ another world, and if FUNCTION is aborted."
           (t (error trouble)))))
 
 (defun check-outside-ticks ()
-  "Signal MISUSE inside a tick: a thread there answers no questions, so it must not ask any."
+  "Signal MISUSE if this thread is inside a tick. Such a thread answers no questions, so it must not
+ask questions."
   (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
              (owner-p *simulation*))
-    (reject-use "A tick of ~A is under way here. Another world that is live can be asked or ~
-                 changed between ticks, as in a continuation."
+    (reject-use "A tick of ~A is under way here. Another live world can be asked or changed only ~
+                 between ticks, for example in a continuation."
                 (timeline-name (timeline-of *simulation*)))))
 
 (defun await-answer (question custody)
@@ -83,7 +86,8 @@ another world, and if FUNCTION is aborted."
            (call-with-custody custody (constantly nil) (constantly nil))))
 
 (defun keeping-seclusion (function)
-  "Return a function that calls FUNCTION, in any thread, as secluded as this code is."
+  "Return a function that calls FUNCTION with the same seclusion as the current code, in any
+thread."
   (let ((seclusion *seclusion*))
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 
@@ -98,8 +102,9 @@ another world, and if FUNCTION is aborted."
     (answer-values question)))
 
 (defun ask-later (object function)
-  "Have FUNCTION called between two ticks of the world of OBJECT, as by ASK, without waiting for it.
-It is called with interrupts deferred, except within ALLOWING-INTERRUPTS. Return nothing."
+  "Make the thread that owns the world of OBJECT call FUNCTION between two ticks, as by ASK, but do
+not wait for the result. FUNCTION is called with interrupts deferred, except within
+ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
         (question (make-question (keeping-seclusion function))))
     (deferring-interrupts

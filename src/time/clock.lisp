@@ -19,15 +19,15 @@
   (setf (custody-asleep-p custody) nil))
 
 (defun pause-in-effect-p (pacing)
-  "True if PACING is paused and has no ticks left to pass by request."
+  "True if the clock of PACING is paused, and no requested ticks remain to be passed."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
 (defun stands-still-p (simulation)
-  "True if the live SIMULATION is paused and has no ticks left to pass by request."
+  "True if the live SIMULATION is paused, and no requested ticks remain to be passed."
   (if-paced (pacing simulation) (pause-in-effect-p pacing)))
 
 (defun paused-or-stopped-p (pacing)
-  "True if no tick may pass because PACING was paused or stopped."
+  "True if no tick may pass because the clock of PACING was paused or stopped."
   (or (pacing-stopping-p pacing) (pause-in-effect-p pacing)))
 
 (defun nothing-to-do-p (pacing)
@@ -36,7 +36,7 @@
       (funcall (pacing-idle-p pacing))))
 
 (defun keep-pace (custody pacing due)
-  "Sleep until the time DUE, in seconds; return when the next tick is due."
+  "Sleep until the time DUE, in seconds. Return the time when the next tick is due."
   (let ((rate (pacing-rate pacing)))
     (if (eq rate :free)
         (seconds-now)
@@ -51,21 +51,22 @@
 ;;; Passing ticks.
 
 (defun pause-after-failure (pacing trouble)
-  "Pause the clock of PACING because of TROUBLE, a condition that does not come from user code."
-  (let ((text (format nil "The simulator failed and is paused; RESUME goes on: ~A"
+  "Pause the clock of PACING because of the condition TROUBLE, an error in the simulator itself."
+  (let ((text (format nil "The simulator failed and is paused; RESUME continues: ~A"
                       (brief-text trouble))))
     (trouble-set trouble text text))
   (setf (pacing-paused-p pacing) t
         (pacing-trouble pacing) (brief-text trouble)))
 
 (defun pass-tick (pacing)
-  "Pass a tick. An error that does not come from user code is reported and pauses the clock."
+  "Pass a tick. An error in the simulator itself, not in users' code, is reported and pauses the
+clock."
   (handler-case (funcall (pacing-tick pacing))
     ((or error storage-condition) (trouble) (pause-after-failure pacing trouble)))
   (when (plusp (pacing-steps pacing)) (decf (pacing-steps pacing))))
 
 (defun run-paced (custody pacing)
-  "Pass ticks at the pace of PACING until that is stopped or another thread has CUSTODY."
+  "Pass ticks at the pace of PACING, until PACING is stopped or another thread has CUSTODY."
   (loop with due = (seconds-now)
         until (or (pacing-stopping-p pacing) (not (mine-p custody)))
         do (answer-questions custody)
@@ -81,7 +82,8 @@
                       (pass-tick pacing))))))
 
 (defun release-pacing (custody pacing)
-  "Release what the thread of PACING holds. That thread ends, perhaps because it was killed."
+  "Release the custody that the thread of PACING holds, because the thread ends, perhaps because it
+was killed."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)
@@ -96,8 +98,8 @@
     (signal-semaphore (pacing-ended pacing))))
 
 (defun run-thread (pacing ready start)
-  "Signal READY once this thread can be ended at any moment. After START, run PACING, if custody has
-been handed over by then."
+  "Signal the semaphore READY when this thread can be ended at any moment. Wait for the semaphore
+START. Then pass ticks at the pace of PACING, if this thread has got custody."
   (let* ((custody (pacing-custody pacing))
          (*held* (list custody))
          (*user-calls* (pacing-calls pacing)))
@@ -139,13 +141,13 @@ been handed over by then."
         (signal-semaphore start)))))
 
 (defun start-pacing (timeline tick idle-p rate caller &key paused-p)
-  "Start a thread that passes ticks of TIMELINE at RATE by calling TICK while IDLE-P returns false;
-if PAUSED-P is true, only after RESUME. The thread does its work in a function that it passes to
-CALLER, which calls that. It takes over custody of TIMELINE from this one. Return TIMELINE. Signals
-MISUSE if it is live already, WRONG-ARGUMENT for a rate that is neither a number from 0.001 to
-1000000 nor :FREE."
+  "Start a thread that passes ticks of TIMELINE at RATE. The thread calls TICK for each tick, while
+IDLE-P returns false. If PAUSED-P is true, ticks pass only after RESUME. The thread calls CALLER
+with a function that does all its work. The thread takes over custody of TIMELINE from this thread.
+Return TIMELINE. Signals MISUSE if TIMELINE is already live, and WRONG-ARGUMENT if RATE is neither a
+number from 0.001 to 1000000 nor :FREE."
   (check-rate rate)
-  (when (live-p timeline) (reject-use "~A runs live already." (timeline-name timeline)))
+  (when (live-p timeline) (reject-use "~A already runs live." (timeline-name timeline)))
   (let ((pacing (make-pacing timeline rate tick idle-p
                              (make-user-calls (lambda () (stop-pacing timeline))))))
     (setf (pacing-paused-p pacing) paused-p)

@@ -11,16 +11,17 @@
 ;;; before it gives custody up.
 
 (define-record (custody (:constructor make-custody ()))
-  "Which thread owns a world."
+  "The record of the thread that owns a world."
   (thread nil t :writable)
   (questions '() t "questions of other threads to the owner, newest first" :writable :export)
   (wake-up (make-semaphore "custody") t)
   (asleep-p nil t :writable)
-  (pacing nil t "how the owner paces the world, or NIL if it does not" :writable)
+  (pacing nil t "the pacing by which the owner passes ticks, or NIL if it does not pace the world"
+                :writable)
   (starter nil t "the thread that is starting the world, or NIL. Can be set" :writable :export))
 
 (defvar *held* '()
-  "The custodies that this thread has taken and not given up.")
+  "The list of custodies that this thread has taken and not given up.")
 
 (declaim (inline mine-p))
 (defun mine-p (custody)
@@ -28,7 +29,7 @@
   (eq (custody-thread custody) (current-thread)))
 
 (defun take-custody (custody)
-  "Take CUSTODY for this thread, if no thread has it. True if it was taken."
+  "Take CUSTODY for this thread, if no thread has it. Return true if this thread has taken it."
   (swap-if (custody-thread custody) nil (current-thread)))
 
 (defun answer-questions (custody)
@@ -39,7 +40,7 @@
           do (call-each #'funcall (reverse questions))))
 
 (defun give-up-custody (custody)
-  "Give CUSTODY up. Pending questions are answered first."
+  "Give up CUSTODY, after answering pending questions."
   (in-any-case
     (when (mine-p custody) (answer-questions custody))
     (swap-if (custody-thread custody) (current-thread) nil)
@@ -49,8 +50,9 @@
              (give-up-custody custody)))))
 
 (defun call-with-custody (custody function otherwise)
-  "Call FUNCTION with CUSTODY, or OTHERWISE if another thread has it. Return the values. Both calls
-can be interrupted if this thread could be before."
+  "Take CUSTODY and call FUNCTION. If another thread has CUSTODY, call OTHERWISE instead. Return the
+values of the call. FUNCTION and OTHERWISE can be interrupted if this thread allowed interrupts
+before."
   (if (mine-p custody)
       (funcall function)
       (let ((open-p (not (interrupts-deferred-p))))
@@ -69,7 +71,7 @@ can be interrupted if this thread could be before."
 ;;; Waiting.
 
 (defun wake-holder (custody)
-  "Wake the thread that has CUSTODY if it sleeps, as there may be work for it."
+  "If the thread that has CUSTODY sleeps, wake it, because there may be work for it."
   (when (custody-asleep-p custody)
     (signal-semaphore (custody-wake-up custody))))
 
@@ -80,13 +82,14 @@ can be interrupted if this thread could be before."
       (swap-if (custody-thread custody) thread nil))))
 
 (defun answer-own-questions ()
-  "Answer the questions about worlds that this thread owns. This prevents a deadlock with threads
-that wait for it while it waits for them."
+  "Answer the questions about worlds that this thread owns. This prevents a deadlock between threads
+that wait for each other."
   (dolist (custody *held*)
     (when (mine-p custody) (answer-questions custody))))
 
 (defun wait-while-answering (semaphore &optional (seconds 0.2))
-  "Wait for SEMAPHORE for at most SECONDS, after answering questions. True if it was signalled."
+  "Answer questions, then wait for SEMAPHORE for at most SECONDS. Return true if SEMAPHORE was
+signalled."
   (answer-own-questions)
   (yield-foreground)
   ;; A thread that owns a world must check for questions often.

@@ -11,21 +11,21 @@
 
 (addition *default-rate*)
 (defparameter *default-rate* 20
-  "The pace of a live simulation unless another is given: ticks per second, or :FREE.")
+  "The default pace of live simulations: ticks per second, or :FREE.")
 
 (addition *hog-seconds*)
 (defparameter *hog-seconds* 0.5
-  "How many seconds a user's function, such as a continuation, may run in the simulator's thread
-before a warning names it; also how long STOP-SIMULATOR waits before it interrupts one. At least
-0.05. Threads of the simulator read it, so set it with SETF: a LET does not affect them.")
+  "The number of seconds, at least 0.05, that a user's function, such as a continuation, may run in
+the simulator's thread before a warning names it. STOP-SIMULATOR interrupts such a function after
+the same time. Set the variable with SETF: a LET does not affect the simulator's threads.")
 
 (defun hog-seconds ()
-  "Return *HOG-SECONDS*, within bounds."
+  "Return the value of *HOG-SECONDS*, or 0.05 if the value is invalid."
   (if (typep *hog-seconds* '(real 0.05 1000000)) *hog-seconds* 0.05))
 
 (defstruct (pacing (:constructor make-pacing (timeline rate tick idle-p calls)) (:copier nil))
   "How a timeline is paced. The function TICK passes one tick; IDLE-P returns true if none is
-needed. CALLS records which users' code the thread is in."
+needed. CALLS records the calls of users' code by the thread."
   (timeline nil :type timeline :read-only t)
   (rate nil)
   (tick nil :type function :read-only t)
@@ -52,21 +52,23 @@ needed. CALLS records which users' code the thread is in."
   (signal-semaphore (custody-wake-up (pacing-custody pacing))))
 
 (defun seconds-now ()
-  "Return the real time, in seconds since an arbitrary moment. No result may depend on it."
+  "Return the real time, in seconds since an arbitrary moment. Results of runs must not depend on
+the real time."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (defmacro if-paced ((pacing object) &body body)
-  "Run BODY with PACING bound to the pacing of the run of OBJECT. Return NIL if it never ran live."
+  "Run BODY with PACING bound to the pacing of the run of OBJECT. If the run was never live, return
+NIL."
   `(let ((,pacing (timeline-pacing (timeline-of ,object))))
      (when ,pacing ,@body)))
 
 (defun timeline-thread (timeline)
-  "Return the thread that paces TIMELINE, or NIL if there is none or it was asked to stop."
+  "Return the thread that paces TIMELINE; NIL if there is none, or if the thread was asked to stop."
   (if-paced (pacing timeline)
     (and (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
 (defun pacer-p (timeline)
-  "True if this thread is the one that paces TIMELINE, or did last."
+  "True if this thread paces TIMELINE, or was the last thread to pace it."
   (if-paced (pacing timeline) (eq (current-thread) (pacing-thread pacing))))
 
 (addition live-p)
@@ -80,14 +82,14 @@ needed. CALLS records which users' code the thread is in."
   (if-paced (pacing simulation) (pacing-paused-p pacing)))
 
 (defvar *waits-while-paused-p* t
-  "True if an interactive user, where this thread waits, can resume a paused run.")
+  "True if an interactive user can resume a paused run while this thread waits.")
 
 (defun clock-trouble (simulation)
   "Return a text about the failure that has paused the live SIMULATION, or NIL."
   (if-paced (pacing simulation) (pacing-trouble pacing)))
 
 (defun pace (simulation)
-  "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if it never ran live."
+  "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if SIMULATION was never live."
   (if-paced (pacing simulation) (pacing-rate pacing)))
 
 ;;; Pausing and resuming.
@@ -137,7 +139,7 @@ RATE. Signals WRONG-ARGUMENT."
 ;;; stops the run.
 
 (defun ended-p (pacing seconds)
-  "Wait for the thread of PACING to end, for SECONDS. True if it has."
+  "Wait at most SECONDS for the thread of PACING to end. Return true if it has ended."
   (loop with due = (+ (seconds-now) seconds)
         ;; A thread that was woken may have been interrupted before it could wake the next one.
         when (or (pacing-over-p pacing)
@@ -147,15 +149,15 @@ RATE. Signals WRONG-ARGUMENT."
         until (> (seconds-now) due)))
 
 (defun interrupt-hog (pacing)
-  "Abort the users' code that the thread of PACING is in. True if there is any."
+  "Abort the users' code that the thread of PACING is in. Return true if it is in users' code."
   (let* ((calls (pacing-calls pacing)) (count (user-calls-count calls)))
     (when (user-calls-origin calls)
       (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
       t)))
 
 (defun await-end (pacing)
-  "Wait for the thread of PACING to end. Interrupt users' code that does not return, repeatedly.
-Signals MISUSE if that does not help."
+  "Wait for the thread of PACING to end. Repeatedly interrupt users' code that does not return.
+Signals MISUSE if the thread does not end."
   (loop repeat 10
         when (ended-p pacing (hog-seconds))
           return t
@@ -166,7 +168,8 @@ Signals MISUSE if that does not help."
                               (and origin (text-of-origin origin))))))
 
 (defun stop (pacing)
-  "End the thread of PACING after its current tick. Wait until it has ended, unless it is this one."
+  "End the thread of PACING after its current tick. If that is another thread, wait until it has
+ended."
   (swap-if (pacing-stopping-p pacing) nil t)
   (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
@@ -174,25 +177,29 @@ Signals MISUSE if that does not help."
 
 (defun claim-pacing (timeline)
   "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
-replace the run. True if the run was live and had not been stopped."
+replace the run. Return true if the run was live and no thread had stopped it."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) nil :replaced)))
 
 (defun claimed-p (timeline)
-  "True if CLAIM-PACING has returned true for TIMELINE, and UNCLAIM-PACING was not called since."
+  "True if CLAIM-PACING has returned true for TIMELINE, and UNCLAIM-PACING was not called after
+that."
   (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
 (defun unclaim-pacing (timeline)
-  "Keep a run that is about to replace that of TIMELINE from becoming live, as this was stopped."
+  "Prevent a run that is about to replace the run of TIMELINE from becoming live, because the run of
+TIMELINE was stopped."
   (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
-  "End the thread that paces TIMELINE after its current tick. Wait until it has ended, unless it is
-this one. Return TIMELINE. Signals MISUSE if it is in users' code that cannot be interrupted."
+  "End the thread that paces TIMELINE after its current tick. If that is another thread, wait until
+it has ended. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot be
+interrupted."
   (if-paced (pacing timeline) (stop pacing))
   timeline)
 
 (defun call-alone (timeline function)
-  "Stop the thread that paces the world of TIMELINE; call FUNCTION with custody, return its value."
+  "Stop the thread that paces the world of TIMELINE. Then call FUNCTION with custody of the world,
+and return its value."
   (let ((custody (timeline-custody timeline)))
     (loop
       (block busy
@@ -216,13 +223,14 @@ this one. Return TIMELINE. Signals MISUSE if it is in users' code that cannot be
                     (setf seen (and origin count) looks 1))
                    ((= 3 (incf looks))
                     (setf (pacing-hog pacing) count)
-                    (warn-at-once (format nil "~A has kept the simulator waiting for ~,1F s and ~
-                                               goes on; (stop-simulator) interrupts it"
+                    (warn-at-once (format nil "~A has kept the simulator waiting for ~,1F s and is ~
+                                               still running; (stop-simulator) interrupts it"
                                           (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-under-way (simulation)
-  "Return a text that names the users' code that the thread of the live SIMULATION is in, and how
-many calls of users' code it has begun. NIL if there is none, or if it waits in a debugger."
+  "Return a text that names the users' code that the thread of the live SIMULATION is in, and the
+number of calls of users' code that the thread has begun. Return NIL if the thread is not in users'
+code, or waits in a debugger."
   (if-paced (pacing simulation)
     (let* ((calls (pacing-calls pacing))
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
@@ -235,7 +243,8 @@ many calls of users' code it has begun. NIL if there is none, or if it waits in 
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort the users' code of the live SIMULATION that a warning has named as slow. True if any."
+  "Abort the users' code of the live SIMULATION that a warning has named as slow. Return true if
+that code was still running."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

@@ -10,20 +10,21 @@
 ;;; above include the structure, and add slots and methods.
 
 (define-kind (request :constructor (make-request (operator arguments)))
-    "A request to a run."
+    "A request that a run perform an operator."
   (:fixed
    (operator nil t "the requested operator: its name, or an object that has one" :export)
    (arguments '() list "the arguments of the operator" :export)
    (forked-p (goes-on-in-forks-p) boolean
-             "true if the asker is copied to forks of the run" :export)
-   (phase 0 fixnum "the phase of the tick in which it was made, 0 between ticks" :export))
+             "true if forks of the run contain a copy of the plan or code that made the request"
+             :export)
+   (phase 0 fixnum "the phase of the tick in which the request was made, 0 between ticks" :export))
   (:memory
-   (asker nil t "a note of who made it" :export)))
+   (asker nil t "the origin of the request, for messages" :export)))
 
 (defgeneric perform (request timeline)
   (:documentation
-   "Perform REQUEST, at the start of a tick of TIMELINE or at the end of its run. Called by the
-owner."))
+   "Perform REQUEST, at the start of a tick of TIMELINE or at the end of its run. The thread that
+owns the world calls this function."))
 
 (defgeneric request-entry (request)
   (:documentation "Return the journal entry of REQUEST: a list (operator argument ...).")
@@ -36,17 +37,17 @@ owner."))
 ;;; Resources: parts that do one thing at a time (manual 3.1.2).
 
 (define-kind (resource :constructor nil)
-    "A robot or one of its parts: commands and events compete for it. SCHEDULE takes any object as
-a resource; these are faster, as they hold their pending event."
+    "A robot or one of its parts, for which commands and events compete. SCHEDULE accepts any object
+as a resource; structures of this type are faster, because they contain their pending event."
   (:state
    (event nil t "the event or command that is pending on the resource, or NIL" :export))
   (:memory
-   (interruption nil t "what was interrupted last on the resource, or NIL" :export)
-   (asked 0 atomic-count "how many requests for the resource were made: a program that issues a
-sequence of commands detects by it that others came between" :export)))
+   (interruption nil t "the record of the last interruption on the resource, or NIL" :export)
+   (asked 0 atomic-count "the number of requests for the resource so far. A program that issues a
+sequence of commands can detect that others made requests in between" :export)))
 
 (defun count-request (resource)
-  "Count a request for RESOURCE, if that is a RESOURCE structure."
+  "Add one to the number of requests for RESOURCE, if RESOURCE is a structure of the type RESOURCE."
   (when (resource-p resource) (atomic-incf (resource-asked resource))))
 
 ;;; Phases are counted from 1; 0 is between ticks. The run's tick defines what happens in each. User
@@ -58,7 +59,7 @@ sequence of commands detects by it that others came between" :export)))
   :documentation "The names of the phases of a tick, in order.")
 
 (defmacro phase-number (name)
-  "Return the number of the phase of a tick called NAME, a keyword that is not evaluated."
+  "Return the number of the phase of a tick that is named NAME, a keyword that is not evaluated."
   (1+ (or (position name +phases+)
           (reject-name "phase" name +phases+))))
 

@@ -14,20 +14,21 @@
                                       (body resource priority on-interrupt test timeout timer
                                        &aux (operator 'schedule) (function #'run-scheduled)
                                          (interrupt #'interrupt-scheduled))))
-    "An event of SCHEDULE."
+    "An event that SCHEDULE has made."
   (:fixed
    (body nil function "the function of the event")
    (on-interrupt nil (or null function) "the function to call if the event loses, or NIL")
    (test nil (or null function) "a function that must return true for the event to happen, or NIL")
-   (timeout nil (or null integer) "after how many ticks the event is dropped, or NIL")
-   (timer 1 integer "in how many ticks it may happen at the earliest")
-   (agenda nil (or null agenda) "the agenda that it waits in"))
+   (timeout nil (or null integer) "the number of ticks after which the event is dropped, or NIL")
+   (timer 1 integer "the least number of ticks until the event may happen")
+   (agenda nil (or null agenda) "the agenda in which the event waits"))
   (:state
-   (deadline nil (or null integer) "the last tick in which it may happen, or NIL")))
+   (deadline nil (or null integer) "the last tick in which the event may happen, or NIL")))
 
 ;; Requests are performed in a tick before the agenda has advanced to it.
 (defun call-in-tick (function timeline)
-  "Call FUNCTION with the agenda of TIMELINE at the current tick, as for other user code."
+  "Call FUNCTION, users' code. Before the agenda of TIMELINE has advanced to the current tick,
+advance it for this call."
   (let ((agenda (timeline-agenda timeline)))
     (cond ((= (phase-number :requests) (timeline-phase timeline))
            (incf (agenda-tick agenda))
@@ -41,7 +42,7 @@
                     (timeline-of *simulation*)))))
 
 (defun expires-first-p (event)
-  "True if the timeout of EVENT is over before its timer."
+  "True if the timeout of EVENT is shorter than its timer."
   (and (scheduled-deadline event)
        (< (scheduled-timeout event) (scheduled-timer event))))
 
@@ -76,8 +77,8 @@
 (defun call-scheduled (function resource
                        &key (priority 0) interrupt when timeout (timer 1)
                             (simulation (current-simulation)))
-  "Request an event that calls FUNCTION, as SCHEDULE does. Returns nothing. Signals WRONG-ARGUMENT
-for a priority, timer or timeout that is not an integer."
+  "Request an event that calls FUNCTION. The arguments are those of SCHEDULE. Returns nothing.
+Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
   (check-of-type 'schedule 'timer timer 'tick-span)
   (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
@@ -97,18 +98,19 @@ for a priority, timer or timeout that is not an integer."
                                       :timeout timeout :timer timer)))
 
 (defun doubtful-delay (head body)
-  "Return the number in HEAD or BODY of a form (schedule ...) that is meant as a delay, or NIL."
+  "Return the number in a form (schedule HEAD . BODY) that the user probably meant as a delay, or
+NIL."
   (find-if #'integerp (list* head (and (consp head) (ignore-errors (second head)))
                              (and (typep body '(cons t null)) body))))
 
 (defmethod advice-on-use ((operator (eql 'schedule)) form)
   (let* ((head (second form)) (delay (doubtful-delay head (cddr form))))
     (flet ((advice (resource)
-             (format nil "say (schedule (~(~A~)~@[ :timer ~D~]) ...)"
+             (format nil "write (schedule (~(~A~)~@[ :timer ~D~]) ...)"
                      (unqualified-text resource) delay)))
       (cond ((null (rest form)) (advice nil))
             ((typep head '(cons (member lambda function)))
-             (format nil "the code is the body: ~A" (advice nil)))
+             (format nil "the code to run is the body: ~A" (advice nil)))
             ((integerp head) (advice nil))
             ((atom head) (advice head))
             ((typep head '(cons keyword)) (and delay (advice nil)))
@@ -119,16 +121,16 @@ for a priority, timer or timeout that is not an integer."
                     &body body)
   "Schedule an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
 now.
-- :PRIORITY is an integer, default 0. If the resource already has an event, the one with the higher
-  priority stays, of equal ones the first.
+- :PRIORITY is an integer, default 0. If the resource already has an event, the event with the
+higher priority stays. Of equal priorities, the first stays.
 - The form INTERRUPT is evaluated if this event loses.
-- With the form WHEN, the event happens in the first tick from then on in which WHEN is true, at
-  most TIMEOUT ticks from now; then it is dropped.
+- With the form WHEN, the event waits, after TIMER, for the first tick in which WHEN is true. If
+that does not happen within TIMEOUT ticks from now, the event is dropped.
 - TIMER and TIMEOUT are integers from 0 to 1e9.
-INTERRUPT and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same. Requests for
-a resource, commands included, are performed in the order of asking, at the start of the next tick.
-A command has the priority 0, and interrupts any event there. Returns nothing (manual 3.8). See
-reading 7."
+INTERRUPT and WHEN, like BODY, run inside ticks. Resources that are EQUAL are the same resource.
+Requests for a resource, including commands, are performed in the order in which they were made, at
+the start of the next tick. A command has the priority 0, and interrupts any event on the resource.
+Returns nothing (manual 3.8). See reading 7."
   (when (test-advice when) (doubt-definition "schedule, :when: ~A" (test-advice when)))
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
@@ -141,15 +143,16 @@ reading 7."
 
 (defgeneric release-resource (resource timeline)
   (:documentation
-   "Interrupt the event that is pending on RESOURCE, and its background activities. Called inside a
-tick, by the owner. A layer with background activities adds a method.")
+   "Interrupt the event that is pending on RESOURCE, and the background activities of RESOURCE. The
+thread that owns the world calls this function inside a tick. A layer with background activities
+adds a method.")
   (:method (resource timeline)
     (let* ((agenda (timeline-agenda timeline))
            (event (pending-event agenda resource)))
       (when event (interrupt-event agenda event)))))
 
 (define-kind (grab :include request :constructor (make-grab (arguments &aux (operator 'grab))))
-    "A request to interrupt everything on a resource, the only argument.")
+    "A request to interrupt everything on a resource. The resource is the only argument.")
 
 (defmethod perform ((grab grab) timeline)
   (let* ((resource (first (request-arguments grab)))
@@ -160,7 +163,7 @@ tick, by the owner. A layer with background activities adds a method.")
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
-  "Interrupt the command or event that occupies RESOURCE, and a track that it keeps, at the
+  "Interrupt the command or event that occupies RESOURCE, and the track of RESOURCE, if any, at the
 start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
   (count-request resource)
   (post (make-grab (list (copy-argument 'grab-resource "resource" resource))) simulation))
@@ -168,7 +171,7 @@ start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
 (define-operator 'grab '(datum) #'grab-resource)
 
 (defun abandon (timeline resources)
-  "Interrupt everything on RESOURCES, in order, and call the continuations. Called by the owner of
-TIMELINE, between ticks."
+  "Interrupt everything on RESOURCES, in order, and call the continuations. The thread that owns the
+world of TIMELINE calls this function between ticks."
   (dolist (resource resources) (release-resource resource timeline))
   (deliver-notifications timeline))

@@ -10,20 +10,20 @@
     (must-hold (and (event-pending-p event)
                     (< (agenda-tick agenda) (event-time event)
                        (+ (agenda-tick agenda) +longest-delay+ 2)))
-               "~A does not wait for a tick to come" event)
+               "~A does not wait for a future tick" event)
     (must-hold (not (event-queued-p event)) "~A waits twice" event)
     (must-hold (or (null resource)
                    (eq (if (resource-p resource) event nil) (pending-event agenda resource)))
-               "~A is not what its resource is busy with" event)
+               "~A is not the pending event of its resource" event)
     (activate agenda event)
     (set-pending-event agenda event resource)
     (put-in-bucket agenda event)))
 
 (defun fill-agenda (agenda tick events)
-  "Set the new AGENDA to TICK and enter EVENTS, a list in the order of PENDING-EVENTS. The slots of
-their resources must agree with that already. Signals CONTRADICTION."
-  (must-hold (typep tick `(integer 0 ,(expt 10 15))) "~A is no tick" tick)
-  (must-hold (proper-list-of-p #'event-p events) "what waits in the agenda are no events")
+  "Set the new AGENDA to TICK, and enter EVENTS, a list in the order of PENDING-EVENTS. The
+resources of EVENTS must already refer to them. Signals CONTRADICTION."
+  (must-hold (typep tick `(integer 0 ,(expt 10 15))) "~A is not the number of a tick" tick)
+  (must-hold (proper-list-of-p #'event-p events) "the agenda contains objects that are not events")
   (setf (agenda-tick agenda) tick)
   (dolist (event events) (put-in-place agenda event)))
 
@@ -34,13 +34,13 @@ their resources must agree with that already. Signals CONTRADICTION."
                    (and (event-p event)
                         (event-queued-p event)
                         (eq resource (event-resource event))))
-               "~A is busy with what does not wait" resource)))
+               "~A has a pending event that does not wait in the agenda" resource)))
 
 (defgeneric check-request (request)
   (:documentation "Signal CONTRADICTION unless REQUEST, loaded from a file, can be performed. A
 layer that adds a kind of request adds a method.")
   (:method (request)
-    (contradict "~A is no kind of request" (type-of request))))
+    (contradict "~A is not a kind of request" (type-of request))))
 
 (defmethod check-request ((grab grab))
   (must-hold (typep (request-arguments grab) '(cons t null)) "a resource to be taken is missing")

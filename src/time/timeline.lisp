@@ -17,47 +17,52 @@
 ;;; Secluded code can change only the runs that it has begun itself.
 
 (defvar *seclusion* nil
-  "A symbol that marks timelines made by secluded code, or NIL.")
+  "The mark of the secluded code that this thread runs, a symbol that its timelines get; or NIL.")
 
 (defmacro with-seclusion (&body body)
-  "Run BODY so that it can change and command only runs that have begun in it."
+  "Run BODY as secluded code: BODY can change and command only runs that have begun in BODY."
   `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
 
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
-    "The events of a run, and the requests to it."
+    "The events of a run, and the requests that wait to be performed in it."
   (:fixed
    (name "" (or symbol string) "the name of the timeline, for messages" :export)
    (real-p nil boolean "plans think in a separate thread while the clock runs" :export))
   (:state
    (agenda (make-agenda) agenda "the events that wait for their ticks" :part :export)
-   (charge '() list "what thinking costs: NIL for no ticks, or a plist; see THINKING-CHARGE"))
+   (charge '() list "the cost of thinking: NIL for no ticks, or a plist; see THINKING-CHARGE"))
   ;; Requests are not part of a run's state before they are taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
    (notifications '() list "the calls due at the end of the tick: lists (function argument...), the
 newest first")
-   (due-notifications '() list "those being called at the end of the tick, the oldest first"))
+   (due-notifications '() list "the calls that are being made at the end of the tick, the oldest
+first"))
   (:link
    (phase 0 fixnum
-          "how many phases of the current tick have begun; 0 between ticks" :export)
+          "the number of phases of the current tick that have begun; 0 between ticks" :export)
    (moments 0 fixnum
-            "how often in the tick code that forks repeat was called or has acted" :export)
-   (on-moment nil (or null function) "a function to call before each of these, or NIL" :export)
+            "the number of times in the tick that code which forks repeat was called or has acted"
+            :export)
+   (on-moment nil (or null function) "a function to call before MOMENTS is counted up, or NIL"
+                                     :export)
    (ticking-p nil boolean "a tick is under way, and the world changes" :export)
    (passing-p nil boolean "a thread passes ticks without a clock" :export)
    (fork-p nil boolean "the timeline is that of a fork" :export)
-   (seclusion *seclusion* symbol "the mark of the secluded code that made it, or NIL")
+   (seclusion *seclusion* symbol "the mark of the secluded code that made the timeline, or NIL")
    (run nil t "the run that the timeline belongs to, or NIL" :export)
    (over nil (or null string)
-         "why the run is over, a sentence without its full stop, or NIL" :export)
+         "the reason why the run is over, a sentence without its full stop; NIL if the run is not
+over" :export)
    (tick-dice (make-tick-dice) tick-dice
-              "Lisp's dice for users' code that changes the world" :export)
-   (custody (make-custody) custody "which thread owns the timeline and its world" :export)
-   (pacing nil t "how the timeline is paced, or NIL if it never was" :export)))
+              "the dice of CL:RANDOM for users' code that changes the world" :export)
+   (custody (make-custody) custody "the custody, which records the thread that owns the timeline and
+its world" :export)
+   (pacing nil t "the pacing of the timeline, or NIL if it never ran live" :export)))
 
 (setf (documentation 'make-timeline 'function)
-      "Return a timeline called NAME, at tick 0, without events and requests. With CUSTODY
-it succeeds another timeline of the same world.")
+      "Return a timeline named NAME, at tick 0, without events and requests. If the timeline follows
+another of the same world, CUSTODY is the custody of that timeline.")
 
 (declaim (inline timeline-tick))
 (defun timeline-tick (timeline)
@@ -78,21 +83,22 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
 
 (addition *simulation*)
 (defvar *simulation* nil
-  "The current simulation: that of WITH-SIMULATION, of the simulator's thread, or the last one
-started by SIMULATOR.")
+  "The current simulation: that of WITH-SIMULATION, that of the simulator's thread, or the last one
+that SIMULATOR has started.")
 
 (setf *run-that-reports* (lambda () *simulation*))
 
 (addition current-simulation)
 (defun current-simulation ()
-  "Return *SIMULATION*. Signals MISUSE when there is none."
+  "Return the current simulation, the value of *SIMULATION*. Signals MISUSE if there is none."
   (or *simulation*
-      (reject-use "There is no simulation here. ~A"
+      (reject-use "There is no current simulation. ~A"
                   (or (run-elsewhere-text)
                       "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
-  "Signal MISUSE if the run of OBJECT is over. OPERATOR, if given, is what the user has called."
+  "Signal MISUSE if the run of OBJECT is over. OPERATOR, if given, is the function that the user has
+called."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
       (reject-outlived "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) ~
@@ -101,7 +107,7 @@ started by SIMULATOR.")
                        (timeline-over timeline)))))
 
 (defun wake-owner (timeline)
-  "Wake the thread that paces TIMELINE if it sleeps, as there may be work for it."
+  "If the thread that paces TIMELINE sleeps, wake it, because there may be work for it."
   (wake-holder (timeline-custody timeline)))
 
 (defun owner-p (object)
@@ -109,15 +115,15 @@ started by SIMULATOR.")
   (mine-p (timeline-custody (timeline-of object))))
 
 (defun phase-in-this-thread (timeline)
-  "Return the number of the phase of a tick of TIMELINE in which this thread is, or 0."
+  "If this thread is inside a tick of TIMELINE, return the number of the phase of the tick; else 0."
   (if (owner-p timeline) (timeline-phase timeline) 0))
 
 ;;; Plans are copied to forks and act there by themselves; other askers do not. To repeat acts of
 ;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun begin-moment (timeline)
-  "Note that code copied to forks is about to be called or to act in a tick of TIMELINE, after the
-world has changed."
+  "Record that code which forks repeat is about to be called, or to act, in a tick of TIMELINE after
+the world has changed."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
@@ -125,11 +131,12 @@ world has changed."
 ;;; continuations of commands that events and kickers issue inside ticks must not be called: their
 ;;; requests would be made twice.
 
-(defvar *repeated* nil "The timeline of the run that this code repeats, or NIL.")
+(defvar *repeated* nil "The timeline of the run that this thread is repeating, as in a replay; or
+NIL.")
 
 (defun untold-p (timeline)
-  "True if the continuation of a request made here to TIMELINE must not be called, because the
-requests of the continuation are repeated anyway."
+  "True if the continuation of a request that this thread now makes to TIMELINE must not be called,
+because the run is being repeated, and so are the requests of the continuation."
   (and (eq timeline *repeated*)
        (changing-phase-p (phase-in-this-thread timeline))
        (not (goes-on-in-forks-p))))
@@ -137,31 +144,32 @@ requests of the continuation are repeated anyway."
 ;;; Objects of a fork look like those of its original, and are easily confused with them.
 
 (defun check-not-secluded (object)
-  "Signal MISUSE if this code is secluded and the run of OBJECT has not begun in it."
+  "Signal MISUSE if the current code is secluded, and the run of OBJECT did not begin in that code."
   (when (and *seclusion* (not (eq *seclusion* (timeline-seclusion (timeline-of object)))))
-    (reject-use "That belongs to another run than the one that was made for this code, and cannot ~
-                 be commanded or changed here. Robots' names and FIND-THING return those of this ~
-                 run.")))
+    (reject-use "This object belongs to another run than the one that was made for this code, and ~
+                 cannot be commanded or changed here. Names of robots and FIND-THING return the ~
+                 objects of this run.")))
 
 (defun check-own-run (timeline)
-  "Signal MISUSE if this code must not change the run of TIMELINE: it is secluded from that run, or
-works in a fork and TIMELINE is that of another run in the same map."
+  "Signal MISUSE if the current code must not change the run of TIMELINE, because the code is
+secluded from that run, or works in a fork of another run in the same map."
   (check-not-secluded timeline)
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own
                (timeline-fork-p own)
                (not (eq own timeline))
                (eq (timeline-name own) (timeline-name timeline)))
-      (reject-use "That belongs to another run than the fork that this code works in, at tick ~D. ~
-                   (counterpart OBJECT *SIMULATION*) returns the copy of a robot or thing here; ~
-                   robots' names and FIND-THING return those of the fork."
+      (reject-use "This object belongs to another run than the fork in which this code works, at ~
+                   tick ~D. (counterpart OBJECT *SIMULATION*) returns the copy of a robot or thing ~
+                   in the fork; names of robots and FIND-THING return the objects of the fork."
                   (timeline-tick own)))))
 
 ;;; Requests.
 
 (defun post (request object)
-  "Have REQUEST performed at the start of the next tick of the run of OBJECT, after those posted
-before. Any thread may post. Return nothing. Signals MISUSE if the run is over (reading 219)."
+  "Post REQUEST, to be performed at the start of the next tick of the run of OBJECT, after requests
+that were posted before. Any thread may post requests. Return nothing. Signals MISUSE if the run is
+over (reading 219)."
   (let ((timeline (timeline-of object)))
     (check-own-run timeline)
     (check-not-over timeline)
@@ -175,26 +183,28 @@ before. Any thread may post. Return nothing. Signals MISUSE if the run is over (
   (values))
 
 (defun post-again (request timeline)
-  "Put REQUEST, which was taken from the inbox of TIMELINE, back there, after the others. Called by
-the owner."
+  "Put REQUEST, which was taken from the inbox of TIMELINE, back as the last request. The thread
+that owns the world calls this function."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
-  "Remove REQUEST from the inbox of TIMELINE. True unless another thread has removed it."
+  "Remove REQUEST from the inbox of TIMELINE. Return true, or NIL if another thread has already
+removed REQUEST."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil
         when (swap-if (timeline-inbox timeline) inbox (remove request inbox))
           return t))
 
 (defun asked-inside-p (request)
-  "True if REQUEST was made while a tick changed the world: if repeated, the tick makes it again."
+  "True if REQUEST was made while a tick changed the world. If that tick is repeated, it makes the
+request again."
   (changing-phase-p (request-phase request)))
 
 ;; Requests made by a tick are not in the journal. Other threads may post during that tick, so the
 ;; order between the two sorts must not matter.
 (defun take-requests (timeline)
-  "Empty the inbox of TIMELINE. Return its requests, the oldest first, but those made by the tick
-before the others."
+  "Empty the inbox of TIMELINE, and return a list of the requests. Requests made inside a tick come
+first; in each group, the oldest comes first."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if (timeline-inbox timeline) inbox '())
           return (let ((requests (reverse inbox)))
@@ -204,7 +214,8 @@ before the others."
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "Call the function named FUNCTION with ARGUMENTS at the end of this tick, after earlier ones."
+  "Call the function named FUNCTION with ARGUMENTS at the end of this tick of TIMELINE, after
+functions that were passed before."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
@@ -226,7 +237,8 @@ before the others."
       (when (notifications-left-p timeline) (deliver-all timeline)))))
 
 (defun deliver-notifications (timeline)
-  "Make the calls due at the end of this tick in order, the rest also after a non-local exit."
+  "Make the calls that are due at the end of this tick, in order. After a non-local exit from a
+call, still make the rest."
   (when (notifications-left-p timeline) (deliver-all timeline)))
 
 ;;; The manual (1.2) separates simulated time from thinking time. To measure the value of thinking,
@@ -239,7 +251,8 @@ before the others."
 ;;; the run, and these are in the journal.
 
 (defun thinking-charge (mode)
-  "Return what thinking costs in MODE: NIL for no ticks, or a plist; and true if MODE is valid."
+  "Return the cost of thinking in the thinking mode MODE, NIL for no ticks or a plist, and true if
+MODE is valid."
   (cond ((member mode '(:free :real)) (values nil t))
         ((member mode '(:charged (:charged)) :test #'cl:equal) (values '(:charged t) t))
         ((and (typep mode '(cons (eql :charged) (cons (eql :budget) (cons t null))))
@@ -247,16 +260,16 @@ before the others."
          (values (list :charged t :budget (third mode)) t))))
 
 (defun thinking-mode-p (mode)
-  "True if MODE is a thinking mode, as SET-THINKING takes it."
+  "True if MODE is a thinking mode that SET-THINKING accepts."
   (nth-value 1 (thinking-charge mode)))
 
 (defun thinking-modes-text ()
   "Return a text that lists the thinking modes."
-  (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps) with the steps of plans in a ~
-               tick, a whole number from 1 to 1e9"))
+  (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps), where steps is the number of ~
+               steps of plans in a tick, a whole number from 1 to 1e9"))
 
 (defun check-thinking (operator mode)
-  "Signal WRONG-ARGUMENT by OPERATOR unless MODE is a thinking mode."
+  "Signal WRONG-ARGUMENT, as an error of OPERATOR, unless MODE is a thinking mode."
   (unless (thinking-mode-p mode)
     (reject-argument operator 'thinking mode (thinking-modes-text))))
 
@@ -274,7 +287,8 @@ before the others."
         (timeline-real-p timeline) (eq mode :real)))
 
 (defun give-threads (timeline real)
-  "Run plans of TIMELINE in a separate thread if REAL, unless thinking is charged for."
+  "If REAL is true and thinking is not charged for, make the plans of TIMELINE run in a separate
+thread."
   (setf (timeline-real-p timeline) (and real (not (timeline-charge timeline)))))
 
 (defun thinking-charged-p (timeline)
@@ -282,5 +296,5 @@ before the others."
   (and (timeline-charge timeline) t))
 
 (defun thinking-budget (timeline)
-  "Return how many steps plans in TIMELINE may take in a tick, or NIL if there is no limit."
+  "Return the number of steps that plans in TIMELINE may take in a tick; NIL if there is no limit."
   (getf (timeline-charge timeline) :budget))
