@@ -1,7 +1,8 @@
-;;;; rpl.lisp -- the plan language in one package: what its rooms export.
+;;;; rpl.lisp -- the plan language in one package: all exports of its folders.
 
 (uiop:define-package :ars-magna.rpl
-  (:documentation "RPL (manual, appendices C and D) whole: fluents, tasks, language, constructs,
-seeing. Knows no simulator. Each name lives in the package of its room.")
+  (:documentation "All of RPL (manual, appendices C and D): fluents, tasks, language, constructs,
+seeing. This package does not depend on the simulator. Each symbol belongs to the package of its
+folder.")
   (:use-reexport :ars-magna.rpl.fluents :ars-magna.rpl.tasks :ars-magna.rpl.language
                  :ars-magna.rpl.constructs :ars-magna.rpl.seeing))

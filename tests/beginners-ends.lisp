@@ -142,7 +142,7 @@
                         "the list of options comes after the parameters"))
   (is-true (complains-p '(command:defmanipulation rub (:by robot) (print 3)) "or () for none"))
   (is-true (complains-p '(rpl:def-interp-proc rub (rpl:wait-time 3))
-                        "The list of parameters stands before the body")))
+                        "The list of parameters comes before the body")))
 
 (test attributes.warn-of-noise-of-the-other-kind
   (base:with-own-definitions ()
@@ -247,7 +247,7 @@
            (prog1 (warnings-of (lambda () (eval `(rpl:def-interp-proc no-list ,@body))))
              (fmakunbound 'no-list))))
     (is-true (has-words-p (first (warnings-of-plan '(driver:rpl-robot-stop) '(rpl:wait-time 1)))
-                          "called like the function rpl-robot-stop" "() if there are none"))
+                          "has the name of the function rpl-robot-stop" "() if the plan has no"))
     (is (null (warnings-of-plan '() '(driver:rpl-robot-stop) '(rpl:wait-time 1))))
     (is (null (warnings-of-plan '(rpl-thing) '(rpl:wait-time rpl-thing))))))
 
@@ -258,7 +258,7 @@
     (is-true (has-words-p (first (warnings-of-steps '(rpl:whenever f (print 1))
                                                     '(driver:rpl-robot-turn 1)
                                                     '(rpl:wait-for driver:robot-stopped*)))
-                          "what stands after whenever is never done" "with-policy"))
+                          "the forms after whenever never run" "with-policy"))
     (is (null (warnings-of-steps '(rpl:whenever f (when (print 1) (return)))
                                  '(rpl:wait-time 1))))
     (is (null (warnings-of-steps '(rpl:wait-time 1) '(rpl:whenever f (print 1)))))))

@@ -66,10 +66,11 @@
 (test failures.tell-of-clauses-for-classes-like-theirs
   (is-true (has-words-p (failure-told (rpl:handle-failure ((:robot-blockd () 1))
                                         (rpl:fail :class :robot-blocked)))
-                        "a clause is for :robot-blockd, but the class is :robot-blocked"))
+                        "a clause is for :robot-blockd, but the class of the failure is"
+                        ":robot-blocked"))
   (is-true (has-words-p (failure-told (rpl:handle-failure (((or :late :deadline-mised) () 1))
                                         (rpl:with-deadline (2) (rpl:wait-time 5))))
-                        "a clause is for :deadline-mised, but the class is"))
+                        "a clause is for :deadline-mised, but the class of the failure is"))
   (is (not (search "a clause is for"
                    (failure-told (rpl:handle-failure ((:door-1 () 1) (:lost () 2))
                                    (rpl:fail :class :door-2))))))
@@ -137,7 +138,8 @@
                           "fails again at once" "(do-retry tries (retry))"))
     (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
                                            (loop (identity 1)))))
-                          "If it is to wait, write (wait-time 1) there; if it is to end, (return)"
+                          "If the plan is to wait, write (wait-time 1) there;"
+                          "if the loop is to end, write (return)"
                           "Ctrl-C interrupts RUN-PLAN"))))
 
 (rpl:def-interp-proc only-waits () (rpl:wait-time 1))
@@ -147,7 +149,7 @@
            (handler-case (macroexpand form)
              (base:misuse (misuse) (princ-to-string misuse)))))
     (is-true (has-words-p (told '(rpl:plan only-waits))
-                          "To carry out the plan, write (run-plan 'only-waits)"))
+                          "To run the plan, write (run-plan 'only-waits)"))
     (is-true (has-words-p (told '(rpl:plan nothing-yet)) "in a def-interp-proc" "(run-plan 'NAME)"))
     (is-true (has-words-p (told '(rpl:wait-time 2)) "in a def-interp-proc" "(run-plan 'NAME)"))))
 
@@ -169,7 +171,8 @@
                            (list (with-messages
                                    (rpl:run-plan-alone
                                     (eval '(plan-of (rpl:achieve (brought-in 1))))))))
-                          "it begins a goal, which is quoted: (achieve '(brought-in ...))"))))
+                          "it is the first word of a goal. Quote the goal: (achieve '"
+                          "(brought-in ...))"))))
 
 (test deadlock.says-when-the-pulse-came
   (is-true (has-words-p (rover-writes ()

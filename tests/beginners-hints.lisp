@@ -122,7 +122,7 @@
   (is-true (has-words-p (warnings-of-procedure '(list robot) '(sleep 5))
                         "In a plan write (wait-time 5 :unit :seconds)."))
   (is-true (has-words-p (warnings-of-procedure '(list robot) '(run:run-ticks 5))
-                        "(wait-time 5), for so many ticks")))
+                        "(wait-time 5), for that many ticks")))
 
 (test designators.that-are-not-yet-found-are-waited-for
   (flet ((told (&rest waits)
@@ -205,13 +205,14 @@
                           (driver:run-plan
                            (plan-of (rpl:handle-failure ((:deadline-missed () (return 1)))
                                       (rpl:with-deadline (3) (rpl:wait-time 9))))))
-                        "a clause is for :deadline-missed, but the class is" "deadline-missed")))
+                        "a clause is for :deadline-missed, but the class of the failure is"
+                        "deadline-missed")))
 
 (test handlers.with-other-endings-are-told-of
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:handle-failure ((:stucked () (return 1)))
                                                       (rpl:fail :class :stuck)))))
-                        "a clause is for :stucked, but the class is :stuck")))
+                        "a clause is for :stucked, but the class of the failure is :stuck")))
 
 ;;; Kickers and attributes of things.
 

@@ -35,7 +35,7 @@
              (driver:run-plan (rpl:interp-lambda (given) (dotimes (i 3) (rpl:wait-for given)))
                               value))))
     (is (= 1 (length (lines-of (told 7)))))
-    (is-true (has-words-p (told 7) "(wait-for given) does not wait: it was given a number, 7"
+    (is-true (has-words-p (told 7) "(wait-for given) does not wait: its argument is a number, 7"
                           "(wait-time 7)"))
     (is-true (has-words-p (told #'car) "a function" "wait-until"))
     (dolist (value '(t ball :done "open" (1 2))) (is (string= "" (told value)))))
@@ -184,7 +184,7 @@
 
 (test with-valve.warns-of-a-function-without-its-parentheses
   (is-true (has-words-p (warnings-of-plan (rpl:with-valve (driver:rpl-robot-valve) 1))
-                        "is a function and no variable" "(with-valve ((" ))
+                        "is a function, not a variable" "(with-valve ((" ))
   (is (string= "" (warnings-of-plan (rpl:with-valve ((driver:rpl-robot-valve)) 1))))
   (is (string= "" (warnings-of-plan (rpl:with-valve (given) 1)))))
 

@@ -96,7 +96,7 @@
                         (make-condition 'type-error :datum datum :expected-type 'number))))
     (run:with-simulation (rover)
       (is-true (has-words-p (told (driver:begin-plan (rpl:make-plan '(rpl:wait-time 1))))
-                            "RUN-PLAN, the values of one that it runs")))
+                            "RUN-PLAN returns the values of a plan")))
     (is-true (has-words-p (told *level*) "FLUENT-VALUE returns the value"))))
 
 ;;; What plans use, and never get.
@@ -132,7 +132,7 @@
                          (told-of-plan (rpl:whenever (and (nisp:vref driver:camera-moved* 0)
                                                           *level* driver:robot-stopped*)
                                          (return)))))
-    (is-true (has-words-p warning "is never true" "no two come at once"
+    (is-true (has-words-p warning "is never true" "no two pulses come at the same instant"
                           "(par (wait-for (vref camera-moved* 0)) (wait-for robot-stopped*))")))
   (is (string= "" (told-of-plan (rpl:wait-for (and driver:robot-stopped* *level*))
                                 (rpl:wait-for (or driver:robot-stopped*
@@ -174,8 +174,9 @@
   (flet ((told (&rest clauses) (warning-about `(rpl:make-policy () ,@clauses))))
     (is-true (has-words-p (told '(:init (rpl:policy-setf 'start 1) t)
                                 '(:recover (print (rpl:policy-get 'strat))))
-                          "(policy-get 'strat) returns NIL, as no clause keeps that. Kept: 'start"))
-    (is-true (has-words-p (told '(:recover (rpl:policy-get 'start))) "no clause keeps that"))
+                          "(policy-get 'strat) returns NIL, because no clause stores it."
+                          "Stored: 'start"))
+    (is-true (has-words-p (told '(:recover (rpl:policy-get 'start))) "no clause stores it"))
     (is (string= "" (told '(:init (rpl:policy-setf 'start 1) t)
                           '(:recover (rpl:policy-get 'start)))))
     (is (string= "" (told '(:init (dolist (name '(a b) t) (rpl:policy-setf name 1)))
@@ -205,7 +206,7 @@
                                    (rpl:with-valve (b)
                                      (rpl:wait-time 1)
                                      (rpl:with-valve (a) 2)))))))))))
-    (is-true (has-words-p text "*WARNING* -> Deadlock at tick" "until one of them is ended")
+    (is-true (has-words-p text "*WARNING* -> Deadlock at tick" "only if one of them is ended")
              "~A" text)))
 
 (test plans.are-told-that-they-do-not-hear-of-others-commands

@@ -46,7 +46,7 @@
 (test policies.that-only-wait-are-warned-of
   (flet ((told (policy) (warnings-of-policy policy '(rpl:wait-time 3))))
     (dolist (policy '((rpl:wait-for driver:robot-stopped*) (rpl:wait-until (< robot 3))))
-      (is-true (has-words-p (told policy) "does nothing when its wait is over" "seq (")))
+      (is-true (has-words-p (told policy) "does nothing after its wait" "seq (")))
     (dolist (policy '((rpl:wait-time 9)
                       (rpl:seq (rpl:wait-for driver:robot-stopped*) (rpl:fail))
                       (rpl:wait-until (rpl:seq (rpl:wait-time 1) (turn-once)))))
@@ -71,11 +71,11 @@
         (fail '((rpl:wait-for driver:robot-movement-error*) (rpl:fail :class :hit))))
     (loop for (policy . body) in `((,steps ,watch) ((turn-once) ,watch) (,steps ,react))
           do (is-true (has-words-p (warnings-of-policy policy (first body))
-                                   "never ends" "The policy comes first"
+                                   "never ends" "Write the policy before the body"
                                    "(with-policy (whenever ...) form...)")))
     (dolist (body `(,fail ((rpl:seq ,@fail))))
       (is-true (has-words-p (apply #'warnings-of-policy steps body)
-                            "waits, and then fails" "The policy comes first"
+                            "waits, and then fails" "Write the policy before the body"
                             "(with-policy (seq (wait-for ...) (fail ...)) form...)")))
     (loop for (policy . body) in `((,watch ,steps) (,watch ,react) (,steps ,leave)
                                    ((turn-once) ,react)
@@ -84,7 +84,7 @@
                                    (,watch ,@fail)
                                    ((rpl:seq (rpl:wait-for robot) (rpl:fail)) ,react)
                                    ((rpl:seq (rpl:wait-for robot) (return)) ,react))
-          do (is (not (search "comes first" (apply #'warnings-of-policy policy body)))))))
+          do (is (not (search "Write the policy" (apply #'warnings-of-policy policy body)))))))
 
 ;;; Handlers for conditions that are not failures.
 

@@ -93,7 +93,7 @@
     (is-true (complains-p (in-run ''(take-two 1 2)) "Give the name, and then its arguments"
                           "(run-plan 'take-two 1 2)"))
     (is-true (complains-p (in-run '#'turn-once) "Give the plan's name instead: 'turn-once"))
-    (is-true (complains-p (in-run '#'car) "A function is no plan"))
+    (is-true (complains-p (in-run '#'car) "A function is not a plan"))
     (is-true (complains-p (in-run ''car) "car is a function, no plan" "(car ...)"))
     (is-true (complains-p (in-run ''command:robot-turn)
                           "(rpl-robot-turn angle) (wait-for robot-stopped*)"))
@@ -105,7 +105,7 @@
     (eval `(rpl:def-interp-proc ,name () 1))
     (handler-bind ((warning #'muffle-warning)) (eval `(defun ,name () 1)))
     (is-true (complains-p `(run:with-simulation (rover) (driver:run-plan ',name))
-                          "It was one until" "was defined as a function"))
+                          "It was a plan until" "was defined as a function"))
     (fmakunbound name)))
 
 (test run-plan.warns-of-a-name-without-a-quote
@@ -152,10 +152,10 @@
                         "was rpl-robot-turn, which has ended"))
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:wait-for driver:robot-stopped*))))
-                        "has issued none by a function such as rpl-robot-turn")))
+                        "has issued no command by a function such as rpl-robot-turn")))
 
 (test plans.that-never-end-by-themselves-are-said-to
-  (let ((words "does not end by itself: let it (return)") (driver:*plan-limit* 10))
+  (let ((words "does not end by itself. End it by (return)") (driver:*plan-limit* 10))
     (flet ((says-p (plan)
              (has-words-p (rover-writes () (driver:run-plan plan)) words)))
       (is-true (says-p (plan-of (rpl:whenever driver:robot-stopped* 1))))

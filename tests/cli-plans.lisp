@@ -71,7 +71,7 @@
               "(def-interp-proc keep () (with-valve (*sluice*) (wait-for (create-fluent 'f nil))))"
               "(def-interp-proc want () (with-valve (*sluice*) 1))")
   (is-true (has-words-p (joined (type-batch "plan linger")) "is in a deadlock"
-                        "changes when a command" "The last one of linger was rpl-robot-turn"))
+                        "changes when a command" "The last command of linger was rpl-robot-turn"))
   (is-true (has-words-p (joined (type-batch "(begin-plan 'keep)" "plan want")) "sluice" "keep has"))
   (is-true (has-words-p (complaint "plan mope") "Only SET-VALUE and PULSE change godot")))
 

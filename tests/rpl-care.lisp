@@ -162,8 +162,8 @@ value...), one after the other."
                                                        :key #'restart-name))
                                     (invoke-restart (find-restart 'tasks::fail-task condition))))
           (rpl:react-to-all runner))))
-    (is (equal '("Let the task stumbling fail." "End the plan stumbling; no message says so."
-                 "End the plan stumbling; a message says so.")
+    (is (equal '("Let the task stumbling fail." "End the plan stumbling, without a message."
+                 "End the plan stumbling, with a message.")
                (reverse offered)))
     (is (= 1 again) "what can be done again is offered once")))
 

@@ -42,9 +42,9 @@
 ;;; Lambda lists.
 
 (defparameter *no-lambda-lists*
-  '(((a . b) "not a proper list") ((a a) "a is there twice") ((nil) "nil is a constant")
+  '(((a . b) "not a proper list") ((a a) "a occurs twice") ((nil) "nil is a constant")
     ((&rest) "after &rest") (((a b)) "lambda list") ((:a) ":a is a constant")
-    ((t) "t is a constant") ((pi) "pi is a constant") ((a &optional (a 1)) "a is there twice")
+    ((t) "t is a constant") ((pi) "pi is a constant") ((a &optional (a 1)) "a occurs twice")
     ((&key &optional a) "lambda list") ((5) "5 is no symbol"))
   "What no plan can have as parameters, and what is said of it.")
 
@@ -67,7 +67,7 @@
     (is (= 1 (length said)) "~S" said)
     (is (search "def-interp-proc hostile" (cdr (first said))))
     (is (search "line 3" (cdr (first said))) "~S" said)
-    (is (search "a is there twice" (cdr (first said))))))
+    (is (search "a occurs twice" (cdr (first said))))))
 
 (test hostile.goals
   (refused-each "t is a constant"
@@ -167,8 +167,8 @@
     (is (rpl:fluent-p (rpl:fl-value-changed fluent :test 'equal :key #'list)))))
 
 (test hostile.task-variables-and-orders
-  (refused-each "the last a string" (rpl:define-task-variable *hostile-tv* 1 :x))
-  (refused-each "tags that are in scope"
+  (refused-each "where documentation is a string" (rpl:define-task-variable *hostile-tv* 1 :x))
+  (refused-each "tags in :order that are in scope"
     (rpl:interp-lambda ()
       (rpl:partial-order ((:tag a (rpl:wait-time 1)) (:tag b (rpl:wait-time 1))) (:order a "b")))
     (rpl:interp-lambda ()

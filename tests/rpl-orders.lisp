@@ -125,8 +125,8 @@
              (rpl:run-plan-alone plan)
              (mapcar #'base:message-text (base:take-messages)))))
     (is (equal (list (format nil "Deadlock at tick 1: p waits for the end of q; q waits for the ~
-                                  end of p. None can go on until one of them is ended, as by a ~
-                                  deadline."))
+                                  end of p. These tasks can go on only if one of them is ~
+                                  ended, for example by a deadline."))
                (texts-of (rpl:interp-lambda ()
                            (rpl:pursue
                             (rpl:partial-order ((:tag p (rpl:wait-time 1) (rpl:join-task q))

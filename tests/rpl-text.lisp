@@ -63,7 +63,7 @@
     ("(going 1 :sped 2)" "not :sped (did you mean :speed?).")
     ("(later 1 2)" "later takes (x), not 2 arguments.")
     ("(lisp-later)" "not 0 arguments.")
-    ("(macro-later 1)" "is a macro that is defined only later.")
+    ("(macro-later 1)" "is a macro that is defined only after this call.")
     ("(car 1 2)" "called with two arguments")
     ("(find 1 (list 2) :tset #'eql)" ":TSET is not a known")
     ("(list no-such-variable)" "undefined variable: ARS-TEST-TEXTS::NO-SUCH-VARIABLE")

@@ -280,7 +280,7 @@ shown at once."
   (destructuring-bind (outcome reason ticks error)
       (come-of '(:run (driver:begin-plan 'forlorn) (run:run-ticks 60)))
     (is (equal '("failure" "deadlock" 60) (list outcome reason ticks)))
-    (is-true (has-words-p error "the plan forlorn waits for" "give one before you wait")
+    (is-true (has-words-p error "the plan forlorn waits for" "issue a command before the wait")
              "~A" error))
   (is (equal '("success" "" 60 "")
              (come-of '(:run (driver:begin-plan 'forlorn) (run:run-ticks 60))

@@ -23,7 +23,7 @@ output."
   (is-true (has-words-p (rover-writes () (driver:run-plan 'forlorn))
                         "the plan forlorn waits for camera-moved* 0, robot-stopped*"
                         "change when a command of the robot ends"
-                        "give one before you wait"))
+                        "issue a command before the wait"))
   (is-true (has-words-p (rover-writes ()
                           (let ((level (rpl:create-fluent 'level 0)))
                             (driver:run-plan (plan-of (rpl:wait-for (> level 3))))))
@@ -32,7 +32,7 @@ output."
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:wait-for (car (list nil))))))
                         "a value that is no fluent"
-                        "Give it the fluent itself")))
+                        "Wait for the fluent itself")))
 
 (test stranded.a-plan-that-was-begun-is-told-once
   (let ((text (rover-writes ()
@@ -75,7 +75,7 @@ output."
       (is (eq t (definitions::message-notable-p message)))
       (is-true (has-words-p (base:message-text message)
                             "the plan forlorn waits for camera-moved* 0, robot-stopped*"
-                            "give one before you wait")))))
+                            "issue a command before the wait")))))
 
 (test with-simulation.tells-of-what-had-no-tick
   (is-true (has-words-p (rover-writes () (driver:begin-plan 'forlorn))
@@ -396,4 +396,4 @@ output."
                 (driver:run-plan
                  (plan-of (rpl:with-tags
                             (:tag o (rpl:seq (rpl:suspend o) (rpl:wait-time 1)))))))))
-    (is-true (has-words-p text "somebody to let o go on, as by WAKE-UP") "~A" text)))
+    (is-true (has-words-p text "a call, such as of WAKE-UP, that lets o go on") "~A" text)))

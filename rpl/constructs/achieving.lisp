@@ -6,25 +6,25 @@
 (define-condition goal-failure (plan-failure)
   ((operator :initarg :operator :initform nil :reader failed-goal-operator)
    (goal :initarg :goal :initform nil :reader failed-goal))
-  (:documentation "A goal cannot be had."))
+  (:documentation "A plan could not reach a goal."))
 
 (addition unknown-goal)
 (define-condition unknown-goal (goal-failure)
   ((known :initarg :known :initform '() :reader unknown-goal-known))
-  (:documentation "No DEF-GOAL says what to do for the goal."))
+  (:documentation "No DEF-GOAL matches the goal."))
 
 (addition goal-not-achieved)
 (define-condition goal-not-achieved (goal-failure)
   ()
-  (:documentation "The plan for a goal has ended, but what it was for is not believed."))
+  (:documentation "The plan for a goal has ended, but the goal is not believed."))
 
 (addition failed-goal failed-goal-operator unknown-goal-known)
 (setf (documentation 'failed-goal 'function)
-      "Return the goal that cannot be had, such as (on a b)."
+      "Return the goal that failed, such as (on a b)."
       (documentation 'failed-goal-operator 'function)
-      "Return what was to be done for it: ACHIEVE, PERCEIVE or BELIEF."
+      "Return the operator of the goal that failed, ACHIEVE, PERCEIVE or BELIEF."
       (documentation 'unknown-goal-known 'function)
-      "Return the patterns of the goals that there are, a list.")
+      "Return a list of the patterns of all goals that are defined for the operator.")
 
 (defmethod write-failure ((failure unknown-goal) stream)
   (format stream "No def-goal matches (~A). ~:[There is none for ~A~;Known: ~:*~{~A~^, ~}~*~]"
@@ -33,13 +33,13 @@
           (plain-name (failed-goal-operator failure))))
 
 (defmethod write-failure ((failure goal-not-achieved) stream)
-  (format stream "(~A) has ended, but that is not believed"
+  (format stream "(~A) has ended, but the goal is not believed"
           (goal-text (failed-goal-operator failure) (failed-goal failure))))
 
 ;;; Running. A frame of one of these remembers a goal-run.
 
 (defstruct (goal-run (:constructor make-goal-run (operator goal)) (:copier nil))
-  "A run of OPERATOR for GOAL, an instance such as (on a b). VALUE is its result."
+  "A run of OPERATOR for GOAL, an instance such as (on a b). VALUE is the result of the run."
   (operator nil :type symbol :read-only t)
   (goal nil :read-only t)
   (value nil))
@@ -68,8 +68,8 @@
                      :known (mapcar #'goal-pattern (goals-of (goal-run-operator goal-run))))))))
 
 (defun ask-belief (frame otherwise)
-  "Begin the plan that finds whether the goal of FRAME is believed; without one, OTHERWISE is its
-value. Return what a step returns."
+  "Begin the plan that finds out whether the goal of FRAME is believed. If no plan does so, continue
+with the value OTHERWISE. Return what a step returns."
   (multiple-value-bind (goal values) (choose-goal 'belief (goal-run-goal (frame-data frame)))
     (if goal
         (enter-goal goal values frame)
@@ -79,8 +79,8 @@ value. Return what a step returns."
   "Make the robot believe GOAL, in a plan. GOAL is evaluated, such as `(on ,a ,b).
 If the matching DEF-GOAL of BELIEF says that GOAL is believed already, return that value and do
 nothing. Otherwise run the matching DEF-GOAL of ACHIEVE and return its value. Fails with
-UNKNOWN-GOAL if there is none, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards. If no
-BELIEF matches, the end of the plan counts as success. (From CRAM and XFRM.)"
+UNKNOWN-GOAL if no ACHIEVE matches, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards.
+If no BELIEF matches, the end of the plan counts as success. (From CRAM and XFRM.)"
   (:arguments goal)
   (:parts (goal function (value-lambda goal scope)))
   (:steps
@@ -102,11 +102,11 @@ BELIEF matches, the end of the plan counts as success. (From CRAM and XFRM.)"
         (fail-goal 'goal-not-achieved task frame)))))
 
 (define-construct perceive (goal)
-  "Find out whether GOAL holds, in a plan, by the matching DEF-GOAL of PERCEIVE. That should not
-change the world. GOAL is evaluated, such as `(on ,a ,b). Return whether GOAL is believed
-afterwards, by the matching DEF-GOAL of BELIEF; if there is none, what was perceived. Fails with
-UNKNOWN-GOAL if no PERCEIVE matches, and as its plan fails. (From CRAM and XFRM; the return value is
-ours.)"
+  "Find out whether GOAL holds, in a plan, by the matching DEF-GOAL of PERCEIVE. The plan of
+PERCEIVE should not change the world. GOAL is evaluated, such as `(on ,a ,b). Return whether GOAL is
+believed afterwards, by the matching DEF-GOAL of BELIEF. If no BELIEF matches, return the value of
+the plan of PERCEIVE. Fails with UNKNOWN-GOAL if no PERCEIVE matches, and if the plan of PERCEIVE
+fails. (From CRAM and XFRM, except for the return value.)"
   (:like achieve)
   (:steps
    (begin
@@ -119,9 +119,9 @@ ours.)"
    (checked (values (frame-up frame) value))))
 
 (define-construct belief (goal)
-  "Return whether the robot believes GOAL, in a plan: the value of the matching DEF-GOAL of BELIEF,
-which should not change the world. GOAL is evaluated, such as `(on ,a ,b). Fails with UNKNOWN-GOAL
-if none matches. (BELIEF of XFRM; the syntax is ours.)"
+  "Return whether the robot believes GOAL, in a plan. This is the value of the matching DEF-GOAL of
+BELIEF, whose plan should not change the world. GOAL is evaluated, such as `(on ,a ,b). Fails with
+UNKNOWN-GOAL if no BELIEF matches. (From XFRM, except for the syntax.)"
   (:like achieve)
   (:steps
    (begin
@@ -144,7 +144,7 @@ if none matches. (BELIEF of XFRM; the syntax is ours.)"
 (addition goals-under-way)
 (defun goals-under-way (&optional (task (current-task)))
   "Return the goals that TASK (default: the calling task) works for, innermost first: a list of
-lists such as (achieve (on a b)). Each serves the next. Goals of the tasks around TASK come last.
-(Ours.)"
+lists such as (achieve (on a b)). Each goal in the list serves the next one. The goals of the tasks
+around TASK come last."
   (mapcar #'goal-run-form
           (remove-if-not #'goal-run-p (mapcar #'frame-data (and task (frames-around task))))))

@@ -7,12 +7,12 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
-  "What keeps plans of one runner at their places. STAYS is a fluent: the stays under way."
+  "The stays of one plan runner's tasks at places. STAYS is a fluent whose value is a list of them."
   (valve (make-valve 'whereabouts) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
 (defstruct (stay (:constructor make-stay (task)) (:copier nil))
-  "That TASK does something at a place."
+  "A record that TASK does something at the place where the robot is."
   (task nil :type task :read-only t))
 
 (defun whereabouts ()
@@ -20,7 +20,7 @@
       (setf (runner-note *runner* 'whereabouts) (make-whereabouts))))
 
 (defun begin-stay (whereabouts)
-  "Note that the task that asks stays where the robot is now. Return the stay."
+  "Note that the calling task stays where the robot is now. Return the stay."
   (let ((stay (make-stay (current-task))))
     (set-value (whereabouts-stays whereabouts)
                (cons stay (fluent-value (whereabouts-stays whereabouts))))
@@ -32,7 +32,8 @@
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))
 
 (defun others-gone (whereabouts)
-  "Return a fluent that is true while no task stays but those that the current task is part of."
+  "Return a fluent that is true while no task stays, except the current task and the tasks around
+it."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
                   (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
@@ -42,16 +43,17 @@
 (define-condition location-lost (plan-failure)
   ((place :initarg :place :initform nil :reader lost-place)
    (attempts :initarg :attempts :initform 0 :reader lost-attempts))
-  (:documentation "AT-LOCATION lost its place more often than :ATTEMPTS allows."))
+  (:documentation "The robot did not stay at the place of an AT-LOCATION, even after :ATTEMPTS
+attempts to return."))
 
 (addition lost-place lost-attempts)
 (setf (documentation 'lost-place 'function)
-      "Return the place that was lost."
+      "Return the place where the robot did not stay."
       (documentation 'lost-attempts 'function)
-      "Return how often the plan went there again.")
+      "Return how often the plan went to the place again.")
 
 (defmethod write-failure ((failure location-lost) stream)
-  (format stream "The place ~A was lost too often; the plan went there again ~D time~:P"
+  (format stream "The robot did not stay at the place ~A; the plan went there ~D more time~:P"
           (lost-place failure) (lost-attempts failure)))
 
 (defun check-attempts (attempts)
@@ -59,11 +61,12 @@
   attempts)
 
 (defun option-given-p (key form)
-  "True if FORM, an AT-LOCATION, has KEY, even with NIL."
+  "True if FORM, an AT-LOCATION, has the keyword KEY, even if its value is NIL."
   (and (get-properties (rest (second form)) (list key)) t))
 
 (defun at-location-text (place there go attempts body)
-  "Return plan text that does BODY at PLACE, where GO leads and THERE is true."
+  "Return plan text that runs BODY at PLACE. GO brings the robot to PLACE, and THERE is true at
+PLACE."
   (with-gensyms (at most left here stay done again lost)
     `(let* ((,at ,place) (,most (check-attempts ,attempts)) (,left ,most)
             (,here (whereabouts)) (,stay nil))
@@ -88,15 +91,16 @@
             (go ,again))))))
 
 (define-construct at-location ((place &key there go attempts) &body body)
-  "Run BODY at PLACE, in a plan. Return its value, only one.
+  "Run BODY at PLACE, in a plan. Return the first value of BODY.
   THERE is a form that is true while the robot is at PLACE; it is watched as by WAIT-UNTIL.
-  GO is plan text that brings the robot there. It is skipped if the robot is there already.
-  ATTEMPTS is how often to go there again, by default 10.
-When the place is lost, BODY evaporates, GO runs again and BODY starts again. A GO that does not
-lead there counts as an attempt. After ATTEMPTS fails with LOCATION-LOST, which names PLACE; fails
-as GO fails. Several plans of one robot: those whose place fits run without driving; others wait, in
-order of arrival, until no plan is at a place. (From CRAM; THERE and GO are ours, where CRAM asks
-its process modules.)"
+  GO is plan text that brings the robot to PLACE. GO is skipped if the robot is at PLACE already.
+  ATTEMPTS is how often the robot may go back to PLACE, by default 10.
+When the robot leaves PLACE, BODY evaporates, GO runs again and BODY starts again. A GO that does
+not lead to PLACE counts as an attempt. After ATTEMPTS, AT-LOCATION fails with LOCATION-LOST, which
+names PLACE. If GO fails, AT-LOCATION fails too.
+Several plans of one robot can use AT-LOCATION. Plans whose THERE is true run without driving. The
+others wait, in order of arrival, until no plan is at a place. (From CRAM, which asks its process
+modules instead of THERE and GO.)"
   (:code (progn
            (unless (and (option-given-p :there form) (option-given-p :go form))
              (reject-clause (text-title) form "(at-location (place :there test :go form) form...)"))

@@ -12,7 +12,8 @@
   `(vector ,@(loop for branch in branches collect (plan-code branch scope))))
 
 (defun start-branches (branches task environment)
-  "Start each of BRANCHES as a part of TASK, which then waits. Return what a step returns."
+  "Start each of BRANCHES as a part of TASK. TASK then waits for its parts. Return what a step
+returns."
   (loop for branch across branches
         for index from 0
         do (start-branch branch task environment index (task-level task)))
@@ -24,8 +25,9 @@
   +parked+)
 
 (define-construct par (&body branches)
-  "Run BRANCHES in parallel, in a plan. Succeed when all have succeeded, with the value of the last
-one, only one value. Fail as soon as one fails, and evaporate the others (manual D.7)."
+  "Run BRANCHES in parallel, in a plan. PAR succeeds when all branches have succeeded, with the
+first value of the last form written. It fails as soon as one branch fails, and evaporates the
+others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
@@ -42,8 +44,8 @@ one, only one value. Fail as soon as one fails, and evaporate the others (manual
      (complete-when-alone task memory))))
 
 (define-construct pursue (&body branches)
-  "Run BRANCHES in parallel, in a plan, until one ends. Succeed with its value, or fail as it
-failed, and evaporate the others (manual D.4; reading 185)."
+  "Run BRANCHES in parallel, in a plan, until one branch ends. PURSUE succeeds with the value of
+that branch, or fails as it failed, and evaporates the others (manual D.4; reading 185)."
   (:manual)
   (:like par)
   (:child-ended
@@ -52,12 +54,13 @@ failed, and evaporate the others (manual D.4; reading 185)."
          (t (complete-when-alone task nil)))))
 
 (defun all-failed (failures task frame)
-  "Return the failure of TASK at FRAME that stands for FAILURES, last first."
+  "Return the failure of TASK at FRAME that contains FAILURES, a list with the newest first."
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
-  "Run BRANCHES in parallel, in a plan. Succeed as soon as one succeeds, with its value, and
-evaporate the others. If all fail, fail with a composite failure."
+  "Run BRANCHES in parallel, in a plan. TRY-ALL succeeds as soon as one branch succeeds, with the
+value of that branch, and evaporates the others. If all branches fail, it fails with a
+COMPOSITE-FAILURE."
   (:like par)
   (:steps
    (begin
@@ -78,7 +81,8 @@ evaporate the others. If all fail, fail with a composite failure."
 ;;;; One after the other
 
 (defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
-  "What is left to try, in ORDER: conses (node . environment); and the FAILURES, last first."
+  "The attempts left to try, and the FAILURES so far, the newest first. ORDER is a list of the
+attempts left, each a cons (node . environment)."
   (order '() :type list)
   (failures '() :type list))
 
@@ -87,7 +91,8 @@ evaporate the others. If all fail, fail with a composite failure."
   (loop for attempt across attempts collect (cons attempt environment)))
 
 (defun order-by-chance (attempts environment dice)
-  "Do as ORDER-AS-WRITTEN, in an order that DICE choose; as written if there are none."
+  "Do as ORDER-AS-WRITTEN, in a random order drawn from DICE. Without DICE, keep the order as
+written."
   (loop with left = (order-as-written attempts environment dice)
         while left
         collect (let ((chosen (if dice (roll-element left dice) (first left))))
@@ -95,8 +100,8 @@ evaporate the others. If all fail, fail with a composite failure."
                   chosen)))
 
 (define-construct try-in-order (&body attempts)
-  "Run ATTEMPTS in a plan one after the other until one succeeds; return its value. If all fail,
-fail with a composite failure."
+  "Run ATTEMPTS in a plan one after the other until one succeeds; return the value of that attempt.
+If all attempts fail, fail with a COMPOSITE-FAILURE."
   (:parts (attempts simple-vector (branches-code attempts scope))
           (order function '(function order-as-written)))
   (:steps
@@ -119,8 +124,8 @@ fail with a composite failure."
      (values t frame nil))))
 
 (define-construct try-one (&body attempts)
-  "Do as TRY-IN-ORDER, but in random order, by the dice of the plan runner; as written if it has
-none."
+  "Do as TRY-IN-ORDER, but in random order, drawn from the dice of the plan runner. If the runner
+has no dice, keep the order as written."
   (:like try-in-order)
   (:parts (attempts simple-vector (branches-code attempts scope))
           (order function '(function order-by-chance))))
@@ -128,8 +133,8 @@ none."
 ;;; For each element.
 
 (define-construct try-each-in-order ((variable sequence) &body body)
-  "Run BODY in a plan with VARIABLE bound to each element of SEQUENCE in turn until it succeeds;
-return its value. If it never does, fail with a composite failure."
+  "Run BODY in a plan, with VARIABLE bound to one element of SEQUENCE after the other, until BODY
+succeeds. Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE-FAILURE."
   (:like try-in-order)
   (:arguments sequence)
   (:parts (attempts simple-vector `(vector ,(each-body-code variable body scope)))
@@ -144,20 +149,20 @@ return its value. If it never does, fail with a composite failure."
 ;;;; For each element of a sequence
 
 (defun turn-environment (environment item tags)
-  "Return an environment, in ENVIRONMENT, of ITEM and of new tasks, one for each of TAGS."
+  "Return a new environment inside ENVIRONMENT, with ITEM and a new task for each of TAGS."
   (coerce (list* environment item (loop for tag in tags collect (make-task tag +nothing+)))
           'simple-vector))
 
 (defun turn-code (variable body scope)
-  "Return code for BODY in the environment of a turn: VARIABLE and the tags in BODY are its own."
+  "Return code for BODY in the environment of one turn, with its own VARIABLE and its own tags."
   (let ((tags (tags-in body)))
     (binding-body-code body (tagged-scope (variable-scope (single-scope scope)
                                                           (cons variable tags))
                                           tags 2))))
 
 (define-construct par-loop ((variable sequence) &body body)
-  "Run BODY in parallel for all elements of SEQUENCE, in a plan. Each has its own VARIABLE and tags.
-Succeed and fail as PAR does."
+  "Run BODY in parallel for all elements of SEQUENCE, in a plan. Each branch has its own VARIABLE
+and tags. PAR-LOOP succeeds and fails as PAR does."
   (:arguments sequence)
   (:parts (items function (value-lambda sequence scope))
           (tags list `',(tags-in body))
@@ -186,7 +191,8 @@ Succeed and fail as PAR does."
 ;;;; Some of several
 
 (defstruct (tally (:constructor make-tally (missing left)) (:copier nil))
-  "How many successes are MISSING, how many branches are LEFT; VALUES and FAILURES, last first."
+  "The count of outcomes: how many successes are MISSING and how many branches are LEFT. VALUES and
+FAILURES are lists with the newest first."
   (missing 0 :type fixnum)
   (left 0 :type fixnum)
   (values '() :type list)
@@ -200,7 +206,8 @@ Succeed and fail as PAR does."
     (:failed (push result (tally-failures tally)))))
 
 (defun decide-by-tally (task frame tally branches)
-  "End what TASK waits in at FRAME if TALLY, of so many BRANCHES, has decided the outcome."
+  "End the construct in which TASK waits at FRAME, if TALLY decides its outcome. BRANCHES is the
+number of branches."
   (cond ((zerop (tally-missing tally))
          (complete task (reverse (tally-values tally))))
         ((> (tally-missing tally) (tally-left tally))
@@ -210,10 +217,11 @@ Succeed and fail as PAR does."
                                   task frame)))))
 
 (define-construct par-at-least (count &body branches)
-  "Run BRANCHES in parallel, in a plan. Succeed as soon as COUNT of them have succeeded, with the
-list of their values in the order in which they came, and evaporate the others. Fail with a
-composite failure as soon as too many have failed. COUNT is an integer from 0 to the number of
-branches (ours; CRAM's statecharts of 2026 have a PAR with minimum_success)."
+  "Run BRANCHES in parallel, in a plan. PAR-AT-LEAST succeeds as soon as COUNT branches have
+succeeded, and evaporates the others. Its value is the list of the branches' values in the order in
+which they came. It fails with a COMPOSITE-FAILURE as soon as too many branches have failed. COUNT
+is an integer from 0 to the number of branches. (Not from CRAM, whose statecharts of 2026 have a PAR
+with minimum_success.)"
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
           (branches simple-vector (branches-code branches (single-scope scope))))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 (define-expression failing
-  "Fail as FAIL would with the list that ARGUMENTS of the environment returns."
+  "Fail as FAIL would with the list that the function ARGUMENTS returns for the environment."
   (:parts (arguments function))
   (:step
    (let ((failure (make-failure (funcall arguments environment))))
@@ -11,7 +11,7 @@
 
 (defun check-fail (form)
   (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
-    (doubt-form form "fail takes ~(~S~) for the class of the failure. Did you mean :class?"
+    (doubt-form form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
                 (second form))))
 
 (defun check-class (form scope)
@@ -39,7 +39,7 @@
     (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
 
 (defun failure-specifier-p (type)
-  "True if TYPE can be what a clause is for: a symbol, or (or TYPE...)."
+  "True if TYPE can be the type of a clause of HANDLE-FAILURE: a symbol, or (or TYPE...)."
   (if (consp type)
       (and (symbolp (first type)) (same-name-p 'or (first type))
            (rest type) (proper-list-p type)
@@ -63,10 +63,12 @@
 (defparameter *constructs-without-failures*
   '("SEQ" "PAR" "PURSUE" "N-TIMES" "WAIT-FOR" "WAIT-TIME" "WAIT-UNTIL" "SET-VALUE" "PULSE"
     "FLUENT-VALUE" "VREF" "WHENEVER" "WITH-POLICY" "WITH-VALVE")
-  "Operators that fail with the code of no command unless what is in them does.")
+  "Names of operators that do not fail with the error code of a command, unless a form in them
+does.")
 
 (defun may-fail-so-p (form code)
-  "True if FORM, in a plan, may fail with class CODE, as far as is known of what it calls."
+  "True if FORM, in a plan, may fail with class CODE. Uses what is known of the functions that FORM
+calls."
   (let ((operator (first form)))
     (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
                            (or (not (keywordp class)) (eq class code))))
@@ -77,7 +79,8 @@
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
 (defun doubt-code (code body form)
-  "Warn if CODE, a class that FORM handles in BODY, is only how a command in BODY may end."
+  "Warn if FORM handles the class CODE in BODY, where CODE is only the error code of a command.
+Commands do not fail."
   (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
          (fluent (and command (fluent-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))
@@ -87,10 +90,11 @@
                       (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)
-  "Run BODY in a plan, and handle a failure by the first of CLAUSES, (type (variable) form...),
-with a matching type: T, a class given to FAIL, a condition type of failures or of Lisp, or (or
-type...). The handler may wait. (return value) in it ends the whole with VALUE, and (retry) runs
-BODY again. At the end of the handler the failure propagates. Return all values of BODY."
+  "Run BODY in a plan, and handle a failure by the first of CLAUSES with a matching type. A clause
+is (type (variable) form...). A type is T, a class given to FAIL, a condition type of failures or of
+Lisp, or (or type...). The handler may wait. In a handler, (return value) ends WITH-FAILURE-HANDLING
+with VALUE, and (retry) runs BODY again. If a handler reaches its end, the failure propagates.
+Return all values of BODY."
   (:parts (body node (scope-retry scope))
           (types list `',(mapcar #'first clauses))
           (handlers simple-vector `(vector ,@(loop for clause in clauses
@@ -140,7 +144,7 @@ BODY again. At the end of the handler the failure propagates. Return all values 
   (:like with-failure-handling))
 
 (define-construct retry ()
-  "In a handler of WITH-FAILURE-HANDLING: run its body again."
+  "Run the body of the WITH-FAILURE-HANDLING again, in one of its handlers."
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
@@ -160,7 +164,7 @@ BODY again. At the end of the handler the failure propagates. Return all values 
 
 (define-construct with-retry-counters (counters &body body)
   "Run BODY in a plan with COUNTERS, each (name number), for DO-RETRY, GET-COUNTER and
-RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
+RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
   (:in-lisp (progn
               (check-counters counters)
               `(let ,(loop for (name number) in counters
@@ -170,7 +174,8 @@ RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "In a handler: if COUNTER is positive, decrement it and run BODY, usually (retry). (From CRAM.)"
+  "Decrement COUNTER and run BODY, usually (retry), if COUNTER is positive. For use in a failure
+handler. (From CRAM.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))
@@ -181,13 +186,15 @@ RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
 
 (addition get-counter)
 (defmacro get-counter (counter &environment environment)
-  "Return how often DO-RETRY will still run for COUNTER, of WITH-RETRY-COUNTERS. (From CRAM.)"
+  "Return how often DO-RETRY will still run its body for COUNTER, a counter of WITH-RETRY-COUNTERS.
+(From CRAM.)"
   (check-counter "get-counter" counter environment)
   counter)
 
 (addition reset-counter)
 (defmacro reset-counter (counter &environment environment)
-  "Set COUNTER, of WITH-RETRY-COUNTERS, to its first value, and return that. (From CRAM.)"
+  "Set COUNTER, a counter of WITH-RETRY-COUNTERS, to its initial value, and return that value. (From
+CRAM.)"
   (check-counter "reset-counter" counter environment)
   `(setq ,counter ,(start-variable counter)))
 
@@ -206,7 +213,8 @@ RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
   (shiftf (frame-data frame) nil))
 
 (defun after-cleanup (first signal task)
-  "Return the signal to go on with after SIGNAL has ended a cleanup that FIRST had caused."
+  "Return NIL and FIRST if the signal FIRST, which caused a cleanup, continues after the cleanup
+ended with SIGNAL. Return NIL alone if SIGNAL continues instead."
   (let ((failed (typep signal 'plan-failure)))
     (when (or (eq first :evaporate) (and failed (not (completion-p first))))
       (when failed (note-suppressed first signal task))
@@ -222,7 +230,7 @@ RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
                " was given up at tick " (plan-time) ": it took longer than its limit."))
 
 (defun cleanup-form (cleanup limit)
-  "Return the form for CLEANUP that takes at most as many ticks as LIMIT, a form or NIL, says."
+  "Return the form that runs CLEANUP for at most LIMIT ticks. LIMIT is a form, or NIL for no limit."
   (if limit
       (note-own-text `(pursue ,cleanup
                               (seq (wait-time ,limit) (report-given-up ',cleanup))))
@@ -230,7 +238,7 @@ RESET-COUNTER. A counter is a variable, too. (From CRAM; the variable is ours.)"
 
 (define-construct evap-protect (protected cleanup &key limit)
   "Run PROTECTED, a form, in a plan, and then CLEANUP in every case: success, failure, evaporation
-or a RETURN that leaves PROTECTED. CLEANUP may wait. If it takes more than LIMIT ticks, it is
+or a RETURN that leaves PROTECTED. CLEANUP may wait. If CLEANUP takes more than LIMIT ticks, it is
 abandoned, with a warning. A failure of CLEANUP counts only if PROTECTED succeeded. Return all
 values of PROTECTED."
   (:parts (protected node (plan-code protected scope))

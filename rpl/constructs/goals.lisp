@@ -9,12 +9,13 @@
 ;;; name, numbers by value.
 
 (defstruct (hole (:constructor make-hole (variable index)) (:copier nil))
-  "The place of VARIABLE, the one number INDEX, in a shape."
+  "A place in a shape where VARIABLE matches anything. INDEX is the number of the variable."
   (variable nil :type symbol :read-only t)
   (index 0 :type fixnum :read-only t))
 
 (defun parse-pattern (pattern)
-  "Return the shape of PATTERN, in which ?x stands for the variable x, and its variables in order."
+  "Return the shape of PATTERN, in which ?x stands for the variable x, and a list of its variables
+in order."
   (let ((holes '()))
     (labels ((hole-of (variable)
                (or (find variable holes :key #'hole-variable)
@@ -28,7 +29,8 @@
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun fits-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, gets what is in the holes."
+  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the values of the
+holes."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -40,7 +42,7 @@
         (t (value-equal shape object))))
 
 (defun match-shape (shape count object)
-  "Return true if SHAPE, with COUNT holes, matches OBJECT, and a list of what is in the holes."
+  "Return true if SHAPE, with COUNT holes, matches OBJECT, and a list of the values of the holes."
   (let ((values (make-array count)))
     (fill values values)                ; an object that is in no pattern and no goal
     (and (fits-p shape object values)
@@ -64,13 +66,14 @@
 (addition goal-p)
 (define-record (goal (:constructor make-goal
                          (operator pattern shape variables procedure documentation)))
-  "How to do something for what a pattern matches, as DEF-GOAL defines it."
+  "A plan for the goals that match a pattern, as DEF-GOAL defines it."
   (operator nil symbol
-            "what the goal's plan does for it: ACHIEVE, PERCEIVE or BELIEF" :writable :addition)
+            "the operator of the goal, ACHIEVE, PERCEIVE or BELIEF" :writable :addition)
   (pattern nil t "the pattern of the goal, as it was defined" :writable :addition)
   (shape nil t :writable)
   (variables '() list :writable)
-  (procedure nil (or null procedure) "the procedure of VARIABLES that does it, or NIL" :writable)
+  (procedure nil (or null procedure) "the plan procedure with the parameters VARIABLES, or
+NIL" :writable)
   (documentation nil (or null string) :writable))
 
 (defun goal-text (operator pattern)
@@ -94,12 +97,13 @@
   (match-shape (goal-shape goal) (length (goal-variables goal)) (goal-shape other)))
 
 (defun more-specific-p (goal other)
-  "True if the pattern of OTHER matches all that of GOAL does, and more."
+  "True if the pattern of OTHER matches everything that the pattern of GOAL matches, and more."
   (and (goal-covers-p other goal)
        (not (goal-covers-p goal other))))
 
 (defun choose-goal (operator instance)
-  "Return the goal for OPERATOR and INSTANCE, and the values of its variables; NIL if none fits."
+  "Return the goal for OPERATOR and INSTANCE, and the values of its variables. Return NIL if no goal
+matches."
   (let ((best nil) (values '()))
     (dolist (goal (goals-of operator) (values best values))
       (multiple-value-bind (matches found)
@@ -109,14 +113,16 @@
                 values found))))))
 
 (defun advice-on-goal (name)
-  "Return in a sentence how to write a goal, if NAME begins the pattern of one; or NIL."
+  "Return a sentence about how to write a goal, if NAME is the first word of a goal's pattern;
+otherwise NIL."
   (let ((goal (find-if (lambda (goal)
                          (let ((first (first (goal-pattern goal))))
                            (and first (symbolp first) (same-name-p name first))))
                        (all-goals))))
     (and goal
-         (format nil "it begins a goal, which is quoted: (~(~A~) '(~(~A~) ...)), or with values ~
-                      of variables (~2:*~(~A~) `(~(~A~) ,x ...))."
+         (format nil "it is the first word of a goal. Quote the goal: (~(~A~) '(~(~A~) ...)); with
+values ~
+                      of variables write (~2:*~(~A~) `(~(~A~) ,x ...))."
                  (goal-operator goal) (plain-name name)))))
 
 ;;; Defining. A pattern that matches the same as one defined before redefines that one.
@@ -152,21 +158,23 @@
 
 (addition def-goal)
 (define-user-macro def-goal (&whole form (operator pattern) &body body &environment environment)
-  "Define what OPERATOR, one of ACHIEVE, PERCEIVE and BELIEF, does for goals that PATTERN matches,
-such as (on ?a ?b): BODY, plan text, perhaps after a documentation string, in which the variables a
-and b are what ?a and ?b stand for; ?x twice matches the same twice, and a pattern may end in a dot
-and ?x. BODY's value, or that of (succeed-with value), is the goal's. Of several patterns that
-match, the most specific is meant, or else the one defined first (ours; CRAM's is the first). A
-pattern that differs only in its variables replaces the definition. Signals MALFORMED-DEFINITION.
-(From CRAM; the variables are as in DEF-INTERP-MACRO.)"
+  "Define BODY as the plan for goals that match PATTERN, such as (on ?a ?b). OPERATOR is ACHIEVE,
+PERCEIVE or BELIEF. BODY is plan text, perhaps after a documentation string. In BODY the variables a
+and b have the values that ?a and ?b match. A variable that occurs twice must match the same value
+twice. A pattern may end in a dot and ?x. The value of the goal is the value of BODY, or the value
+given to SUCCEED-WITH.
+If several patterns match a goal, the most specific one is used, and among equals the one defined
+first. (CRAM uses the first that matches.) A pattern that differs from an older one only in the
+names of its variables replaces it. Signals MALFORMED-DEFINITION. (From CRAM; the variables are as
+in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()
                          (list (goal-form definition operator pattern body environment))))))
 
 (define-construct succeed-with (&rest values)
-  "In the body of DEF-GOAL: end it successfully, with VALUES. (CRAM's SUCCEED, a name that commands
-have here.)"
+  "End the body of a DEF-GOAL successfully, with VALUES. (From CRAM, where the name is SUCCEED. Here
+SUCCEED is a name for commands.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
              (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
              (reject-clause (text-title) form "succeed-with only in the body of a def-goal"))))

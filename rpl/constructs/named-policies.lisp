@@ -7,9 +7,10 @@
 
 (addition policy-p)
 (define-record (policy (:constructor %make-policy (name lambda-list init check recover clean-up)))
-  "What is to hold while a part of a plan runs, and what to do about it."
+  "A policy: a condition that must hold while a part of a plan runs, and the reactions if it does
+not."
   (name nil symbol
-        "the symbol that the policy is called, NIL if MAKE-POLICY made it" :writable :addition)
+        "the name of the policy, a symbol; NIL if MAKE-POLICY made the policy" :writable :addition)
   (lambda-list '() list "the lambda list of the policy's clauses" :writable :addition)
   (init nil (or null procedure) :writable)
   (check nil (or null procedure) :writable)
@@ -26,12 +27,13 @@
 (addition policy-failure)
 (define-condition policy-failure (plan-failure)
   ((policy :initarg :policy :initform nil :reader failed-policy))
-  (:documentation "A named policy does not hold."))
+  (:documentation "A named policy failed because its condition does not hold."))
 
 (addition policy-init-failed)
 (define-condition policy-init-failed (policy-failure)
   ()
-  (:documentation "The :INIT of a named policy returned false: nothing else was done (from CRAM)."))
+  (:documentation "The :INIT of a named policy returned false, so the body did not run (from
+CRAM)."))
 
 (addition policy-check-condition-met)
 (define-condition policy-check-condition-met (policy-failure)
@@ -39,27 +41,27 @@
   (:documentation "The :CHECK of a named policy became true while its body ran (from CRAM)."))
 
 (addition failed-policy)
-(setf (documentation 'failed-policy 'function) "Return the policy that does not hold.")
+(setf (documentation 'failed-policy 'function) "Return the named policy that failed.")
 
 (defmethod write-failure ((failure policy-init-failed) stream)
-  (format stream "~A could not begin: its :init returned NIL, not a true value such as T"
+  (format stream "~A did not begin, because its :init returned NIL and not a true value such as T"
           (failed-policy failure)))
 
 (defmethod write-failure ((failure policy-check-condition-met) stream)
-  (format stream "The condition of ~A was met" (failed-policy failure)))
+  (format stream "The :check of ~A became true" (failed-policy failure)))
 
 ;;; A use.
 
 (defstruct (policy-use (:constructor make-policy-use (policy arguments)) (:copier nil)
                        (:conc-name use-))
-  "That POLICY is in force with ARGUMENTS. MEMORY is a property list."
+  "A use of POLICY with ARGUMENTS, while a body runs under it. MEMORY is a property list."
   (policy nil :type policy :read-only t)
   (arguments '() :type list :read-only t)
   (memory '() :type list))
 
 (defun begin-use (policy arguments)
-  "Return a new use of POLICY, or the one of that name, with ARGUMENTS. Signals WRONG-ARGUMENT if it
-does not take these."
+  "Return a new use of POLICY, a policy or its name, with ARGUMENTS. Signals WRONG-ARGUMENT if
+POLICY does not take ARGUMENTS."
   (let* ((policy (find-policy policy))
          (parameters (policy-lambda-list policy))
          (trouble (misfit (shape-of parameters) arguments :wrong-p (constantly t))))
@@ -74,26 +76,27 @@ does not take these."
   (setf (getf (use-memory use) name) value))
 
 (define-global +use-variable+ (make-symbol "USE")
-  "The variable of each clause of a policy that holds its use.")
+  "The variable in which each clause of a policy finds the current use of the policy.")
 
 (defun check-in-clause (form environment)
   (unless (local-variable-p +use-variable+ environment)
     (reject-clause (text-title) form
-                   (format nil "~(~A~) only in a clause of define-policy or make-policy, where it ~
-                                remembers, and outside of any other interp-lambda there"
+                   (format nil "~(~A~) only in a clause of define-policy or make-policy, and not ~
+                                inside another interp-lambda in the clause"
                            (first form)))))
 
 (addition policy-get)
 (defmacro policy-get (&whole form name &environment environment)
-  "In a clause of a policy: return the value last stored under NAME, which is evaluated, while the
-policy is in force; NIL if there is none. See POLICY-SETF (from CRAM)."
+  "Return the value last stored under NAME by POLICY-SETF, or NIL. For use in a clause of a policy.
+NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
   (check-in-clause form environment)
   `(remembered ,+use-variable+ ,name))
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
-  "In a clause of a policy: store VALUE under NAME, both evaluated, for the other clauses and as
-long as the policy is in force. Return VALUE (from CRAM)."
+  "Store VALUE under NAME for the other clauses of a policy, and return VALUE. For use in a clause
+of a policy. VALUE and NAME are evaluated. The value is kept while the policy is in force (from
+CRAM)."
   (check-in-clause form environment)
   `(remember ,+use-variable+ ,name ,value))
 
@@ -109,15 +112,16 @@ long as the policy is in force. Return VALUE (from CRAM)."
           do (reject-clause definition clause "each kind of clause once")))
 
 (defun clause-code (kind parameters clauses environment)
-  "Return code for the plan of the clause of KIND in CLAUSES; NIL if there is none. There always is
-an :INIT, which checks the arguments."
+  "Return code for the plan of the clause of KIND in CLAUSES; NIL if CLAUSES have no such clause. A
+missing :INIT counts as (:init t), because the plan of :INIT checks the arguments."
   (let ((clause (or (assoc kind clauses) (and (eq kind :init) '(:init t)))))
     (and clause
          (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
                         environment))))
 
 (defun names-in-calls (operator form)
-  "Return the forms for the names in the calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
+  "Return the name arguments of all calls of OPERATOR in FORM. OPERATOR is POLICY-GET or
+POLICY-SETF."
   (when (consp form)
     (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
             (loop for rest = form then (cdr rest)
@@ -128,8 +132,8 @@ an :INIT, which checks the arguments."
     (when (every #'constantp kept)
       (dolist (name (set-difference (names-in-calls 'policy-get clauses) kept :test #'equal))
         (when (constantp name)
-          (doubt-definition "~A: (policy-get ~(~S~)) returns NIL, as no clause keeps that.~
-                             ~@[ Kept: ~{~(~S~)~^, ~}.~]"
+          (doubt-definition "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
+                             ~@[ Stored: ~{~(~S~)~^, ~}.~]"
                             definition name kept))))))
 
 (defun policy-code (definition name parameters clauses environment)
@@ -145,23 +149,23 @@ an :INIT, which checks the arguments."
                                   &environment environment)
   "Define NAME, also a special variable, as a policy with PARAMETERS, an ordinary lambda list. The
 clauses, after an optional documentation string, are plan text: they may wait.
-  (:init form...)      runs first; if it returns false the policy fails with POLICY-INIT-FAILED.
+  (:init form...)      runs first. If :INIT returns false, the policy fails with POLICY-INIT-FAILED.
   (:check form...)     is the condition that must not become true. It is watched as by WAIT-UNTIL,
-                       before each step of the body: a fluent or network is waited for, anything
-                       else is tested at each tick.
-  (:recover form...)   runs when the check has become true and the body has evaporated; then the
+                       before each step of the body. A fluent or network is waited for; any other
+                       form is tested at each tick.
+  (:recover form...)   runs when the check has become true and the body has evaporated. Then the
                        policy fails with POLICY-CHECK-CONDITION-MET.
   (:clean-up form...)  runs last, in every case, even if :INIT fails; but not if :INIT returned
                        false.
 The clauses share values by POLICY-GET and POLICY-SETF. See WITH-NAMED-POLICY. Return NAME. Signals
-MALFORMED-DEFINITION. (From CRAM, where it polls.)"
+MALFORMED-DEFINITION. (From CRAM, where the check is polled.)"
   (let ((definition (title "define-policy" name))
         (text (and (stringp (first clauses)) (pop clauses))))
     (expand-definition
      form environment
      (lambda ()
        (unless (and name (symbolp name) (not (keywordp name)))
-         (reject-clause definition name "a symbol, no keyword, as the name"))
+         (reject-clause definition name "a symbol that is no keyword, as the name"))
        (values `((register *policys* ',name
                            ,(policy-code definition name parameters clauses environment)
                            :variable t)
@@ -170,14 +174,15 @@ MALFORMED-DEFINITION. (From CRAM, where it polls.)"
 
 (addition make-policy)
 (define-user-macro make-policy ((&rest parameters) &body clauses &environment environment)
-  "Return a policy without a name; PARAMETERS and CLAUSES are as for DEFINE-POLICY. Its clauses see
-the variables around it. (From CRAM, where it takes a name.)"
+  "Return a policy without a name. PARAMETERS and CLAUSES are as for DEFINE-POLICY. The clauses see
+the variables around MAKE-POLICY. (From CRAM, where MAKE-POLICY takes a name.)"
   (policy-code "make-policy" nil parameters clauses environment))
 
 ;;; Being in force.
 
 (defun policed-text (policy arguments body)
-  "Return plan text that does BODY while POLICY with ARGUMENTS is in force, all of them forms."
+  "Return plan text that runs BODY while POLICY is in force with ARGUMENTS. BODY and ARGUMENTS are
+lists of forms, POLICY is a form."
   (with-gensyms (use over met value refused)
     (flet ((clause (reader)
              `(if (,reader (use-policy ,use))
@@ -216,14 +221,14 @@ the variables around it. (From CRAM, where it takes a name.)"
              (name-without-quote-p (first arguments) scope)
              (fboundp (first arguments)))
     (reject-clause (text-title) form
-                   (format nil "the list of the policy's arguments before the body, () if it takes ~
-                                none: (with-named-policy ~(~S~) () ~(~A~) ...)"
+                   (format nil "the list of the policy's arguments before the body, () if the ~
+                                policy takes none: (with-named-policy ~(~S~) () ~(~A~) ...)"
                            (abridged (second form)) (form-text arguments 40)))))
 
 (define-construct with-named-policy (policy arguments &body body)
-  "Run BODY in a plan while POLICY, a policy or its name, is in force with ARGUMENTS, a list of
-forms. See DEFINE-POLICY. Return the value of BODY. (From CRAM; the manual's WITH-POLICY takes plan
-text as its policy.)"
+  "Run BODY in a plan while POLICY, a policy or its name, is in force. ARGUMENTS is a list of forms,
+whose values the policy receives. See DEFINE-POLICY. Return the first value of BODY. (From CRAM; the
+policy of the manual's WITH-POLICY is plan text.)"
   (:code
    (progn
      (check-policy-arguments arguments form scope)
@@ -231,7 +236,7 @@ text as its policy.)"
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
-force. The first starts first and takes precedence over the others. (From CRAM.)"
+force. The first policy starts first and takes precedence over the others. (From CRAM.)"
   (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)

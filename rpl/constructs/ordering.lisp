@@ -13,7 +13,7 @@
                      (and (eq :succeeded (task-state target)) (not (escape-p result)) result))))))
 
 (defstruct (joining (:constructor make-joining (target watcher)) (:copier nil))
-  "What a task waits for that joins TARGET; WATCHER watches its status."
+  "The wait of a task for the end of TARGET. WATCHER watches the status of TARGET."
   (target nil :type task :read-only t)
   (watcher nil :type watcher :read-only t))
 
@@ -39,8 +39,8 @@
     (report-circle task)))
 
 (define-construct join-task (task)
-  "Wait in a plan until TASK is over. Return its value, or fail as it failed; return NIL if it
-evaporated or was left (from CRAM; the last is ours)."
+  "Wait in a plan until TASK is over. Return the value of TASK, or fail as TASK failed. Return NIL
+if TASK evaporated or was left by a non-local exit (from CRAM, except for NIL)."
   (:arguments task)
   (:parts (target function (value-lambda task scope)))
   (:steps
@@ -57,8 +57,8 @@ evaporated or was left (from CRAM; the last is ours)."
 ;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
 
 (defstruct (order (:constructor make-order (earlier later)) (:copier nil))
-  "That the task LATER starts only when EARLIER, a task or fluent, is over, or true. WATCHER waits
-for that."
+  "The constraint that the task LATER starts only when EARLIER is over, if it is a task, or true, if
+it is a fluent. WATCHER waits for EARLIER."
   (earlier nil :type (or task fluent) :read-only t)
   (later nil :type task :read-only t)
   (watcher nil :type (or null watcher)))
@@ -94,7 +94,7 @@ for that."
         earlier)))
 
 (defun keep-order (order task)
-  "Let ORDER hold, on behalf of TASK, unless it is met already."
+  "Let ORDER hold, on behalf of TASK, unless ORDER is met already."
   (let ((fluent (order-fluent order)))
     (unless (fluent-value fluent)
       (hold-back (order-later order) order)
@@ -102,7 +102,8 @@ for that."
       (watch (order-watcher order)))))
 
 (defun checked-orders (pairs task)
-  "Return the orders of PAIRS, conses (earlier . later). Signals WRONG-ARGUMENT and MISUSE."
+  "Return an order for each of PAIRS, conses (earlier . later), on behalf of TASK. Signals
+WRONG-ARGUMENT and MISUSE."
   (loop for (earlier . later) in pairs
         do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
                            "a task, such as the name of a :tag, or a fluent")
@@ -115,21 +116,23 @@ for that."
 ;;; Reading the constraints.
 
 (defun constraint-list (constraints)
-  "Return CONSTRAINTS, (:order a b) forms or lists of such, as one list."
+  "Return CONSTRAINTS as one list of (:order a b) forms. CONSTRAINTS are such forms or lists of such
+forms."
   (loop for constraint in constraints
         if (and (consp constraint) (consp (first constraint)))
           append constraint
         else collect constraint))
 
 (defun check-visible (form name steps scope)
-  "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names nothing."
+  "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names no tag or
+variable."
   (unless (or (consp name)
               (member name (tags-in steps))
               (and (symbolp name)
                    (not (constantp name))
                    (known-variable-p name (scope-environment scope))))
     (reject-clause (text-title) form
-                   (format nil "in :order tags that are in scope, not ~(~S~)" (abridged name)))))
+                   (format nil "tags in :order that are in scope, not ~(~S~)" (abridged name)))))
 
 (defun read-orders (steps constraints form scope)
   (loop for constraint in (constraint-list constraints)
@@ -143,7 +146,8 @@ for that."
 ;;; tagged within a tagged form starts and ends within that.
 
 (defun nested-tags (forms)
-  "Return a list of (outer inner), the names of tags in FORMS of which one is within the other."
+  "Return a list of (outer inner): each pair of tag names in FORMS where the tag inner is inside the
+tag outer."
   (loop for form in forms
         append (cond ((atom form) '())
                      ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))
@@ -155,7 +159,7 @@ for that."
                                            while (consp tail) collect (car tail)))))))
 
 (defun precedences (orders nestings)
-  "Return a list of (earlier later), each (:start name) or (:end name)."
+  "Return a list of (earlier later), where each element is (:start name) or (:end name)."
   (append (loop for name in (remove-duplicates (mapcan #'copy-list (append orders nestings)))
                 collect (list (list :start name) (list :end name)))
           (loop for (earlier later) in orders
@@ -165,7 +169,7 @@ for that."
                 collect (list (list :end inner) (list :end outer)))))
 
 (defun circular-p (precedences)
-  "True if PRECEDENCES, a list of (earlier later), can never all hold."
+  "True if the pairs (earlier later) in PRECEDENCES contain a cycle."
   (loop for open = (remove-if-not (lambda (pair)
                                     (find (first pair) precedences :key #'second :test #'equal))
                                   precedences)
@@ -176,7 +180,7 @@ for that."
 (defun check-orders (orders steps form)
   (when (circular-p (precedences (remove-if-not (lambda (order) (every #'symbolp order)) orders)
                                  (nested-tags steps)))
-    (reject-clause (text-title) form "constraints without a circle: some steps could never start")))
+    (reject-clause (text-title) form "constraints without a cycle: some steps could never start")))
 
 (defun orders-lambda (steps constraints form scope)
   (let ((orders (read-orders steps constraints form scope)))
@@ -191,13 +195,14 @@ for that."
   (when memory (mapc #'lift-order (shiftf (cdr memory) '()))))
 
 (define-construct partial-order (steps &body constraints)
-  "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. By (:order a b) the task b does
-not start before a is over, in whatever way it ends.
-  Both are tags, (:tag name form), of STEPS or in them or around, or forms whose values are tasks.
-  a may also be a fluent: b starts when it is true or has been pulsed since.
-Orders hold until the whole ends. A task that has started already cannot be b. Cycles of the tags in
-STEPS are errors when the plan is defined; other cycles are reported as a deadlock. Return the value
-of the last step (from CRAM; the value is ours)."
+  "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. With the constraint (:order a
+b), the task b does not start before a is over, in whatever way a ends.
+  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER. They may also be
+forms whose values are tasks.
+  a may also be a fluent: b starts when the fluent is true or has been pulsed since.
+The constraints hold until PARTIAL-ORDER ends. A task that has started already cannot be b. Cycles
+of the tags in STEPS are errors when the plan is defined; other cycles are reported as a deadlock.
+Return the first value of the last step (from CRAM, except for the value)."
   (:parts (branches simple-vector (branches-code steps (single-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))
@@ -223,6 +228,6 @@ of the last step (from CRAM; the value is ours)."
      (complete-when-alone task (car memory)))))
 
 (define-construct plan (steps &body constraints)
-  "Do as PARTIAL-ORDER. CONSTRAINTS may also be one list of them, with reasons after the names
-(BMT's)."
+  "Do as PARTIAL-ORDER. CONSTRAINTS may also be a single list of constraints, and a constraint may
+have a reason after its names (from BMT)."
   (:like partial-order))

@@ -6,7 +6,8 @@
 ;;; gives way to it before its next step.
 
 (defun tests-once-p (policy scope)
-  "True if POLICY, plan text, is a test, after which it fails, or does nothing that could wait."
+  "True if POLICY, plan text, is a test that is made only once. After the test, POLICY fails or does
+nothing that could wait."
   (and (consp policy)
        (operator-in-p policy '("IF" "WHEN" "UNLESS" "COND"))
        (find-call #'fail-p (list policy))
@@ -25,10 +26,11 @@
 (defparameter *constructs-left-by-return*
   '("LOOP" "DO" "DO*" "DOTIMES" "DOLIST" "N-TIMES" "BLOCK" "PROG" "PROG*" "WHENEVER" "PAR-LOOP"
     "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
-  "Operators in which (return value) gives them the value.")
+  "Names of operators that a (return value) in their body ends.")
 
 (defun value-lost-in (policy)
-  "Return the (return value) that ends POLICY, a WHENEVER whose value is lost; or NIL."
+  "Return the (return value) that ends POLICY, if POLICY is a WHENEVER, whose value is lost.
+Otherwise return NIL."
   (and (operator-in-p policy '("WHENEVER"))
        (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
                         (cddr policy)))
@@ -38,22 +40,24 @@
                   (cddr policy))))
 
 (defun doubt-policy (policy form scope)
-  "Warn if POLICY, of FORM in SCOPE, waits for nothing, does nothing then, or returns a value."
+  "Warn if POLICY, the policy of FORM in SCOPE, waits for nothing, does nothing after its wait, or
+returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
-           (doubt-own-form form "the policy ~S waits for nothing: it is done once, before the ~
-                                 rest, and then has ended. ~:[Write (whenever test form...), or ~
+           (doubt-own-form form "the policy ~S waits for nothing: it runs once, before the ~
+                                 body, and then has ended. ~:[Write (whenever test form...), or ~
                                  (seq (wait-for fluent) form...)~;Write ~:*~S~]."
                            policy (and once-p (awaiting-text policy))))
           ((only-waits-p policy scope)
-           (doubt-own-form form "the policy ~S does nothing when its wait is over, and then has ~
-                                 ended. Write what is to be done then: (seq ~:*~S form...), or ~
-                                 (whenever fluent form...) for each time."
+           (doubt-own-form form "the policy ~S does nothing after its wait, and then has ~
+                                 ended. Write what the policy is to do: (seq ~:*~S form...), or ~
+                                 (whenever fluent form...) to react each time."
                            policy))
           ((value-lost-in policy)
-           (doubt-own-form form "~S ends only the policy, and its value is lost; the rest goes on. ~
-                                 (fail ...) there ends the whole; (pursue (seq (wait-for fluent) ~
-                                 value) form...) returns what ends first."
+           (doubt-own-form form "~S ends only the policy, and its value is lost; the body goes on. ~
+                                 (fail ...) in the policy ends the whole form; (pursue (seq ~
+                                 (wait-for fluent) value) form...) returns the value of the form ~
+                                 that ends first."
                            (value-lost-in policy))))))
 
 (defun watches-text-p (policy)
@@ -64,7 +68,7 @@
              (list policy)))
 
 (defun waits-to-fail-p (body)
-  "True if BODY, forms of a plan, only waits and then fails, as policies do."
+  "True if BODY, a list of forms in a plan, only waits and then fails, as policies often do."
   (let ((forms (if (and (null (rest body)) (operator-in-p (first body) '("SEQ" "PROGN")))
                    (rest (first body))
                    body)))
@@ -72,24 +76,25 @@
          (operator-in-p (first (last forms)) '("FAIL")))))
 
 (defun doubt-order (policy body form)
-  "Warn if POLICY and BODY, of FORM, were most likely written in the wrong order: BODY is a WHENEVER
-that never ends, and POLICY a list of steps, or it fails after a wait, as policies do."
+  "Warn if POLICY and BODY of FORM were probably written in the wrong order. This is so if BODY is a
+WHENEVER that never ends and POLICY a list of steps, or if BODY only waits and then fails, as
+policies often do."
   (let ((endless-p (and (null (rest body)) (endless-whenever-p (first body)))))
     (when (and (not (watches-text-p policy))
                (if endless-p
                    (or (operator-in-p policy '("SEQ" "PROGN"))
                        (find-call #'fail-p (first body)))
                    (waits-to-fail-p body)))
-      (doubt-own-form form "the body ~S ~:[waits, and then fails~;never ends~], and ~S is done ~
-                            beside it, once. The policy comes first: (with-policy ~:[(seq ~
-                            (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
+      (doubt-own-form form "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
+                            once, in parallel. Write the policy before the body: (with-policy ~
+                            ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
                       (if (rest body) (cons 'seq body) (first body))
                       endless-p policy endless-p))))
 
 (define-construct with-policy (policy &body body)
-  "Run BODY in a plan while POLICY, a form, runs beside it. POLICY starts first and takes
-precedence. It evaporates when BODY ends. If either fails, the whole fails. Return BODY's value,
-only one (manual D.4; reading 186)."
+  "Run BODY in a plan while POLICY, a form, runs in parallel. POLICY starts first and takes
+precedence. POLICY evaporates when BODY ends. If POLICY or BODY fails, WITH-POLICY fails. Return the
+first value of BODY (manual D.4; reading 186)."
   (:manual)
   (:parts (policy node (progn (doubt-policy policy form scope)
                              (doubt-order policy body form)

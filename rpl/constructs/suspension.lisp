@@ -3,7 +3,8 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun checked-target (target task operator what)
-  "Return TARGET, to which TASK does OPERATOR, WHAT in words. Signals WRONG-ARGUMENT and MISUSE."
+  "Return TARGET, the task that TASK blocks or joins by OPERATOR. WHAT is the verb for error
+messages. Signals WRONG-ARGUMENT and MISUSE."
   (unless (task-p target)
     (reject-argument operator 'target target "a task, such as the name of a :tag"))
   (check-together task target)
@@ -13,9 +14,9 @@
   target)
 
 (define-construct with-task-blocked (task &body body)
-  "Run BODY in a plan while TASK and its parts are stopped. Fluents that TASK waits for still count
-for it. TASK goes on when BODY has ended in any way. An evaporating task is not stopped. The status
-of TASK is :BLOCKED meanwhile. From CRAM (2009)."
+  "Run BODY in a plan while TASK and its parts are stopped. Meanwhile fluents can still end the
+waits of TASK. TASK goes on when BODY has ended in any way. An evaporating task is not stopped. The
+status of TASK is :BLOCKED meanwhile. From CRAM (2009)."
   (:parts (target function (value-lambda task scope))
           (status keyword :blocked)
           (body node (body-code body scope)))
@@ -43,7 +44,8 @@ of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 ;;;; Reacting to suspension
 
 (defun do-reaction (reaction task frame)
-  "Run REACTION, a leaf, with the task variables of TASK at FRAME. Its errors become messages."
+  "Run REACTION, a leaf, with the task variables of TASK at FRAME. Errors in REACTION become
+messages."
   (let ((*calling-task* task)
         (*asker* task)
         (innermost (shiftf (task-frame task) frame)))
@@ -57,9 +59,9 @@ of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 
 (define-construct on-suspension (reaction &body body)
   "Run BODY in a plan. Each time the task is stopped meanwhile, by SUSPEND, WITH-TASK-BLOCKED or the
-loss of a valve, run REACTION first, at once: a form that cannot wait, such as a command that stops
-the robot. An error in REACTION is a message and has no other effect. Return the value of BODY
-(from CRAM; that REACTION cannot wait is ours)."
+loss of a valve, run REACTION at once, before the task stops. REACTION is a form that cannot wait,
+such as a command that stops the robot. An error in REACTION becomes a message and has no other
+effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)"
   (:parts (reaction node (refuse-code reaction scope form))
           (body node (body-code body scope)))
   (:steps
@@ -71,14 +73,16 @@ the robot. An error in REACTION is a message and has no other effect. Return the
    (inside (values (frame-up frame) value))))
 
 (defun unwind-body (task frame)
-  "Evaporate the part of TASK that runs the body of FRAME, as it must not go on where it is."
+  "Evaporate the part of TASK that runs the body of FRAME, because that part must not continue where
+it is."
   (when (eq frame (task-frame task))
     (setf (frame-data frame) nil)
     (mapc #'evaporate (task-children task))))
 
 (define-construct retry-after-suspension (&body body)
-  "Run BODY in a plan as a separate task. When it is stopped, it evaporates, with its cleanups;
-when it may run again, it starts from the beginning. Return its value (from CRAM)."
+  "Run BODY in a plan as a separate task. When the task is stopped, BODY evaporates, and its
+cleanups run. When the task may run again, BODY starts from the beginning. Return the first value of
+BODY (from CRAM)."
   (:parts (body node (body-code body scope)))
   (:steps
    (begin
@@ -95,10 +99,11 @@ when it may run again, it starts from the beginning. Return its value (from CRAM
          (t (complete task result)))))
 
 (define-construct without-scheduling (&body body)
-  "Run BODY in a plan as one step. Meanwhile nothing can suspend or end the task, and no other task
-runs; requests take effect at the end. BODY cannot wait, call plans or leave: that is an error when
-the plan is defined. Return its value. In ordinary Lisp this is PROGN (from CRAM; that BODY cannot
-wait is ours, as nothing else could run meanwhile)."
+  "Run BODY in a plan as one step, without scheduling. Meanwhile nothing can suspend or end the
+task, and no other task runs. Requests to suspend or end the task take effect after BODY. BODY
+cannot wait, call plans or leave by a non-local exit: these are errors when the plan is defined.
+Return the value of BODY. In ordinary Lisp, WITHOUT-SCHEDULING is PROGN. (From CRAM, except that
+BODY cannot wait, because no other task could run meanwhile.)"
   (:waits :may)
   (:in-lisp `(progn ,@body))
   (:code (refuse-code (note-own-text `(progn ,@body)) scope form)))

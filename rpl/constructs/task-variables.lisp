@@ -7,20 +7,22 @@
               (and (symbolp name) (variable-name-p name)
                    (not (eq :special (variable-kind name)))))
     (reject-clause (title "define-task-variable" name) name
-                   "a symbol that is no variable yet and belongs to no locked package")))
+                   "a symbol that is not yet a variable and belongs to no locked package")))
 
 (addition define-task-variable)
 (define-user-macro define-task-variable (name value &optional documentation)
-  "Define NAME as a variable with a value for each task. What a task sets is visible in it and in
-the tasks that it starts, and nowhere else. WITH-TASK-VARIABLES binds it. In other tasks its value
-is VALUE, or what was set outside of plans. (Special variables belong to the whole thread, and LET
-cannot bind them around forms that wait.) Functions that plans call see it too, if they are compiled
-after it. Defining it again sets its value, as DEFPARAMETER does (from CRAM; what setting in a task
-does is ours)."
+  "Define NAME as a variable with a separate value for each task. A value that a task sets is
+visible in that task and in the tasks that it starts, and nowhere else. In other tasks the value is
+VALUE, or the value set outside of plans. WITH-TASK-VARIABLES binds the variable. (Special variables
+belong to the whole thread, and LET cannot bind them around forms that wait.) Functions that plans
+call see the variable too, if they are compiled after its definition. Evaluating the definition
+again sets the value, as DEFPARAMETER does. (From CRAM, except for the effect of setting the
+variable in a task.)"
   (check-task-variable name)
   (unless (typep documentation '(or null string))
     (reject-clause (title "define-task-variable" name) documentation
-                   "(define-task-variable name value [documentation]), the last a string"))
+                   "(define-task-variable name value [documentation]), where documentation is a
+string"))
   `(progn
      (eval-when (:compile-toplevel :load-toplevel :execute)
        (define-symbol-macro ,name (task-variable ',name)))
@@ -34,9 +36,9 @@ does is ours)."
                      "bindings (name value) of variables defined by define-task-variable"))))
 
 (define-construct with-task-variables (bindings &body body)
-  "Run BODY in a plan with BINDINGS, each (name value), of task variables. They hold for the task
-that runs BODY and for the tasks it starts, until BODY ends in any way. All values are computed
-before any is bound. Return the value of BODY (ours, after CRAM's variables of tasks)."
+  "Run BODY in a plan with BINDINGS, each (name value), of task variables. The bindings hold for the
+task that runs BODY and for the tasks it starts, until BODY ends in any way. All values are computed
+before any variable is bound. Return the value of BODY (after CRAM's task variables)."
   (:arguments &rest (mapcar #'second (checked-bindings bindings form scope)))
   (:parts (variables list `',(mapcar #'first bindings))
           (values-of function (value-lambda `(list ,@(mapcar #'second bindings)) scope))

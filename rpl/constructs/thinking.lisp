@@ -6,7 +6,7 @@
 ;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
-  "Return in ticks what SPAN of UNIT is, which OPERATOR costs. Signals WRONG-ARGUMENT."
+  "Return in ticks the price SPAN of OPERATOR. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number not below 0, up to 1e15"))
@@ -17,7 +17,7 @@
   (value-lambda `(price-of ',operator ,span (or ,unit :ticks)) scope))
 
 (defun think-for (task ticks alone)
-  "Make TASK think for TICKS; if ALONE is true, no other task runs meanwhile."
+  "Make TASK think for TICKS. If ALONE is true, no other task runs meanwhile."
   (when alone (stand-still (task-runner task) ticks))
   (park task (start-timer task ticks))
   +parked+)
@@ -26,10 +26,10 @@
   (and (runner-charged-p (task-runner task)) (plusp ticks)))
 
 (define-construct think (span &key unit alone)
-  "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. Where thinking is charged, wait
-that long; elsewhere return at once. Fractions of ticks are rounded up. Other tasks of the robot's
-plans go on meanwhile. If ALONE is true, all of them stop, policies too, and react afterwards.
-Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+  "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. If thinking is charged, wait that
+long; otherwise return at once. Fractions of ticks are rounded up. Other tasks of the robot's plans
+go on meanwhile. If ALONE is true, all other tasks stop, policies too, and react afterwards. Return
+NIL. Signals WRONG-ARGUMENT (manual 1.2)."
   (:command)
   (:arguments span alone)
   (:parts (span function (price-lambda 'think span unit form scope))
@@ -51,8 +51,8 @@ Return NIL. Signals WRONG-ARGUMENT (ours; manual 1.2)."
 ;;; A body with a price. Its steps are not charged for, and its end comes when the price is paid.
 
 (defstruct (thought (:constructor make-thought (ticks alone start)) (:copier nil))
-  "What a frame of WITH-CHARGE remembers: that it takes TICKS from the tick START on, perhaps ALONE,
-and how its body has ended: with a RESULT, or a SIGNAL."
+  "The state of a WITH-CHARGE. It takes TICKS from the tick START on, and if ALONE is true, other
+tasks stop meanwhile. Its body has ended with a RESULT or a SIGNAL."
   (ticks 0 :type real :read-only t)
   (alone nil :read-only t)
   (start 0 :type real :read-only t)
@@ -69,7 +69,7 @@ and how its body has ended: with a RESULT, or a SIGNAL."
         0)))
 
 (defun start-priced-branch (body task environment)
-  "Start BODY as a part of TASK that is not charged for its steps. Return what a step returns."
+  "Start BODY as a part of TASK whose steps are not charged. Return what a step returns."
   (let ((branch (start-branch body task environment 0 (task-level task))))
     (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
   (await-parts task))
@@ -82,10 +82,11 @@ and how its body has ended: with a RESULT, or a SIGNAL."
 
 (define-construct with-charge ((span &key unit alone) &body body)
   "Run BODY in a plan, as a separate task, at the price of SPAN ticks, or seconds if UNIT is
-:seconds. Return its value, only one. Where thinking is charged, the steps of BODY do not count,
-and its value or failure comes SPAN after its start, or when BODY ends if that is later. ALONE is
-as for THINK, for the wait after BODY. Elsewhere just run BODY. If the task evaporates, it does so
-at once. Signals WRONG-ARGUMENT (ours; manual 1.2)."
+:seconds. Return the first value of BODY. If thinking is charged, the steps of BODY do not count.
+The value or failure of BODY then comes SPAN after the start of BODY, or when BODY ends if that is
+later. If ALONE is true, other tasks stop after BODY until the price is paid, as for THINK. If
+thinking is not charged, just run BODY. If the task evaporates, it does so at once. Signals
+WRONG-ARGUMENT (manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))
           (alone function (value-lambda alone scope))

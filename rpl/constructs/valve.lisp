@@ -19,25 +19,29 @@
 
 (addition valve-p)
 (define-record (valve (:include entity) (:constructor %make-valve (name)))
-  "What guarantees that one task at a time has a resource."
+  "A valve, which guarantees that one task at a time owns a resource."
   (name nil t "the name that the valve was made with" :addition)
   (claims '() list :writable)
-  (lines nil t "a tree of the lines of those that wait for it" :writable)
-  (count 0 fixnum "how many lines there ever were" :writable))
+  (lines nil t "a tree of the lines of claims that wait for the valve" :writable)
+  (count 0 fixnum "how many lines the valve has had so far" :writable))
 
 (define-record (claim (:constructor make-claim (task valves priority)))
-  "That TASK wants or has VALVES: what it waits for, or has in a frame."
+  "The request of TASK to own VALVES. TASK waits for its claim, or one of its frames holds the
+claim."
   (task nil task)
-  (valves '() list "the valves that the claim is to" :export)
+  (valves '() list "the valves that the claim requests" :export)
   (priority 0 real)
-  (taken '() list "the valves that it has" :writable)
-  (lost '() list "those of them that have been taken from it" :writable)
-  (outer '() list "conses of one of the valves taken and the claim around this one" :writable)
-  (turns '() list "its places in the lines of the valves while it waits" :writable))
+  (taken '() list "the valves that the claim has got" :writable)
+  (lost '() list "the valves that the claim has got and that another claim has taken" :writable)
+  (outer '() list "conses (valve . claim): a valve that this claim has got, and the owner claim
+around this one" :writable)
+  (turns '() list "the turns of the claim in the lines of the valves while the claim
+waits" :writable))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
-  "The turns of claims of one PRIORITY to VALVE, by tasks of one LEVEL, first come first. As a part
-of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
+  "The queue of claims to VALVE with one PRIORITY, by tasks of one LEVEL, in order of arrival. A
+line is also a node of a tree. It has a subtree of lines AHEAD and one of lines BEHIND, which have
+less WEIGHT."
   (ahead nil :type (or null line))
   (behind nil :type (or null line))
   (weight 0 :type (unsigned-byte 32))
@@ -48,7 +52,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   (last-turn nil))
 
 (defstruct (turn (:constructor make-turn (claim line)) (:copier nil))
-  "That CLAIM waits in LINE."
+  "The place of CLAIM in LINE."
   (claim nil :type claim :read-only t)
   (line nil :type line :read-only t)
   (previous nil :type (or null turn))
@@ -64,19 +68,20 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 
 (addition make-valve)
 (defun make-valve (name)
-  "Return a new valve called NAME without an owner."
+  "Return a new valve with the name NAME and without an owner."
   (%make-valve name))
 
 (addition valve-owner)
 (defun valve-owner (valve)
-  "Return the task that has VALVE, or NIL; if a part of that has claimed it too, the part."
+  "Return the task that owns VALVE, or NIL. If a part of that task owns VALVE as well, return the
+part."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (let ((claims (valve-claims (here valve))))
     (and claims (claim-task (first claims)))))
 
 (addition valve-requests)
 (defun valve-requests (valve)
-  "Return the tasks that wait for VALVE, the next to have it first."
+  "Return the tasks that wait for VALVE, in the order in which they will get it."
   (let ((tasks '()))
     (some-line (lambda (line)
                  (loop for turn = (line-first-turn line) then (turn-next turn)
@@ -85,21 +90,22 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
     (nreverse tasks)))
 
 (defun some-line (function tree)
-  "Return the first true value that FUNCTION returns for a line of TREE, from ahead; or NIL."
+  "Return the first true value that FUNCTION returns for a line of TREE, from the front; or NIL."
   (and tree
        (or (some-line function (line-ahead tree))
            (funcall function tree)
            (some-line function (line-behind tree)))))
 
 (defun holders (valve)
-  "Return the claims that hold VALVE, innermost first: its owner's, and those of tasks around that."
+  "Return the owner claims of VALVE, innermost first: the claim of the owner, and those of the tasks
+around the owner."
   (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
 
 (addition valve-losers)
 (defun valve-losers (valve)
-  "Return the tasks from which VALVE was taken and which are to have it back, the next first."
+  "Return the tasks from which VALVE was taken and which will get it back, the next one first."
   (let* ((valve (here valve)) (holders (holders valve)))
     (mapcar #'claim-task
             (remove-if (lambda (claim) (member claim holders)) (valve-claims valve)))))
@@ -120,17 +126,17 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 ;;; Granting.
 
 (defun rivals (valve task)
-  "Return the claims that hold VALVE and are of tasks that TASK is no part of, innermost first."
+  "Return the owner claims of VALVE whose tasks do not contain TASK, innermost first."
   (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (holders valve)))
 
 (defun stronger-p (claim rival)
-  "True if CLAIM may take from RIVAL what that holds: one that evaporates keeps it."
+  "True if CLAIM may take the valves that RIVAL owns. A rival that evaporates keeps its valves."
   (and (> (claim-priority claim) (claim-priority rival))
        (not (evaporating-p (claim-task rival)))))
 
 ;; A task that is suspended as it has lost a valve takes none: perhaps from the one that has it.
 (defun available-p (valve claim)
-  "True if CLAIM may take VALVE, from its rivals if need be."
+  "True if CLAIM may take VALVE, from its rivals if necessary."
   (let ((rivals (rivals valve (claim-task claim))))
     (or (null rivals)
         (and (every (lambda (rival) (stronger-p claim rival)) rivals)
@@ -145,7 +151,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
     (block-task (claim-task claim) t)))
 
 (defun take (valve claim)
-  "Grant VALVE to CLAIM. Return lists (VALVE rival) of the claims that lose it, outermost first."
+  "Grant VALVE to CLAIM. Return lists (VALVE rival) of the claims that lose VALVE, outermost first."
   (let* ((holders (holders valve))
          (rivals (rivals valve (claim-task claim)))
          (outer (find-if-not (lambda (holder) (member holder rivals :test #'eq)) holders)))
@@ -170,7 +176,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 ;;; Weights are pseudo-random, so that it is hardly ever deep.
 
 (defun split-lines (tree line)
-  "Return a tree of the lines of TREE that go before LINE, and one of the others."
+  "Return two trees: the lines of TREE that go before LINE, and the other lines of TREE."
   (cond ((null tree) (values nil nil))
         ((before-p tree line)
          (multiple-value-bind (ahead behind) (split-lines (line-behind tree) line)
@@ -181,7 +187,8 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
              (values ahead tree)))))
 
 (defun joined-lines (ahead behind)
-  "Return one tree of the lines of AHEAD, and of those of BEHIND, which go after them."
+  "Return one tree of the lines of AHEAD and of BEHIND. The lines of BEHIND come after those of
+AHEAD."
   (cond ((null ahead) behind)
         ((null behind) ahead)
         ((> (line-weight ahead) (line-weight behind))
@@ -205,7 +212,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
                  (t (return tree)))))
 
 (defun line-for (claim valve)
-  "Return the line of VALVE in which CLAIM waits, a new one if there is none."
+  "Return the line of VALVE in which CLAIM waits. If there is no such line, make one."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
     (or (line-like line (valve-lines valve))
         (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
@@ -242,7 +249,8 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
   (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
 
 (defun admit-parts (task)
-  "Grant what TASK and its parts wait for, as far as they can take it now that TASK goes on."
+  "Grant the claims that TASK and its parts wait for, if they are grantable. TASK has just got back
+a valve."
   (let ((awaited (task-awaiting task)))
     (when (and (claim-p awaited) (grantable-p awaited)) (admit awaited)))
   (mapc #'admit-parts (task-children task)))
@@ -255,14 +263,15 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 
 ;; The new owner has no parts yet, and at least the priority of those in line: no other can have it.
 (defun grant-waiting (valve)
-  "Grant the first claim that waits for VALVE and can be granted, or give VALVE back to its losers."
+  "Grant the first claim that waits for VALVE and is grantable. Then give VALVE back to its losers,
+if possible."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
     (when claim (admit claim)))
   (dolist (holder (holders valve))
     (regain valve holder)))
 
 (defun without-claim (claims claim)
-  "Return CLAIMS without CLAIM, which is mostly the newest of them."
+  "Return CLAIMS without CLAIM, which is usually the newest of CLAIMS."
   (if (eq claim (first claims)) (rest claims) (remove claim claims)))
 
 (defun release-valves (claim)
@@ -280,7 +289,7 @@ of a tree, it has lines AHEAD and others BEHIND, which have less WEIGHT."
 ;;; Circles.
 
 (defun outermost-rival (valve task)
-  "Return the task without whose end, or that of its hold, TASK cannot have VALVE; or NIL."
+  "Return the task that must end or release VALVE before TASK can own VALVE; or NIL."
   (let ((rival (first (last (rivals valve task)))))
     (and rival (claim-task rival))))
 

@@ -11,7 +11,7 @@
     (wake task nil timer)))
 
 (defun timer-in (ticks task function)
-  "Return a new timer that calls FUNCTION in TICKS, on behalf of TASK."
+  "Return a new timer that calls FUNCTION in TICKS ticks, on behalf of TASK."
   (let ((runner (task-runner task)))
     (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
 
@@ -19,7 +19,8 @@
   (setf (task-timer task) (timer-in ticks task #'time-out)))
 
 (defun ticks-of (span unit operator)
-  "Return SPAN, a number or fluent, of UNIT (:ticks or :seconds) in ticks, for OPERATOR."
+  "Return the duration SPAN, a number or a fluent, in ticks. UNIT is :ticks or :seconds. OPERATOR is
+named in errors."
   (let ((span (fluent-value span)))
     (unless (quantity-p span)
       (reject-argument operator 'span span "a number from -1e15 to 1e15"))
@@ -35,7 +36,8 @@
                    (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
 (defun span-lambda (operator span unit form scope)
-  "Return the lambda expression, of the environment, for SPAN of UNIT, forms in FORM, in ticks."
+  "Return a lambda expression that returns the duration SPAN in ticks, for the environment. SPAN and
+UNIT are forms in FORM."
   (check-unit unit form)
   (when (and (realp span) (minusp span))
     (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
@@ -43,7 +45,7 @@
 
 (define-construct wait-time (span &key unit)
   "Wait in a plan for SPAN ticks, or seconds if UNIT is :seconds (manual D.4; reading 90). SPAN is a
-number up to 1e15. If it is 0 or less, do not wait."
+number up to 1e15. If SPAN is 0 or less, do not wait."
   (:manual)
   (:arguments span)
   (:parts (span function (span-lambda 'wait-time span unit form scope)))
@@ -60,7 +62,8 @@ number up to 1e15. If it is 0 or less, do not wait."
 ;;;; Waiting for a fluent
 
 (defun wake-waiter (watcher value trouble)
-  "Continue the task of WATCHER with VALUE, or fail with TROUBLE: its fluent has become true."
+  "Continue the task of WATCHER with VALUE, or let it fail with TROUBLE, because the watched fluent
+has become true."
   (let ((task (watcher-client watcher)))
     (unwatch watcher)
     (when (eq watcher (task-awaiting task))
@@ -75,7 +78,8 @@ number up to 1e15. If it is 0 or less, do not wait."
   (wake task value))
 
 (defun wait-for-change (task condition)
-  "Let TASK wait until CONDITION, a fluent that is false, changes. Another object never does."
+  "Let TASK wait until CONDITION, a fluent that is false, becomes true. If CONDITION is no fluent,
+it never changes, and TASK waits forever."
   (if (fluent-p condition)
       (let ((watcher (make-watcher condition #'wake-waiter task)))
         (watch watcher)
@@ -92,9 +96,9 @@ number up to 1e15. If it is 0 or less, do not wait."
     timeout))
 
 (define-construct wait-for (fluent &key timeout)
-  "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true or pulsed. If it is
-true already, do not wait. Return its value; or NIL after TIMEOUT ticks, if given (manual C).
-TIMEOUT is a number up to 1e15."
+  "Wait in a plan until FLUENT, or a network such as (and a (not b)), is true or pulsed. If FLUENT
+is true already, do not wait. Return the value of FLUENT, or NIL if TIMEOUT is given and TIMEOUT
+ticks have passed (manual C). TIMEOUT is a number up to 1e15."
   (:manual)
   (:arguments fluent timeout)
   (:parts (fluent function (awaited-lambda fluent form scope))
@@ -117,7 +121,7 @@ TIMEOUT is a number up to 1e15."
 ;;;; Reacting to events
 
 (defun count-event (watcher value trouble)
-  "Let the task of WATCHER run the body of its WHENEVER, or count an event to be answered later."
+  "Let the task of WATCHER run the body of its WHENEVER, or count the event for later."
   (declare (ignore value))
   (let* ((task (watcher-client watcher))
          (frame (task-frame task)))
@@ -128,8 +132,8 @@ TIMEOUT is a number up to 1e15."
       (wake task nil))))
 
 (defun make-event-source (condition task)
-  "Return the source of events of CONDITION for TASK: a watcher; CONDITION itself if that is a view
-that counts each event; NIL if it is no fluent, and cannot change."
+  "Return the source of events of CONDITION for TASK. The source is CONDITION itself if it is a view
+that counts each event, a watcher for any other fluent, and NIL if CONDITION is no fluent."
   (cond ((not (fluent-p condition)) nil)
         ((counts-each-event-p condition) condition)
         (t (let ((watcher (make-watcher condition #'count-event task)))
@@ -137,7 +141,7 @@ that counts each event; NIL if it is no fluent, and cannot change."
              watcher))))
 
 (defun await-event (task source)
-  "Let TASK wait until there is another event from SOURCE. Return what a step returns."
+  "Let TASK wait until SOURCE has another event. Return what a step returns."
   (cond ((watcher-p source)
          (if (plusp (watcher-pending source))
              (give-way task)
@@ -148,22 +152,24 @@ that counts each event; NIL if it is no fluent, and cannot change."
   +parked+)
 
 (defun take-events (source missed)
-  "Take events from SOURCE: one if MISSED is :all, else all. Signals WRONG-ARGUMENT."
+  "Remove the events that are handled now from SOURCE: one event if MISSED is :all, otherwise all.
+Signals WRONG-ARGUMENT."
   (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
   (cond ((not (watcher-p source)))
         ((eq missed :all) (decf (watcher-pending source)))
         (t (setf (watcher-pending source) 0))))
 
 (defun fluent-with-options-p (condition environment)
-  "True if CONDITION, as WHENEVER has it, is a list of a form and keywords, and no call."
+  "True if CONDITION, the first argument of a WHENEVER, is a list of a form and keywords and not a
+call."
   (and (typep condition '(cons t (cons keyword)))
        (or (eq :missed (second condition))
            (consp (first condition))
            (known-variable-p (first condition) environment))))
 
 (defun split-condition (condition scope)
-  "Return a list of the fluent's form and the form for :missed in CONDITION, as WHENEVER has it in
-SCOPE. Signals MALFORMED-DEFINITION."
+  "Return a list of two forms in CONDITION, the first argument of a WHENEVER: the form of the fluent
+and the value of :missed. Signals MALFORMED-DEFINITION."
   (cond ((not (fluent-with-options-p condition (scope-environment scope))) (list condition :once))
         ((and (typep condition '(cons t (cons (eql :missed) (cons t null))))
               (typep (third condition) '(or (member :once :all) (and symbol (not keyword)) cons)))
@@ -172,12 +178,12 @@ SCOPE. Signals MALFORMED-DEFINITION."
                           "(fluent :missed :once) or (fluent :missed :all)"))))
 
 (define-construct whenever (fluent &body body)
-  "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if it
-is true. A pulse of a network's source pulses the network, if that is true then. Ends only by
-RETURN, failure or evaporation (manual D.4).
-Several events while BODY runs count as one; (FLUENT :missed :once) says the same. With
-(FLUENT :missed :all) as the first argument, or a view with :ALWAYS as FLUENT, BODY runs once for
-each event."
+  "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if
+FLUENT is true. A pulse of a network's source pulses the network, if the network is true at that
+instant. WHENEVER ends only by RETURN, failure or evaporation (manual D.4).
+Several events while BODY runs count as one; (FLUENT :missed :once) says the same. With (FLUENT
+:missed :all) as the first argument, or a view with :ALWAYS as FLUENT, BODY runs once for each
+event."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
   (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
@@ -205,7 +211,8 @@ each event."
 ;;;; Waiting for any condition
 
 (defun wait-until-text (condition)
-  "Return plan text that waits until CONDITION, a form, is true, and has its value."
+  "Return plan text that waits until CONDITION, a form, is true, and returns the value of
+CONDITION."
   (with-gensyms (met again value)
     `(block ,met
        (tagbody
@@ -224,9 +231,10 @@ each event."
     (when advice (doubt-own-form form "wait-until: ~A" advice))))
 
 (define-construct wait-until (condition)
-  "Wait in a plan until the form CONDITION is true; return its value. If its value is a fluent or a
-network, as of (< level 46) for a fluent, wait for that; otherwise test CONDITION again at each
-tick. CONDITION may itself wait. (Ours: policies and AT-LOCATION watch their conditions this way.)"
+  "Wait in a plan until the form CONDITION is true; return the value of CONDITION. If the value is a
+fluent or a network, as for (< level 46) where LEVEL is a fluent, wait for that fluent. Otherwise
+test CONDITION again at each tick. CONDITION may itself wait. (Policies and AT-LOCATION watch their
+conditions as WAIT-UNTIL does.)"
   (:code (progn (doubt-polled condition form)
                 (plan-code (note-expansion (wait-until-text condition) form) scope))))
 
@@ -234,16 +242,16 @@ tick. CONDITION may itself wait. (Ours: policies and AT-LOCATION watch their con
 
 (define-condition deadline-missed (plan-failure)
   ((ticks :initarg :ticks :initform nil :reader deadline-missed-ticks))
-  (:documentation "What a WITH-DEADLINE is for was not done in time."))
+  (:documentation "The forms of a WITH-DEADLINE were not done in time."))
 
 (setf (documentation 'deadline-missed-ticks 'function)
-      "Return how many ticks there were.")
+      "Return the time limit of the WITH-DEADLINE, in ticks.")
 
 (defmethod write-failure ((failure deadline-missed) stream)
   (format stream "Not done within ~A tick~:P" (deadline-missed-ticks failure)))
 
 (defun miss-deadline (timer)
-  "Let the task that TIMER is for fail, unless it is ending."
+  "Let the task of TIMER fail, unless the task is ending."
   (let* ((task (timer-client timer))
          (frame (task-frame task))
          (*asker* (list "the deadline of " (car (frame-data frame)) " ticks of task "
@@ -256,10 +264,10 @@ tick. CONDITION may itself wait. (Ours: policies and AT-LOCATION watch their con
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
 (define-construct with-deadline ((span &key unit) &body body)
-  "Run BODY in a plan as a separate task. Return its value, only one. If it has not ended SPAN
-ticks after its start, or seconds if UNIT is :seconds, it evaporates, and the whole fails with a
-DEADLINE-MISSED. Its cleanups may take longer. Time counts while it is suspended. SPAN is a number
-up to 1e15; with 0 or less BODY must not take any time (ours; CRAM's is a timeout-policy)."
+  "Run BODY in a plan as a separate task. Return the first value of BODY. If BODY has not ended SPAN
+ticks after its start, or seconds if UNIT is :seconds, BODY evaporates, and WITH-DEADLINE fails with
+DEADLINE-MISSED. Cleanups of BODY may take longer. Time counts while BODY is suspended. SPAN is a
+number up to 1e15; with 0 or less BODY must not take any time. (CRAM has a timeout-policy instead.)"
   (:arguments span)
   (:parts (span function (span-lambda 'with-deadline span unit form scope))
           (body node (body-code body scope)))

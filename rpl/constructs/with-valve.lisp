@@ -3,12 +3,13 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun valve-meant (object)
-  "Return the valve here that OBJECT, perhaps a fluent, stands for. Signals WRONG-ARGUMENT."
+  "Return the valve in the current run that OBJECT, a valve or a fluent with a valve as value,
+stands for. Signals WRONG-ARGUMENT."
   (let ((valve (fluent-value object)))
     (unless (valve-p valve)
       (reject-argument 'with-valve 'valve valve
                        (format nil "a valve, made by make-valve~@[: ~(~A~) without a quote, if ~
-                                    that is a variable for one~]"
+                                    it is a variable whose value is a valve~]"
                                (and (symbolp valve) (not (keywordp valve)) (not (eq t valve))
                                     valve))))
     (here valve)))
@@ -20,7 +21,8 @@
     (make-claim task valves priority)))
 
 (defun claim-or-queue (claim task)
-  "Let TASK make CLAIM. True if it has it at once; otherwise it waits."
+  "Let TASK make CLAIM. Return true if TASK gets the valves at once; otherwise TASK waits in the
+queue."
   (cond ((grantable-p claim) (grant claim) t)
         (t (queue-up claim)
            (park task claim)
@@ -28,24 +30,27 @@
            nil)))
 
 (defun claim-form (priority valves scope)
-  "Return the lambda expression that returns the values of PRIORITY and, as a list, of VALVES."
+  "Return a lambda expression that returns a cons: the value of PRIORITY, and the list of the values
+of VALVES."
   (dolist (valve valves)
     (when (and (name-without-quote-p valve scope) (fboundp valve))
-      (doubt-definition "~A: ~(~A~) is a function and no variable. Call it: (with-valve ~
+      (doubt-definition "~A: ~(~A~) is a function, not a variable. Call it: (with-valve ~
                          ((~:*~(~A~))) ...)"
                         (text-title) valve)))
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 
 (define-construct with-valve ((valve &key priority) &body body)
-  "Run BODY in a plan while the task owns VALVE, waiting for it first if another task owns it. VALVE
-is released however BODY ends. Return all values of BODY.
-  Waiting tasks queue by PRIORITY, a number, by default 0; of equals, policies come first.
-  A higher PRIORITY than the owner's takes VALVE: the owner is suspended, with its parts, until it
-gets VALVE back. So two tasks that own one resource never run together. ON-SUSPENSION and
-RETRY-AFTER-SUSPENSION define how the owner reacts. Cleanups of an evaporating owner are not
-disturbed.
+  "Run BODY in a plan while the task owns VALVE. If another task owns VALVE, wait first. VALVE is
+released however BODY ends. Return all values of BODY.
+  Waiting tasks queue by PRIORITY, a number, by default 0. Among equal priorities, policies come
+first.
+  A task with a higher PRIORITY than the owner's takes VALVE. The owner is suspended, with its
+parts, until it gets VALVE back. So two tasks that own one resource never run together.
+ON-SUSPENSION and RETRY-AFTER-SUSPENSION define how the owner reacts. Cleanups of an evaporating
+owner are not disturbed.
   A part of the owner can own VALVE as well, one part at a time.
-If tasks wait for each other's valves, an error message says so (manual D; priorities ours)."
+If tasks wait for each other's valves, an error message says so (manual D; priorities are an
+addition)."
   (:arguments valve priority)
   (:parts (request function (claim-form priority (list valve) scope))
           (body node (body-code body scope)))
@@ -66,16 +71,16 @@ If tasks wait for each other's valves, an error message says so (manual D; prior
    nil))
 
 (defun split-valves (valves)
-  "Return those of VALVES that come before :priority, and the form after that."
+  "Return the list of the elements of VALVES before :priority, and the form after :priority."
   (let ((rest (member-if #'keywordp valves)))
     (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
       (reject-clause (text-title) valves "(valve... [:priority number])"))
     (values (ldiff valves rest) (second rest))))
 
 (define-construct with-valves ((&rest valves) &body body)
-  "Run BODY in a plan while the task owns all of VALVES; :priority and a number may follow them. It
-takes them together, when none belongs to another task. So the order in which tasks name them does
-not matter. Otherwise do as WITH-VALVE (ours)."
+  "Run BODY in a plan while the task owns all of VALVES. After the valves, :priority and a number
+may follow. The task takes all the valves together, when no other task owns one of them. So the
+order in which tasks name the valves does not matter. Otherwise do as WITH-VALVE."
   (:like with-valve)
   (:arguments &rest valves)
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)

@@ -14,14 +14,14 @@
 (addition fluent-p)
 (define-record (fluent (:include entity) (:constructor %make-fluent (name now))
                        (:predicate fluent-p "True of fluents, networks included."))
-  "A quantity that varies in time. Plans wait for fluents to become true (manual C)."
-  (name nil t "the name that the fluent was created with; of a network, its operator" :addition)
+  "A variable whose value changes in time. Plans wait for fluents to become true (manual C)."
+  (name nil t "the name that the fluent was created with; for a network, its operator" :addition)
   (now nil t :writable)
   (reading nil (member nil :once :always)
-          "whether it was read: see WAS-READ-P" :writable)
+          "NIL until the fluent is read: see WAS-READ-P" :writable)
   (home nil (or null home) :writable)
   (height 0 fixnum :writable)
-  (sets 0 fixnum "how often it was set to another value: see operators.lisp" :writable)
+  (sets 0 fixnum "how often the fluent was set to another value: see operators.lisp" :writable)
   (pulses 0 fixnum "how often the fluent, a base fluent, was pulsed" :writable :export)
   (first-watcher nil (or null watcher) :writable)
   (last-watcher nil (or null watcher) :writable)
@@ -30,30 +30,32 @@
 
 (define-record (derived (:include fluent)
                         (:constructor %make-derived (name operator sources height)))
-  "A fluent whose value is what OPERATOR returns for the values of SOURCES, fluents and others."
+  "A fluent whose value is the value of OPERATOR for the values of SOURCES. SOURCES are fluents and
+other objects."
   (operator #'list function)
   (sources '() list)
   (users 0 fixnum :writable)
   (links '() list :writable)
   (trouble nil (or null condition)
-           "the error that it met when it was last computed, or NIL" :writable)
-  (queued nil (member nil t :pulsed) "how it is to be recomputed, NIL if it is not" :writable)
+           "the error in the last computation of the fluent, or NIL" :writable)
+  (queued nil (member nil t :pulsed) "how the fluent will be recomputed; NIL if it need not
+be" :writable)
   (successor nil (or null derived) :writable))
 
 (define-record (watcher (:constructor make-watcher (fluent wake client)))
-  "A watcher of FLUENT. When that changes to a true value, WAKE is called with the watcher, the
-value, and NIL or the error met in computing it."
+  "A watcher of FLUENT. When FLUENT changes to a true value, WAKE is called with the watcher, the
+value, and NIL or the error in computing the value."
   (fluent nil fluent "the fluent that the watcher watches" :export)
   (wake #'list function
-        "the function that is called when the fluent becomes true: see WATCHER" :export)
-  (client nil t "on whose behalf the watcher watches, such as a task" :export)
-  (pending 0 fixnum "how many events the watcher has received that were not handled
-yet" :writable :export)
+        "the function to call when the fluent becomes true: see WATCHER" :export)
+  (client nil t "the object for which the watcher watches, such as a task" :export)
+  (pending 0 fixnum "how many events the watcher has received and not yet
+handled" :writable :export)
   (previous nil (or null watcher) :writable)
   (next nil (or null watcher) :writable))
 
 (define-record (link (:constructor make-link (source dependent)))
-  "Says that DEPENDENT is to be recomputed when SOURCE changes."
+  "A record that DEPENDENT must be recomputed when SOURCE changes."
   (source nil fluent)
   (dependent nil derived)
   (previous nil (or null link) :writable)
@@ -62,11 +64,11 @@ yet" :writable :export)
 (define-record (view (:include derived)
                      (:constructor %make-view (name operator sources height bases memory always-p
                                                test key)))
-  "A network that remembers: see operators.lisp."
-  (bases '() list "the base fluents that it is of")
-  (memory nil t "its state when it was read last: how often its bases were set or pulsed; of a
-view of changes, a cons of that and KEY of the value" :writable)
-  (always-p nil t "each event counts")
+  "A network with a memory: see operators.lisp."
+  (bases '() list "the base fluents of the view")
+  (memory nil t "the state when the view was last read: how often its bases were set or pulsed. In a
+view of changes, a cons of this count and KEY of the value" :writable)
+  (always-p nil t "the view counts each event")
   (test nil (or null function))
   (key nil (or null function)))
 
@@ -91,12 +93,12 @@ view of changes, a cons of that and KEY of the value" :writable)
                  (fluent-height fluent)))
 
 (defgeneric home-forked-p (home copier)
-  (:documentation "True if HOME is of the run that COPIER copies.")
+  (:documentation "True if HOME belongs to the run that COPIER copies.")
   (:method (home copier) (declare (ignore home copier)) nil))
 
 (declaim (inline home-of))
 (defun home-of (fluent)
-  "Return the home of FLUENT; NIL if it has none, or one that is closed."
+  "Return the home of FLUENT; NIL if FLUENT has no home or a closed home."
   (let ((home (fluent-home fluent)))
     (if (and home (home-closed-p home)) nil home)))
 
@@ -113,19 +115,19 @@ view of changes, a cons of that and KEY of the value" :writable)
 
 (public create-fluent)
 (defun create-fluent (name &optional value)
-  "Return a new fluent called NAME with VALUE (manual D.4)."
+  "Return a new fluent with the name NAME and the value VALUE (manual D.4)."
   (%make-fluent name value))
 
 (public state)
 (defun state (name)
-  "Return a new fluent called NAME, at first false: NAME is the proposition that the fluent stands
-for (manual D.2)."
+  "Return a new fluent that is false at first. NAME is the proposition that the fluent represents
+(manual D.2)."
   (create-fluent name nil))
 
 (addition create-fluent-vector)
 (defun create-fluent-vector (name count &optional value)
-  "Return a vector of COUNT new fluents with VALUE, one for each part of a kind (manual C). Signals
-WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
+  "Return a vector of COUNT new fluents with VALUE, for example one for each camera (manual C).
+Signals WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
   (check-argument create-fluent-vector count (whole-p count 0 1000000)
                   "an integer from 0 to 1000000")
   (let ((vector (make-array count)))
@@ -135,8 +137,9 @@ WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 
 (defmacro define-membership (type list-of &key (in 'fluent) join leave)
-  "Define JOIN and LEAVE, functions of a member of TYPE that append it to and remove it from the
-list that (LIST-OF member), a structure IN, keeps in its slots FIRST-TYPE and LAST-TYPE."
+  "Define the functions JOIN and LEAVE, which append a member of TYPE to a doubly linked list or
+remove it. (LIST-OF member) returns the structure of type IN that has the list in its slots
+FIRST-TYPE and LAST-TYPE."
   (let ((first (symbolicate in '-first- type))
         (last (symbolicate in '-last- type))
         (previous (symbolicate type '-previous))
@@ -171,16 +174,17 @@ list that (LIST-OF member), a structure IN, keeps in its slots FIRST-TYPE and LA
 ;;; fluents. A vector is always true, so a condition never means it.
 
 (defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
-  "Lists by variable: T if it holds a fluent, or the name of a kind of part if it holds a vector of
-fluents, one for each part; and whether these are pulsed and never set.")
+  "A table from variables to lists (kind pulsed-p). KIND is T if the variable holds a fluent, or the
+name of a kind of part if it holds a vector of fluents, one for each part. PULSED-P is true if these
+fluents are pulsed and never set.")
 
 (defun declare-fluent-variable (name &key (kind t) pulsed-p)
-  "Note that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string;
-and, if PULSED-P is true, that these are never set."
+  "Record that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string.
+If PULSED-P is true, these fluents are pulsed and never set."
   (setf (gethash name *known-variables*) (list kind pulsed-p)))
 
 (defun known-pulse-p (name)
-  "True if what the variable NAME holds is pulsed, and never set."
+  "True if the variable NAME holds fluents that are pulsed and never set."
   (and (symbolp name) (second (gethash name *known-variables*))))
 
 (defun known-fluent-variable-p (name)
@@ -188,7 +192,8 @@ and, if PULSED-P is true, that these are never set."
   (eq t (first (gethash name *known-variables*))))
 
 (defun known-vector-variable-p (name)
-  "Return the name of the kind of part for which the variable NAME holds fluents, or NIL."
+  "Return the name of a kind of part, if the variable NAME holds a vector of fluents for such parts;
+or NIL."
   (let ((kind (first (gethash name *known-variables*))))
     (and (stringp kind) kind)))
 
@@ -201,7 +206,7 @@ and, if PULSED-P is true, that these are never set."
        (every #'fluent-p object)))
 
 (defun reject-vector (vector &optional (user "a condition"))
-  "Signal MISUSE: VECTOR, of fluents, stands where USER needs a fluent."
+  "Signal MISUSE, because VECTOR is a vector of fluents where USER needs a single fluent."
   (let* ((name (safe-text (fluent-name (svref vector 0)) :escape nil))
          (variable (subseq name 0 (position #\Space name :from-end t))))
     (reject-use "~A is a vector of fluents: ~A needs one of them. Write (vref ~2:*~A~* ~A)."
@@ -213,6 +218,7 @@ and, if PULSED-P is true, that these are never set."
         when (string-equal name variable) return variable))
 
 (defun robots-fluent-p (fluent)
-  "True if FLUENT has the name of a known variable, or of an element of one: the robot sets it."
+  "True if FLUENT is a fluent that the robot sets. Its name is then the name of a known variable, or
+of an element of such a variable's vector."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
     (and (find-known (subseq name 0 space)) t)))

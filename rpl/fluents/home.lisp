@@ -10,42 +10,48 @@
 ;;; The newest entry of the inbox comes first, the oldest of the outbox.
 
 (defstruct (backlog (:constructor make-backlog ()) (:copier nil))
-  "Derived fluents to be computed, by height: those of each height in order of arrival."
+  "A queue of derived fluents to recompute, by height; fluents of the same height in order of
+arrival."
   (heads (make-array 8 :initial-element nil) :type simple-vector)
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))
 
 (define-record (home (:constructor make-home ()))
-  "Where changes of fluents are applied, by one thread at a time."
-  (holder nil t "the thread that has it, or NIL" :writable)
+  "The place where changes of fluents are applied, by one thread at a time."
+  (holder nil t "the thread that owns the home, or NIL" :writable)
   (backlog (make-backlog) backlog :writable)
   (inbox '() t :writable)
   (outbox '() list :writable)
   (on-post #'list function "the function that is called after each post" :writable)
-  (attended-p (constantly nil) function "says whether a thread is there to apply posts" :writable)
+  (attended-p (constantly nil) function "the function that says whether a thread is ready to apply
+posts" :writable)
   (left-p nil boolean
-          "a thread has it, or the last one left it in the middle of something" :writable)
+          "a thread owns the home, or the last owner left it in the middle of a change" :writable)
   (closed-p nil boolean "the home accepts no changes any more. Can be set" :writable :export)
   (born (next-token) (integer 0)
-        "a number that is greater for homes that were made later. Can be set" :writable :export)
-  (repairer #'identity function "the function called first with the home in that case" :writable)
-  (on-change nil (or null function) "the function that is called before watchers are notified of
-a change, or NIL: with :SET or :PULSE, a base fluent and its value. Can be set" :writable :export)
-  (wrapper nil (or null function) "returns what to post instead of an entry; or NIL" :writable))
+        "a number that is greater for newer homes. Can be set" :writable :export)
+  (repairer #'identity function "the function that repairs the home if it was left in the middle of
+a change" :writable)
+  (on-change nil (or null function) "the function to call before watchers are notified of a change,
+or NIL. Its arguments are :SET or :PULSE, a base fluent and the new value. Can be
+set" :writable :export)
+  (wrapper nil (or null function) "the function that returns the entry to post instead of a given
+entry, or NIL" :writable))
 
 (defvar *runner* nil
-  "The plan runner that this thread has, while plans run.")
+  "The plan runner that this thread owns, while its plans run.")
 
 (defvar *interface* nil
   "The default owner of plans and fluents, or NIL: see RPL-INIT-ROBOT.")
 
 (defgeneric home-in-use (interface)
-  (:documentation "Return the home of fluents without one, outside of plans of INTERFACE; or NIL.")
+  (:documentation "Return the home, or NIL, that code outside of the plans of INTERFACE uses for a
+fluent without a home.")
   (:method (interface) (declare (ignore interface)) nil))
 
 (defgeneric note-outside-change (interface function fluent value)
-  (:documentation "Note what changes FLUENT where no plan is at work and INTERFACE is in use: that
-FUNCTION, of SET-VALUE and PULSE, is called with FLUENT and VALUE.")
+  (:documentation "Record that code outside of plans calls FUNCTION with FLUENT and VALUE, while
+INTERFACE is in use. FUNCTION is SET-VALUE or PULSE.")
   (:method (interface function fluent value)
     (declare (ignore interface function fluent value))
     (values)))
@@ -53,18 +59,18 @@ FUNCTION, of SET-VALUE and PULSE, is called with FLUENT and VALUE.")
 ;;; Taking a home.
 
 (defvar *homes* '()
-  "The homes that this thread has.")
+  "The homes that this thread owns.")
 
 (defun take-home (home)
-  "Let this thread have HOME. True unless another one has it."
+  "Make this thread the owner of HOME. Return true unless another thread owns HOME."
   (swap-if (home-holder home) nil (current-thread)))
 
 (defun leave-home (home)
   (swap-if (home-holder home) (current-thread) nil))
 
 (defun call-having (home take function)
-  "Call FUNCTION in HOME, and leave that, if TAKE, called with it, returns true. Return the values,
-or else NIL. An interrupt may come at any point."
+  "Take HOME by calling TAKE. If TAKE returns true, call FUNCTION in HOME, leave HOME and return the
+values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (declare (type function take function))
   (protecting-strictly
     (when (funcall take home)
@@ -77,7 +83,7 @@ or else NIL. An interrupt may come at any point."
     (leave-home home)))
 
 (defun in-use-p (home)
-  "True if a thread has HOME, or has left it in the middle of something."
+  "True if a thread owns HOME, or has left HOME in the middle of a change."
   (or (home-left-p home) (home-holder home)))
 
 (defun wait-for-home (home)
@@ -85,7 +91,7 @@ or else NIL. An interrupt may come at any point."
   t)
 
 (defun call-at-home (home function)
-  "Call FUNCTION while this thread has HOME. If another one has it wait until it is free."
+  "Call FUNCTION while this thread owns HOME. If another thread owns HOME, wait until HOME is free."
   (declare (type function function))
   (cond ((eq home *runner*) (funcall function))
         ((member home *homes* :test #'eq)
@@ -93,7 +99,7 @@ or else NIL. An interrupt may come at any point."
         (t (call-having home #'wait-for-home function))))
 
 (defmacro at-home ((home) &body body)
-  "Run BODY as CALL-AT-HOME would a function."
+  "Run BODY while this thread owns HOME, as CALL-AT-HOME does."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (call-at-home ,home #'body)))
@@ -101,14 +107,15 @@ or else NIL. An interrupt may come at any point."
 ;;; Posting.
 
 (defun post (home entry)
-  "Append ENTRY, a list of settings or a function, to what is posted to HOME."
+  "Append ENTRY, a list of settings or a function, to the entries posted to HOME."
   (let ((wrapper (home-wrapper home)))
     (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
   (funcall (home-on-post home))
   (values))
 
 (defun next-entry (home)
-  "Return the oldest entry posted to HOME, removed, and true; or NIL and false."
+  "Remove the oldest entry posted to HOME. Return the entry and true; or NIL and false if no entry
+is left."
   (unless (home-outbox home)
     (loop for entries = (home-inbox home)
           until (swap-if (home-inbox home) entries '())
@@ -118,5 +125,5 @@ or else NIL. An interrupt may come at any point."
       (values nil nil)))
 
 (defun posted-p (home)
-  "True if something posted to HOME has not been applied yet."
+  "True if some entry posted to HOME has not been applied yet."
   (and (or (home-outbox home) (home-inbox home)) t))

@@ -9,11 +9,12 @@
 
 (declaim (inline stored-value))
 (defun stored-value (source)
-  "Return the value of SOURCE, a fluent in use, or SOURCE, any other object."
+  "Return the stored value of SOURCE, if SOURCE is a fluent in use; otherwise return SOURCE."
   (if (fluent-p source) (fluent-now source) source))
 
 (defun compute (derived)
-  "Return the value of DERIVED for the stored values of its sources, all in use."
+  "Return the value of DERIVED, computed from the stored values of its sources. All sources are in
+use."
   (declare #.*hot*)                     ; 12 ns for two sources
   (let* ((operator (derived-operator derived))
          (sources (derived-sources derived))
@@ -24,7 +25,8 @@
           (t (values (apply operator (mapcar #'stored-value sources)))))))
 
 (defun recompute (derived)
-  "Recompute the value of DERIVED, in use. True if it changed, or if computing met an error."
+  "Recompute the value of DERIVED, which is in use. Return true if the value changed, or if the
+computation signalled an error."
   (declare #.*hot*)
   (let ((trouble (loop for source in (derived-sources derived)
                        thereis (and (derived-p source) (derived-trouble source))))
@@ -41,7 +43,7 @@
 ;;; Being used.
 
 (defun acquire (fluent)
-  "Note one more user of FLUENT. With the first one it starts to follow its sources."
+  "Count one more user of FLUENT. With the first user, FLUENT starts to follow its sources."
   (when (and (derived-p fluent) (= 1 (incf (derived-users fluent))))
     (dolist (source (derived-sources fluent))
       (when (fluent-p source)
@@ -52,7 +54,7 @@
     (recompute fluent)))
 
 (defun release (fluent)
-  "Note one user of FLUENT less. With the last one it stops following its sources."
+  "Count one user of FLUENT less. With the last user, FLUENT stops following its sources."
   (when (and (derived-p fluent) (= 0 (decf (derived-users fluent))))
     (dolist (link (shiftf (derived-links fluent) '()))
       (leave-links link)
@@ -61,7 +63,7 @@
           (derived-trouble fluent) nil)))
 
 (defun set-home (fluent)
-  "Make the plan runner at work the home of FLUENT, and of its sources."
+  "Make the current plan runner the home of FLUENT, and of the sources of FLUENT."
   (unless (eq *runner* (fluent-home fluent))
     (setf (fluent-home fluent) *runner*)
     (when (derived-p fluent)
@@ -69,8 +71,9 @@
         (when (fluent-p source) (set-home source))))))
 
 (defun watch (watcher)
-  "Register WATCHER with its fluent, after the watchers already there. Another thread may have just
-set the fluent; so a caller that waits for it to be true must check it once more afterwards."
+  "Register WATCHER with its fluent, after the watchers that are already registered. Another thread
+may have just set the fluent. So a caller that waits for the fluent to become true must check the
+fluent once more afterwards."
   (let ((fluent (watcher-fluent watcher)))
     (unless (eq *runner* (fluent-home fluent))
       (set-home fluent)
@@ -86,14 +89,14 @@ set the fluent; so a caller that waits for it to be true must check it once more
 ;;; Reading.
 
 (defun value-in-use (fluent)
-  "Return the value of FLUENT, which is in use; signal the error that computing it met, if any."
+  "Return the value of FLUENT, which is in use. Signal the error in computing FLUENT, if any."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
   (unless (fluent-reading fluent) (setf (fluent-reading fluent) :once))
   (fluent-now fluent))
 
 (defun current-value (fluent)
-  "Return the value of FLUENT, computing it if it is derived and not in use."
+  "Return the value of FLUENT. If FLUENT is derived and not in use, compute the value."
   (cond ((or (not (derived-p fluent)) (plusp (derived-users fluent))) (value-in-use fluent))
         ((= 1 (fluent-height fluent)) (compute fluent))
         (t (acquire fluent)
@@ -102,33 +105,36 @@ set the fluent; so a caller that waits for it to be true must check it once more
 
 (declaim (inline one-fluent truth-value))
 (defun one-fluent (object)
-  "Return OBJECT, a condition; of a fluent, its twin here. Signals MISUSE for a vector of fluents."
+  "Return the condition OBJECT. If OBJECT is a fluent, return its twin in the current run. Signals
+MISUSE for a vector of fluents."
   (cond ((fluent-p object) (here object))
         ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
         (t object)))
 
 (defun truth-value (object)
-  "Return OBJECT, a condition; of a fluent, its value. Signals MISUSE for a vector of fluents."
+  "Return the truth value of the condition OBJECT. For a fluent, this is its value, otherwise OBJECT
+itself. Signals MISUSE for a vector of fluents."
   (if (fluent-p object) (current-value (here object)) (one-fluent object)))
 
 ;; An error fluent is of use only if it is read.
 (defun was-read-p (fluent)
-  "True if FLUENT was read since FORGET-READING, or is or was in a network, or is waited for."
+  "True if FLUENT was read since the last FORGET-READING, or has ever been in a network, or a task
+waits for FLUENT."
   (let ((fluent (here fluent)))
     (and (or (fluent-reading fluent) (fluent-first-watcher fluent)) t)))
 
 (defun forget-reading (fluent)
-  "Forget that FLUENT was read."
+  "Forget that FLUENT was read: see WAS-READ-P."
   (let ((fluent (here fluent)))
     (when (eq :once (fluent-reading fluent)) (setf (fluent-reading fluent) nil))))
 
 (declaim (inline operand-value))
 (defun operand-value (object)
-  "Return the value that OBJECT, a fluent, has now, or any other OBJECT."
+  "Return the current value of OBJECT if OBJECT is a fluent; otherwise return OBJECT."
   (if (fluent-p object) (current-value (here object)) object))
 
 (defun names-fluent-p (object)
-  "True if OBJECT is a symbol that is bound to a fluent, or a vector of fluents, or will be."
+  "True if OBJECT is a symbol whose value is a fluent or a vector of fluents, or will be."
   (and (symbolp object)
        (boundp object)
        (let ((value (symbol-value object)))
@@ -137,7 +143,8 @@ set the fluent; so a caller that waits for it to be true must check it once more
              (and (null value) object (gethash object *known-variables*) t)))))
 
 (defun reject-name-of-fluent (name)
-  "Signal MISUSE if NAME, a symbol, is bound to a fluent, which must be meant; else return it."
+  "Signal MISUSE if the value of the symbol NAME is a fluent, because the quote is then a mistake.
+Otherwise return NAME."
   (if (names-fluent-p name)
       (reject-use "~S is a symbol, not a fluent. Leave out the quote: ~(~:*~A~)." name)
       name))
@@ -146,7 +153,7 @@ set the fluent; so a caller that waits for it to be true must check it once more
 (public fluent-value)
 (settable fluent-value)
 (defun fluent-value (object)
-  "Return the value that OBJECT, a fluent, has now. Any other OBJECT is its own value. Can be set:
+  "Return the current value of OBJECT if OBJECT is a fluent; otherwise return OBJECT. Can be set:
 see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent,
 or a vector of fluents."
   (cond ((fluent-p object) (current-value (here object)))
@@ -162,8 +169,8 @@ or a vector of fluents."
             when (fluent-p source) maximize (fluent-height source))))
 
 (defun lift (name function &rest arguments)
-  "Return FUNCTION of ARGUMENTS; if there is a fluent among these, the fluent called NAME whose
-value is always FUNCTION of their values."
+  "Return the value of FUNCTION for ARGUMENTS. If some of ARGUMENTS are fluents, return a new fluent
+with the name NAME, whose value is always the value of FUNCTION for the values of ARGUMENTS."
   (if (some #'fluent-p arguments)
       (let ((sources (loop for argument in arguments
                            collect (if (fluent-p argument) (here argument) argument))))
@@ -180,22 +187,23 @@ value is always FUNCTION of their values."
 
 (addition fl-funcall)
 (defun fl-funcall (function &rest arguments)
-  "Return a fluent whose value is always what FUNCTION returns for the values of ARGUMENTS, some of
-them fluents. FUNCTION must depend on nothing else and set no fluent. Without fluents among
-ARGUMENTS, call FUNCTION at once."
+  "Return a fluent whose value is always the value of FUNCTION for the values of ARGUMENTS, some of
+which are fluents. FUNCTION must depend on nothing else and must not set fluents. If no argument is
+a fluent, call FUNCTION at once."
   (apply #'lift (function-label function) (coerce function 'function) arguments))
 
 (addition fl-apply)
 (defun fl-apply (function &rest arguments)
-  "Do as FL-FUNCALL; the last of ARGUMENTS is a list of further ones, as for APPLY."
+  "Do as FL-FUNCALL, where the last of ARGUMENTS is a list of further arguments, as for APPLY."
   (apply #'fl-funcall function (apply #'list* arguments)))
 
 (defun depends-p (fluent source)
-  "True if FLUENT is SOURCE, a base fluent, or a network that is computed from it."
+  "True if FLUENT is the base fluent SOURCE, or a network that is computed from SOURCE."
   (and (member source (base-fluents fluent)) t))
 
 (defun base-fluents (fluent)
-  "Return the base fluents that FLUENT is computed from, without repetition; of a base fluent, it."
+  "Return a list of the base fluents that FLUENT is computed from, without repetition. If FLUENT is
+a base fluent, return a list of FLUENT."
   (if (derived-p fluent)
       (remove-duplicates (loop for source in (derived-sources fluent)
                                when (fluent-p source) append (base-fluents source))
@@ -203,7 +211,8 @@ ARGUMENTS, call FUNCTION at once."
       (list fluent)))
 
 (defun fluent-watchers (fluent)
-  "Return the clients of the watchers of FLUENT itself, in order of arrival."
+  "Return the clients of the watchers of FLUENT, in order of arrival. Watchers of networks of FLUENT
+do not count."
   (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
         while watcher collect (watcher-client watcher)))
 
@@ -212,7 +221,7 @@ ARGUMENTS, call FUNCTION at once."
 (defconstant +most-fluents+ 100 "How many fluents the text of a network shows at most.")
 
 (defun write-network (fluent stream)
-  "Write FLUENT as the expression that it was made by; of a large one, its beginning."
+  "Write the expression that made FLUENT to STREAM. Of a large expression, write the beginning."
   (let ((left +most-fluents+))
     (labels ((name (fluent)
                (write-string (if (or (fluent-name fluent) (derived-p fluent))
@@ -233,16 +242,16 @@ ARGUMENTS, call FUNCTION at once."
       (visit fluent))))
 
 (defun fluent-text (fluent)
-  "Return what FLUENT is called, in lower case: its name or its network."
+  "Return the name of FLUENT, or the expression of a network, in lower case."
   (let ((*print-case* :downcase) (*print-length* 5) (*print-level* 4))
     (with-output-to-string (stream) (write-network fluent stream))))
 
 (defvar *inside-fluent* nil
-  "True while the value of a fluent is printed. Others are then printed by name only: they may be
-each other's values.")
+  "True while the value of a fluent is printed. Fluents inside that value are printed by name only,
+because the values of fluents may refer to each other.")
 
 (defun value-text (fluent)
-  "Return the value of FLUENT as text, or the type of the error that computing it met."
+  "Return the value of FLUENT as text, or the type of the error in computing it."
   (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (here fluent))))
     (error (condition) (format nil "error: ~A" (type-of condition)))))
 
@@ -255,7 +264,8 @@ each other's values.")
 ;;; which are known; the links between fluents are dropped and made again.
 
 (defun reachable-fluents (watchers)
-  "Return the fluents that WATCHERS watch, and those that depend on these or that these depend on."
+  "Return the fluents that WATCHERS watch, all fluents that depend on them, and all fluents that
+they depend on."
   (let ((seen (make-hash-table :test 'eq)) (fluents '()))
     (labels ((visit (fluent)
                (unless (gethash fluent seen)
@@ -271,7 +281,7 @@ each other's values.")
     (nreverse fluents)))
 
 (defun listed-watchers (fluent)
-  "Return the watchers that are in the list of FLUENT, each once."
+  "Return a list of the watchers that are registered with FLUENT, without repetition."
   (let ((seen '()))
     (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
           until (or (null watcher) (member watcher seen :test #'eq))
@@ -290,7 +300,7 @@ each other's values.")
           (derived-successor fluent) nil)))
 
 (defun acquire-despite-abort (fluent)
-  "Note one more user of FLUENT. If its function aborts, that is an error of FLUENT."
+  "Count one more user of FLUENT. If the function of FLUENT aborts, record an error in FLUENT."
   (restart-case (acquire fluent)
     (abort ()
       :report "Let the fluent be in error."
@@ -301,7 +311,8 @@ each other's values.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Register in HOME WATCHERS and, unless UNWANTED-P of them, those in the lists of their fluents."
+  "Register WATCHERS in HOME again, and the other watchers of their fluents. Leave out other
+watchers for which UNWANTED-P is true."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

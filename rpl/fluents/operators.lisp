@@ -17,14 +17,15 @@
   (loop for fluent in fluents sum (+ (fluent-sets fluent) (fluent-pulses fluent))))
 
 (defun event-since-reading (view)
-  "Return a number if something has happened to the fluents of VIEW since it was read last, or NIL."
+  "Return a number if the fluents of VIEW were set or pulsed since VIEW was last read; or NIL."
   (let ((seen (view-memory view)) (events (count-events (view-bases view))))
     (when (< seen events)
       (before-change view)
       (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
 
 (defun change-since-reading (view value)
-  "Return a number if VALUE, what the fluent of VIEW is now, is another than when it was read last."
+  "Return a number if VALUE, the current value of the fluent of VIEW, differs from the value when
+VIEW was last read; or NIL."
   (destructuring-bind (sets . last) (view-memory view)
     (let ((now (count-sets (view-bases view))))
       (unless (= sets now)
@@ -35,7 +36,7 @@
             now))))))
 
 (defun read-view (view value)
-  "Return the value of VIEW, and reset it. VALUE is the value of its first fluent."
+  "Return the value of VIEW, and reset VIEW. VALUE is the value of the first fluent of VIEW."
   (let ((answer (if (view-test view) (change-since-reading view value) (event-since-reading view))))
     ;; It is no longer true when the change under way, if any, is spread.
     (when (and answer *spreading*) (push view (first *spreading*)))
@@ -57,13 +58,13 @@
 (addition fl-pulsed)
 (defun fl-pulsed (fluent &key (handle-missed-pulses :once))
   "Return a view: a fluent that is true if FLUENT was set to another value or pulsed since the view
-was last read. Reading it, or being woken by it, resets it. HANDLE-MISSED-PULSES says what counts
-of the events while no task waited:
+was last read. The view is reset when it is read or wakes a task. HANDLE-MISSED-PULSES says how
+events count that happen while no task waits:
   :ONCE: the next reading is true, however many events there were, even before this call;
   :ALWAYS: as many readings are true as there were events;
   :NEVER: as :ONCE, but events before this call are ignored.
-A network is pulsed when one of its sources is, whatever its value. Signals WRONG-ARGUMENT. (From
-CRAM; the pulse of a network is ours.)"
+A network is pulsed when one of its sources is pulsed, whatever the value of the network. Signals
+WRONG-ARGUMENT. (From CRAM, except for pulses of networks.)"
   (check-argument fl-pulsed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-pulsed handle-missed-pulses
                   (member handle-missed-pulses '(:once :never :always)) ":once, :never or :always")
@@ -72,20 +73,20 @@ CRAM; the pulse of a network is ours.)"
     (make-view 'fl-pulsed bases bases seen :always-p (eq handle-missed-pulses :always))))
 
 (defun counts-each-event-p (fluent)
-  "True if FLUENT is a view that counts each event: see FL-PULSED, :ALWAYS."
+  "True if FLUENT is a view that counts each event: see :ALWAYS in FL-PULSED."
   (and (view-p fluent) (view-always-p fluent)))
 
 (defun function-given-p (object)
-  "True if OBJECT is a function or the name of a defined one."
+  "True if OBJECT is a function or the name of a defined function."
   (or (functionp object)
       (and (symbolp object) (fboundp object) (functionp (symbol-function object))
            (not (macro-function object)) (not (special-operator-p object)))))
 
 (addition fl-value-changed)
 (defun fl-value-changed (fluent &key (test #'eql) (key #'identity))
-  "Return a view: a fluent that is true if KEY of the value of FLUENT differs, by TEST, from what
-it was when the view was last read or, at first, made. Reading it, or being woken by it, resets it.
-A pulse is no change. Signals WRONG-ARGUMENT. (From CRAM.)"
+  "Return a view: a fluent that is true if KEY of the value of FLUENT has changed since the view was
+made or last read. TEST compares the old and the new value of KEY. The view is reset when it is read
+or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (From CRAM.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-value-changed test (function-given-p test) "a function of two values")
   (check-argument fl-value-changed key (function-given-p key) "a function of a value")
@@ -100,7 +101,7 @@ A pulse is no change. Signals WRONG-ARGUMENT. (From CRAM.)"
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 
 (defmacro lifting (operator &rest arguments &environment environment)
-  "Call OPERATOR, the name of a function, with ARGUMENTS; return a network if any is a
+  "Call the function with the name OPERATOR with ARGUMENTS; return a network if any argument is a
 fluent (reading 184)."
   (let* ((bindings (loop for argument in arguments
                          unless (constantp argument environment)
@@ -117,16 +118,18 @@ fluent (reading 184)."
            (,operator ,@values)))))
 
 (defun every-value (&rest values)
-  "Return the last of VALUES, at least one, if all are true: AND as a function."
+  "Return the last of VALUES if all VALUES are true; otherwise NIL. VALUES must not be empty. This
+is AND as a function."
   (and (every #'identity values) (first (last values))))
 
 (defun some-value (&rest values)
-  "Return the first true one of VALUES: OR as a function."
+  "Return the first true value of VALUES, or NIL. This is OR as a function."
   (find-if #'identity values))
 
 (defun lift-junction (name function absorbing thunks)
-  "Return AND (if ABSORBING is NIL) or OR (if it is T) of what THUNKS return, the later ones not
-called if the result is known before. From the first fluent on, the result is a network."
+  "Return AND (if ABSORBING is NIL) or OR (if ABSORBING is T) of the values of THUNKS. Do not call
+further thunks when the result is certain. From the first value that is a fluent on, the result is a
+network."
   (loop for (thunk . more) on thunks
         for value = (one-fluent (funcall (the function thunk)))
         when (fluent-p value)
@@ -139,12 +142,14 @@ called if the result is known before. From the first fluent on, the result is a 
 ;;; The same under the names of the operators, for ordinary code. Each is also a function.
 
 (defmacro define-lifted (&rest operators)
-  "Define functions of package ARS-MAGNA.RPL.LIFTED named as OPERATORS, Lisp functions."
+  "Define functions in the package ARS-MAGNA.RPL.LIFTED with the names of OPERATORS, which are Lisp
+functions."
   `(progn
      ,@(loop for operator in operators
              for name = (find-symbol (symbol-name operator) :ars-magna.rpl.lifted)
              collect `(defun ,name (&rest arguments)
-                        ,(format nil "Return ~A of ARGUMENTS; a network of them if any is a fluent."
+                        ,(format nil "Return ~A of ARGUMENTS; a network if any argument is a
+fluent."
                                  operator)
                         (apply #'lift ',operator #',operator arguments))
              collect `(define-compiler-macro ,name (&rest arguments)
@@ -153,39 +158,41 @@ called if the result is known before. From the first fluent on, the result is a 
 (define-lifted not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
-  "Do as Lisp's AND; from the first of FORMS that is a fluent on, return a network."
+  "Do as Lisp's AND. If the value of one of FORMS is a fluent, return a network of that fluent and
+the remaining forms."
   (cond ((null forms) t)
         ((null (rest forms)) (first forms))
         (t `(lift-junction 'and #'every-value nil
                            (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
-  "Do as Lisp's OR; from the first of FORMS that is a fluent on, return a network."
+  "Do as Lisp's OR. If the value of one of FORMS is a fluent, return a network of that fluent and
+the remaining forms."
   (if (rest forms)
       `(lift-junction 'or #'some-value t
                       (list ,@(loop for form in forms collect `(lambda () ,form))))
       (first forms)))
 
 (defmacro lifted:if (test then &optional else)
-  "Evaluate THEN or ELSE as Lisp's IF; TEST may be a fluent and counts by its value (manual D.2)."
+  "Do as Lisp's IF. TEST may be a fluent; then the value of the fluent counts (manual D.2)."
   `(if (truth-value ,test) ,then ,else))
 
 (defmacro lifted:when (test &body body)
-  "Evaluate BODY if the value of TEST, a fluent or not, is true."
+  "Do as Lisp's WHEN. TEST may be a fluent; then the value of the fluent counts."
   `(when (truth-value ,test) ,@body))
 
 (defmacro lifted:unless (test &body body)
-  "Evaluate BODY if the value of TEST, a fluent or not, is false."
+  "Do as Lisp's UNLESS. TEST may be a fluent; then the value of the fluent counts."
   `(unless (truth-value ,test) ,@body))
 
 (defmacro lifted:cond (&rest clauses)
-  "Evaluate the first of CLAUSES whose test, a fluent or not, has a true value."
+  "Do as Lisp's COND. A test may be a fluent; then the value of the fluent counts."
   `(cond ,@(loop for (test . body) in clauses
                  collect `((truth-value ,test) ,@body))))
 
 (defmacro lifted:loop (&rest forms)
-  "Repeat FORMS; (loop UNTIL test ...) and (loop WHILE test ...) read fluents by value. Other FORMS
-mean what they mean to Lisp's LOOP (manual D.2)."
+  "Do as Lisp's LOOP. In (loop UNTIL test ...) and (loop WHILE test ...), the test may be a fluent;
+then the value of the fluent counts (manual D.2)."
   (cond ((and (symbolp (first forms)) (string= (first forms) "UNTIL"))
          `(loop (when (truth-value ,(second forms)) (return)) ,@(cddr forms)))
         ((and (symbolp (first forms)) (string= (first forms) "WHILE"))

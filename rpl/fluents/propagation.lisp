@@ -14,17 +14,18 @@
 ;;; instant.
 
 (defvar *spreading* nil
-  "While a change is being spread, when networks must not set fluents, a list of one element: the
-views that are true for the instant at which that change happened.")
+  "NIL, or, while a change spreads through networks, a list of one element. The element is the list
+of views that are true for the instant of the change. Meanwhile networks must not set fluents.")
 
 (defun backlog-now ()
-  "Return the backlog of the plan runner at work, or one for this change alone."
+  "Return the backlog of the current plan runner, or a new backlog outside of plan runners."
   (if *runner* (home-backlog *runner*) (make-backlog)))
 
 ;; Costs 1 ns without a trace.
 (declaim (inline note-change))
 (defun note-change (kind fluent value)
-  "Record in the trace of the plan runner at work, if it keeps one, that FLUENT has VALUE now."
+  "Record in the trace of the current plan runner, if it keeps a trace, that FLUENT has the new
+value VALUE."
   (let* ((home *runner*)
          (function (and home (home-on-change home))))
     (when function (funcall function kind fluent value))))
@@ -46,14 +47,15 @@ views that are true for the instant at which that change happened.")
     (setf (svref (backlog-tails backlog) height) derived)))
 
 (defun enqueue (derived backlog how)
-  "Queue DERIVED to be renewed in its turn. HOW is as for RENEW."
+  "Put DERIVED into BACKLOG, to be renewed in its turn. HOW is as for RENEW."
   (unless (derived-queued derived)
     (setf (derived-queued derived) how)
     (append-to-backlog derived backlog (fluent-height derived)))
   (when (eq t how) (setf (derived-queued derived) t)))
 
 (defun dequeue (height backlog)
-  "Return the next derived fluent of HEIGHT, and how to renew it; or NIL."
+  "Remove the next derived fluent of HEIGHT from BACKLOG. Return the fluent and how to renew it; or
+NIL."
   (let ((derived (svref (backlog-heads backlog) height)))
     (when derived
       (let ((successor (shiftf (derived-successor derived) nil)))
@@ -62,7 +64,8 @@ views that are true for the instant at which that change happened.")
         (values derived (shiftf (derived-queued derived) nil))))))
 
 (defun notify-watchers (fluent)
-  "Notify the watchers of FLUENT, changed or pulsed just now, if it is true or in error."
+  "Notify the watchers of FLUENT, which has just changed or been pulsed, if FLUENT is true or in
+error."
   (let ((value (fluent-now fluent))
         (trouble (and (derived-p fluent) (derived-trouble fluent))))
     (when (or value trouble)
@@ -78,10 +81,10 @@ views that are true for the instant at which that change happened.")
 
 (declaim (inline renew))
 (defun renew (derived how kind)
-  "Recompute DERIVED if HOW is T, because one of its sources has changed; not if it is :PULSED.
-Notify its watchers of the change being spread. Its KIND is :PULSE, :BACK after a pulse, or else
-:CHANGE. Return how the dependents of DERIVED are to be renewed, NIL if not at all. A view only
-reports what has happened."
+  "Recompute DERIVED if HOW is T, because one of its sources has changed. Do not recompute DERIVED
+if HOW is :PULSED. Notify the watchers of DERIVED of the change that spreads. The KIND of this
+change is :PULSE, :BACK after a pulse, or otherwise :CHANGE. Return how the dependents of DERIVED
+must be renewed; NIL if they need not be. A pulse of a source does not pulse a view."
   (let* ((true-p (fluent-now derived))
          (changed (and (eq t how) (recompute derived))))
     (cond (changed
@@ -93,7 +96,8 @@ reports what has happened."
            :pulsed))))
 
 (defun spread-by-height (backlog &optional (kind :change))
-  "Renew all that is in BACKLOG, and what depends on it, lowest first. See RENEW."
+  "Renew the fluents in BACKLOG and the fluents that depend on them, lowest height first. See
+RENEW."
   (loop for height from 1
         while (<= height (backlog-highest backlog))
         do (loop
@@ -106,7 +110,7 @@ reports what has happened."
 ;;; Views, see operators.lisp, are true for the instant of a change.
 
 (defun end-instants (instants)
-  "Let the views in the list that is the element of INSTANTS be false again."
+  "Make the views in the list that is the element of INSTANTS false again."
   (let ((backlog (backlog-now)))
     (dolist (view (nreverse (shiftf (first instants) '())))
       (setf (fluent-now view) nil)
@@ -121,7 +125,7 @@ reports what has happened."
      (when (first instants) (end-instants instants))))
 
 (defun spread-to-dependents (fluent kind)
-  "Renew what depends on FLUENT. As long as only one fluent does, no backlog is needed."
+  "Renew the fluents that depend on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
   (spreading
     (let ((how t))
@@ -137,13 +141,14 @@ reports what has happened."
                    (unless how (return)))))))))
 
 (defun spread (fluent kind)
-  "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse: see RENEW."
+  "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse. KIND is as
+for RENEW."
   (notify-watchers fluent)
   (when (fluent-first-link fluent)
     (spread-to-dependents fluent kind)))
 
 (defun spread-all (fluents kind)
-  "Do as SPREAD does for the base FLUENTS, all at one instant."
+  "Do as SPREAD does, for all base fluents in FLUENTS at one instant."
   (if (and fluents (null (rest fluents)))
       (spread (first fluents) kind)
       (let ((backlog (backlog-now)))
@@ -159,27 +164,28 @@ reports what has happened."
                                                   (leave out the quote before ~(~A~))~]"
                                              (names-fluent-p fluent) fluent)))
   (when *spreading*
-    (reject-use "A function lifted over fluents set ~A. Networks only compute: set it in a plan."
+    (reject-use "The function of a network set ~A. Networks must not set fluents: set it in a plan."
                 fluent)))
 
 ;; A fluent is allowed as the value of another.
 (defun check-no-circle (operator fluent value)
-  "Signal WRONG-ARGUMENT if VALUE, which OPERATOR is to give FLUENT, is that or a network of it."
+  "Signal WRONG-ARGUMENT if OPERATOR would set FLUENT to itself or to a network of FLUENT."
   (when (eq value fluent)
     (reject-argument operator 'value value
-                     (format nil "a value, not the fluent itself that is to have it; ~
-                                  (fluent-value ...) of ~A is its value now"
+                     (format nil "a value, not the fluent itself; ~
+                                  (fluent-value ...) of ~A is its current value"
                              (fluent-text fluent))))
   (when (and (derived-p value) (depends-p value (here fluent)))
     (reject-argument operator 'value value
                      (format nil "a value, not a network of ~A itself. In the network write ~
-                                  (fluent-value ...) around that fluent, for its value now"
+                                  (fluent-value ...) around that fluent, for its current value"
                              (fluent-text fluent)))))
 
 ;;; A change for another runner is posted to that runner, or made at once while no thread has it.
 
 (defun other-home (fluent)
-  "Return the home in which FLUENT is to be changed, if this thread is not in it; else NIL."
+  "Return the home in which FLUENT must be changed, if this thread does not own that home; otherwise
+NIL."
   (let ((home (home-of fluent)))
     (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
           ((eq home *runner*) nil)
@@ -194,7 +200,8 @@ reports what has happened."
     (spread fluent :change)))
 
 (defun set-in-home (home fluent value)
-  "Set FLUENT, of HOME, to VALUE: now if no thread has HOME or serves it, otherwise by a post."
+  "Set FLUENT, which belongs to HOME, to VALUE. Set it now if no thread owns HOME or serves it,
+otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
            (call-having home #'take-home (lambda () (set-now fluent value) t)))
@@ -203,10 +210,10 @@ reports what has happened."
 
 (public set-value)
 (defun set-value (fluent value)
-  "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks wake that wait for
-FLUENT or a network of it and find it true. FLUENT must not be a network, nor VALUE be FLUENT or a
-network of it. Any thread may call this; from outside of plans it takes effect when the running
-plans pause (manual D.2)."
+  "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks that wait for FLUENT
+or a network of FLUENT, and find it true, wake. FLUENT must not be a network, and VALUE must not be
+FLUENT or a network of FLUENT. Any thread may call SET-VALUE; from outside of plans it takes effect
+when the running plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
   (unless *runner* (note-outside-change *interface* #'set-value fluent value))
@@ -238,7 +245,8 @@ plans pause (manual D.2)."
     (spread-back fluents)))
 
 (defun spread-back (fluents)
-  "Recompute what depends on FLUENTS, which have their values from before a pulse again."
+  "Recompute the fluents that depend on FLUENTS. After a pulse, FLUENTS have their former values
+again."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
       (spreading
@@ -248,7 +256,7 @@ plans pause (manual D.2)."
 (public pulse)
 (defun pulse (fluent &optional (value t))
   "Set FLUENT to VALUE for an instant, and then back. All tasks wake that wait for FLUENT, or for a
-network that is true at that instant. Return VALUE. Any thread may call this; from outside of plans
+network that is true at that instant. Return VALUE. Any thread may call PULSE; from outside of plans
 it takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
@@ -261,8 +269,8 @@ it takes effect when the running plans pause (manual C)."
   value)
 
 (defun apply-settings (settings)
-  "Apply SETTINGS at one instant: first each (:set fluent value), then each (:pulse fluent [value]),
-all together. So a task woken by the pulses sees the values that came with them (reading 177)."
+  "Apply SETTINGS at one instant: first all (:set fluent value), then all (:pulse fluent [value])
+together. So a task that a pulse wakes sees the values set at the same instant (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
     (loop for (kind given . more) in settings
           for fluent = (progn (check-settable kind given) (here given))
@@ -289,7 +297,8 @@ all together. So a task woken by the pulses sees the values that came with them 
           (t (set-now fluent value)))))
 
 (defun copy-back-values (from realm)
-  "Set the base fluents of REALM to the values of their twins in FROM, a fork of it that is over."
+  "Set the base fluents of REALM to the values of their twins in the realm FROM. FROM is a fork of
+REALM that is over."
   (let ((*realm* realm))
     (loop for each = from then (realm-parent each)
           until (or (null each) (eq each realm))

@@ -13,44 +13,47 @@
 ;;; the forks made since its last change (SEEN counts them) get their twins.
 
 (define-record (realm (:constructor make-realm (parent number)))
-  "The entities of the fork NUMBER of PARENT; or, without PARENT, of all runs that are no forks."
+  "The entities of one fork, or of all runs that are not forks. The fork has the number NUMBER among
+the forks of PARENT. Without PARENT, the realm is that of all runs that are not forks."
   (parent nil (or null realm) :writable)
   (number 0 fixnum :writable)
   (twins (make-hash-table :test 'eq :size 100) hash-table "entities by token")
   (lock (make-lock "realm") t)
   (forks '() list "a list (number . weak realm), the newest first" :writable)
   (room 16 fixnum
-        "how many more forks are made before those that are gone are removed" :writable)
-  (count 0 fixnum "how many forks there have been" :writable)
-  (made 0 (integer 0) "a token, given when it was made" :writable)
-  (sources '() list "weak references to the homes, when the realm was made, of what it is a fork of.
-Can be set" :writable :export)
-  (left-p nil boolean "another fork goes on in the place of this one, which is over" :writable)
+        "how many more forks can be recorded before dead forks are removed from the list" :writable)
+  (count 0 fixnum "how many forks the realm has had so far" :writable)
+  (made 0 (integer 0) "the token given to the realm when it was made" :writable)
+  (sources '() list "weak references to the homes of the forked run, at the time of the fork. Can be
+set" :writable :export)
+  (left-p nil boolean "this fork is over, and another fork has replaced it" :writable)
   (tokens 0 atomic-count :writable))
 
 (define-global +root+ (make-realm nil 0)
-  "The realm of all runs that are no forks.")
+  "The realm of all runs that are not forks.")
 
 (defun next-token ()
-  "Return a number, greater than all that were returned before."
+  "Return a number that is greater than all numbers returned before."
   (1+ (atomic-incf (realm-tokens +root+))))
 
 (declaim (type realm *realm*))
 (defvar *realm* +root+
-  "The realm of the run that this thread works in.")
+  "The realm of the current run of this thread.")
 
 (define-record (entity (:constructor nil))
-  "What has a twin in each fork: a fluent or a valve."
+  "An object that has a twin in each fork: a fluent or a valve."
   (realm *realm* realm "the realm that the entity belongs to" :writable :export)
   (token 0 fixnum :writable)
   (seen 0 fixnum :writable)
-  (first nil t "a weak reference to the first of all twins, once there are any" :writable))
+  (first nil t "a weak reference to the oldest of all twins, or NIL if no twin has been
+made" :writable))
 
 (define-shared-slots entity first)
 
 (declaim (inline here))
 (defun here (entity)
-  "Return ENTITY or, if this thread works in a fork of what that belongs to, its twin there."
+  "Return the object that represents ENTITY in the current run: ENTITY itself or, in a fork of the
+run of ENTITY, its twin."
   (if (eq *realm* (entity-realm entity))
       entity
       (entity-in entity *realm*)))
@@ -60,7 +63,8 @@ Can be set" :writable :export)
         while each thereis (eq each ancestor)))
 
 (defun entity-in (entity realm)
-  "Return ENTITY, or its twin in REALM if that was forked from the realm of ENTITY, or replaces it."
+  "Return the object that represents ENTITY in REALM. This is a twin if REALM was forked from the
+realm of ENTITY or replaces it, and ENTITY otherwise."
   (cond ((eq realm (entity-realm entity)) entity)
         ((descends-p realm (entity-realm entity))
          (or (known-twin entity realm)
@@ -74,14 +78,15 @@ Can be set" :writable :export)
          (gethash (entity-token entity) (realm-twins realm)))))
 
 (defun twin-here (entity)
-  "Return the twin here of ENTITY, of this run or of any fork with the same origin."
+  "Return the object that represents ENTITY in the current run. ENTITY may come from this run or any
+fork with the same origin."
   (or (known-twin entity *realm*) (here entity)))
 
 (defgeneric fresh-twin (entity realm)
-  (:documentation "Return a new object like ENTITY for REALM, without users."))
+  (:documentation "Return a new object like ENTITY for REALM. Nothing uses the new object yet."))
 
 (defun ensure-token (entity)
-  "Return the token of ENTITY, given to it now if it has none."
+  "Return the token of ENTITY. If ENTITY has no token, give it a new one."
   (when (zerop (entity-token entity))
     (with-lock ((realm-lock (entity-realm entity)))
       (when (zerop (entity-token entity))
@@ -90,7 +95,8 @@ Can be set" :writable :export)
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
-  "Make TWIN that of ENTITY in REALM, unless there is one. Return the one that there is."
+  "Make TWIN the twin of ENTITY in REALM, unless REALM has a twin of ENTITY. Return the twin in
+REALM."
   (let ((token (ensure-token entity)))
     (with-lock ((realm-lock realm))
       (or (gethash token (realm-twins realm))
@@ -123,7 +129,7 @@ Can be set" :writable :export)
   (or (copier-variable copier '*realm*) +root+))
 
 (defgeneric foreign-p (entity copier)
-  (:documentation "True if ENTITY is of another run than the one that COPIER copies.")
+  (:documentation "True if ENTITY does not belong to the run that COPIER copies.")
   (:method (entity copier) (declare (ignore entity copier)) nil))
 
 (defmethod copy-plan-value ((entity entity) fork)
@@ -150,19 +156,20 @@ Can be set" :writable :export)
 ;;; that are over, the newest takes the twins of its parent and becomes a fork of its grandparent.
 
 (defun twins-in (realm)
-  "Return a list of the entities that REALM has twins of, as these."
+  "Return a list of all twins in REALM."
   (with-lock ((realm-lock realm))
     (loop for twin being the hash-values of (realm-twins realm) collect twin)))
 
 (defun note-fork (fork realm)
-  "Record FORK in REALM, with a number that REALM has given before."
+  "Record FORK in REALM. The number of FORK is a number that REALM has used before."
   (with-lock ((realm-lock realm))
     (setf (realm-forks realm)
           (merge 'list (list (cons (realm-number fork) (make-weak fork))) (realm-forks realm)
                  #'> :key #'car))))
 
 (defun lift-realm (realm)
-  "Make REALM a fork of its grandparent, if it has one, as if made when its parent was."
+  "Make REALM a fork of its grandparent, as if made at the time of its parent. Do nothing if REALM
+has no grandparent."
   (let* ((parent (realm-parent realm))
          (above (realm-parent parent)))
     (when above
@@ -174,8 +181,9 @@ Can be set" :writable :export)
       (note-fork realm above))))
 
 (defun leave-realm (realm successor)
-  "Remove from SUCCESSOR, a fork of a fork of REALM that replaces that, all references to entities
-of REALM and of its other forks, unless REALM is no fork itself."
+  "Remove all references from SUCCESSOR to entities of REALM, and of the other forks of REALM.
+SUCCESSOR is a fork of a fork of REALM and replaces REALM. If REALM is not a fork, keep these
+references."
   (lift-realm successor)
   (when (realm-parent realm)
     (loop for (nil . weak) in (shiftf (realm-forks realm) '())
@@ -190,7 +198,7 @@ of REALM and of its other forks, unless REALM is no fork itself."
   (:method (entity realm) (declare (ignore entity realm)) t))
 
 (defun make-fork-twins (entity)
-  "Make the twins of ENTITY in the forks made since it changed last."
+  "Make the twins of ENTITY in the forks that were made since the last change of ENTITY."
   (let ((realm (entity-realm entity)))
     (loop for (number . weak) in (realm-forks realm)
           while (> number (entity-seen entity))
@@ -201,6 +209,7 @@ of REALM and of its other forks, unless REALM is no fork itself."
 
 (declaim (inline before-change))
 (defun before-change (entity)
-  "Make the twins of ENTITY that forks need, before its state changes. To be called each time."
+  "Make the twins of ENTITY that forks need. Must be called before each change of the state of
+ENTITY."
   (when (< (entity-seen entity) (realm-count (entity-realm entity)))
     (make-fork-twins entity)))

@@ -7,14 +7,14 @@
 ;;; keep theirs, and the branches of a PAR-LOOP have each their own.
 
 (define-expression binding
-  "BODY run in the environment that FILL returns."
+  "Runs BODY in the environment that the function FILL returns."
   (:hot)
   (:parts (fill function) (body node))
   (:step (enter-last body (the simple-vector (funcall fill environment)) frame)))
 
 (define-expression filling
-  "BODY run in an environment of the values of PARTS, some of which may wait. A frame counts the
-parts begun; its memory is the environment to be."
+  "Runs BODY in an environment of the values of PARTS, some of which may wait. A frame counts the
+parts begun; its memory is the new environment."
   (:parts (parts simple-vector) (sequential t) (body node))
   (:step
    (let ((i (frame-counter frame))
@@ -34,7 +34,8 @@ parts begun; its memory is the environment to be."
             variables)))
 
 (defun fill-lambda (values scopes sequential)
-  "Return the lambda expression that makes an environment of the forms VALUES, each in its scope."
+  "Return a lambda expression that makes an environment of the values of the forms VALUES, each in
+its scope of SCOPES."
   (if sequential
       (let ((inner (scope-variable (first scopes))))
         `(lambda (outer)
@@ -58,7 +59,7 @@ parts begun; its memory is the environment to be."
                                         (scope-fluents inner)))))
 
 (defun binding-code (form bindings body scope sequential)
-  "Return code for FORM, a LET or, if SEQUENTIAL, a LET*."
+  "Return code for FORM, a LET. If SEQUENTIAL is true, FORM is a LET*."
   (let* ((bindings (untyped-bindings bindings (operator-text form)))
          (variables (loop for binding in bindings
                           collect (if (consp binding) (first binding) binding)))
@@ -93,7 +94,7 @@ parts begun; its memory is the environment to be."
 ;;; Several values.
 
 (define-expression value-binding
-  "BODY run in an environment of the first COUNT values of SOURCE."
+  "Runs BODY in an environment of the first COUNT values of SOURCE."
   (:parts (count fixnum) (source node) (body node))
   (:steps
    (begin
@@ -120,8 +121,8 @@ parts begun; its memory is the environment to be."
 ;;; procedure unless its name is also used as #'name.
 
 (defun entry-lambda (parameters scope outer)
-  "Return the lambda expression that takes arguments for PARAMETERS, after the environment around
-them if OUTER, and returns the environment for a procedure's body."
+  "Return a lambda expression that takes arguments for PARAMETERS and returns the environment for a
+procedure's body. If OUTER is true, the first argument is the environment around the procedure."
   (let ((make `(vector ,(and outer (scope-variable scope))
                        ,@(lambda-list-variables parameters))))
     (cond ((not outer)
@@ -135,7 +136,7 @@ them if OUTER, and returns the environment for a procedure's body."
   (suspension (note-own-text `(function (lambda ,parameters ,@body))) scope))
 
 (defun check-lambda-list (parameters scope)
-  "Signal MISPLACED-SUSPENSION if a default in PARAMETERS would wait."
+  "Signal MISPLACED-SUSPENSION if a default form in PARAMETERS would wait."
   (multiple-value-bind (suspends reason) (lambda-suspension parameters '() scope)
     (when (eq suspends :must)
       (reject-suspension reason (list 'lambda parameters)))))
@@ -153,7 +154,7 @@ them if OUTER, and returns the environment for a procedure's body."
       (:may (not (mentions-function-p name forms))))))
 
 (defun local-procedures (definitions scope recursive forms)
-  "Return those of DEFINITIONS that are to be procedures."
+  "Return those of DEFINITIONS that must become plan procedures."
   (loop with known = '()
         for scope-now = (if recursive (procedure-scope scope known) scope)
         for found = (remove-if-not (lambda (definition)
@@ -183,7 +184,8 @@ them if OUTER, and returns the environment for a procedure's body."
                                 (lambda (scope) (binding-body-code body scope))))))
 
 (defun local-procedure-code (definition variable scope)
-  "Return code that completes the procedure in VARIABLE; SCOPE is that of DEFINITION."
+  "Return code that completes the procedure in VARIABLE. DEFINITION is its local definition, and
+SCOPE the scope of DEFINITION."
   (destructuring-bind (name parameters . body) definition
     (let ((parameters (untyped-lambda-list parameters (string-downcase name))))
       (check-lambda-list parameters scope)
@@ -194,7 +196,7 @@ them if OUTER, and returns the environment for a procedure's body."
                                    (variable-scope scope (lambda-list-variables parameters)))))))
 
 (defun functions-code (form definitions body scope recursive)
-  "Return code for FORM, an FLET or, if RECURSIVE, a LABELS."
+  "Return code for FORM, an FLET. If RECURSIVE is true, FORM is a LABELS."
   (let* ((procedures (local-procedures definitions scope recursive (rest form)))
          (functions (set-difference definitions procedures))
          (names (mapcar #'first functions))

@@ -12,7 +12,7 @@
         (values (make-frame node environment up) nil))))
 
 (define-expression steps
-  "Expressions, at least one, run in order. A frame counts those begun."
+  "Runs one or more expressions in order. A frame counts the expressions begun."
   (:hot)
   (:parts (parts simple-vector))
   (:step
@@ -24,7 +24,7 @@
          (enter-last (the node (svref parts i)) environment frame)))))
 
 (setf (documentation 'steps-parts 'function)
-      "Return the vector of the nodes that are run one after the other.")
+      "Return the vector of the nodes that a node of type STEPS runs one after the other.")
 
 (defmethod current-form ((node steps) frame)
   (let ((i (frame-counter frame)))
@@ -41,7 +41,7 @@
                  scope)))
 
 (defun body-code (forms scope)
-  "Return code for FORMS as the steps of a body, of which the last one gives the values."
+  "Return code for FORMS as the steps of a body. The last form gives the values of the body."
   (cond
     ((null forms) '+nothing+)
     ((null (rest forms)) (plan-code (first forms) scope))
@@ -50,7 +50,7 @@
          (check-after-whenever forms)))))
 
 (defun binding-body-code (forms scope)
-  "Return code for FORMS, a body that may start with declarations, which are ignored."
+  "Return code for FORMS, a body that may start with declarations. Declarations are ignored."
   (body-code (remove-if #'declaration-p forms) scope))
 
 (defun declaration-p (form)
@@ -65,8 +65,8 @@
 ;;; The forms.
 
 (define-construct seq (&body steps)
-  "Run STEPS in order and return the value of the last one; fail as soon as one fails. Policies
-get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
+  "Run STEPS in order and return the value of the last step. SEQ fails as soon as one step fails.
+Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
   (:manual)
   (:waits :may)
   (:in-lisp `(progn ,@steps))
@@ -94,7 +94,8 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
 ;;;; Choices
 
 (define-expression branch
-  "The one of BRANCHES whose index CHOOSER returns; nothing if it returns NIL."
+  "Runs the one of BRANCHES whose index the function CHOOSER returns. If CHOOSER returns NIL, runs
+nothing."
   (:parts (chooser function) (branches simple-vector))
   (:step
    (let ((index (funcall chooser environment)))
@@ -103,7 +104,7 @@ get their chance between steps. In ordinary Lisp, PROGN (manual D.2)."
          (values (frame-up frame) nil)))))
 
 (defun choice-code (form test then else scope)
-  "Return code for a choice by TEST, whose source is FORM. THEN and ELSE are lists of forms."
+  "Return code for FORM, a choice by TEST. THEN and ELSE are lists of forms."
   (if (suspends-p test scope)
       (with-gensyms (value)
         (plan-code (note-expansion `(let ((,value ,test))

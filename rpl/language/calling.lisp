@@ -8,7 +8,7 @@
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
 
 (define-expression call
-  "A call, with COUNT arguments, of a procedure or of a function unknown to the compiler."
+  "A call, with COUNT arguments, of a procedure or of a function that the compiler does not know."
   (:parts (procedure procedure) (count fixnum) (caller function))
   (:steps
    (begin
@@ -25,7 +25,8 @@
    (inside (values (frame-up frame) value))))
 
 (defun call-code (form scope)
-  "Return code for FORM, a call of a procedure or an unknown function; its arguments do not wait."
+  "Return code for FORM, a call of a procedure or of an unknown function. The arguments of FORM do
+not wait."
   (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))
@@ -37,20 +38,21 @@
                                       '%function))))
 
 (defun name-without-quote-p (name scope)
-  "True if NAME, a form in SCOPE, is a symbol and no variable."
+  "True if NAME, a form in SCOPE, is a symbol that is not a variable."
   (and name
        (symbolp name)
        (not (constantp name))
        (not (known-variable-p name (scope-environment scope)))))
 
 (defun check-quote (plan form scope)
-  "Warn if PLAN, for the plan that FORM in SCOPE is about, is the name of one and no variable."
+  "Warn if PLAN, the form of a plan in FORM, is the unquoted name of a plan and not a variable in
+SCOPE."
   (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
-    (doubt-own-form form "~(~A~) is a plan and no variable. Quote its name: '~:*~(~A~)." plan)))
+    (doubt-own-form form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
 
 (define-construct call-plan (plan &rest arguments)
-  "Run PLAN, a plan procedure or the name of one, with ARGUMENTS as part of a plan; return its
-values."
+  "Run PLAN, a plan procedure or its name, with ARGUMENTS as part of a plan; return the values of
+PLAN."
   (:arguments plan &rest arguments)
   (:parts (entry function (progn (check-quote plan form scope)
                                  (value-lambda `(enter-plan ,plan ,@arguments) scope))))
@@ -66,11 +68,11 @@ values."
 
 (addition *plan-depth-limit*)
 (defparameter *plan-depth-limit* 2000
-  "How deep calls of plans may be nested, also across tasks, before a call fails with class
-:TOO-DEEP: a number from 1. Stops endless recursion (ours).")
+  "The largest depth of nested calls of plans, a number from 1. The depth also counts calls across
+tasks. A deeper call fails with class :TOO-DEEP. This stops endless recursion.")
 
 (defun depth-around (task frame)
-  "Return how deep the innermost call is that FRAME of TASK is part of, 0 if there is none."
+  "Return the depth of the innermost call around FRAME of TASK; 0 if there is no call around FRAME."
   (loop
     (loop for each = frame then (frame-up each)
           while each
@@ -81,7 +83,7 @@ values."
     (setf frame (task-frame task))))
 
 (defun note-depth (task frame)
-  "Note how deep the call of FRAME is, or let TASK fail if that is too deep."
+  "Record the depth of the call of FRAME, or let TASK fail if the depth is too large."
   (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
     (when (> depth *plan-depth-limit*)
       (fail :class :too-deep :depth depth :limit *plan-depth-limit*
@@ -104,13 +106,14 @@ values."
 ;;;; Calls with a list of arguments
 
 (defstruct (application (:include call-plan-node) (:copier nil))
-  "A call of the plan and with the list of arguments that are the variables of its environment.")
+  "A call of a plan with a list of arguments. The plan and the list are the variables of its
+environment.")
 
 (define-global +application+
     (make-application :form '(call-plan)
                       :entry (lambda (environment)
                                (apply #'enter-plan (svref environment 1) (svref environment 2))))
-  "The one application that there is.")
+  "The only object of type APPLICATION.")
 
 (defmethod current-form ((node application) frame)
   (destructuring-bind (plan arguments) (rest (coerce (frame-environment frame) 'list))
@@ -120,12 +123,12 @@ values."
           (list* 'call-plan plan arguments)))))
 
 (defun enter-application (plan arguments frame)
-  "Begin PLAN, a procedure or its name, with ARGUMENTS for FRAME. Return what a step returns."
+  "Begin PLAN, a procedure or its name, with ARGUMENTS, for FRAME. Return what a step returns."
   (enter +application+ (vector (frame-environment frame) plan arguments) frame))
 
 (define-construct apply-plan (plan arguments)
-  "Run PLAN, a plan procedure or the name of one, with the list ARGUMENTS as part of a plan; return
-its values. (Ours: what APPLY is to FUNCALL, it is to CALL-PLAN.)"
+  "Run PLAN, a plan procedure or its name, with the list ARGUMENTS as part of a plan; return the
+values of PLAN. (APPLY-PLAN is to CALL-PLAN what APPLY is to FUNCALL.)"
   (:arguments plan arguments)
   (:parts (plan function (value-lambda plan scope))
           (arguments function (value-lambda arguments scope)))
@@ -139,7 +142,7 @@ its values. (Ours: what APPLY is to FUNCALL, it is to CALL-PLAN.)"
 
 (addition called-procedures)
 (defun called-procedures (procedure)
-  "Return a list of the plan procedures that PROCEDURE, one of them, calls by name."
+  "Return a list of the plan procedures that the plan procedure PROCEDURE calls by name."
   (let ((seen (make-hash-table :test 'eq))
         (called '()))
     (labels ((visit (part)

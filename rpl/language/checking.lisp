@@ -10,7 +10,8 @@
 ;;; Calls in Lisp code are checked by Lisp.
 
 (defun warn-at-form (warn form control arguments)
-  "Let WARN, a function, say of FORM, at its place, what is formatted from CONTROL and ARGUMENTS."
+  "Let the function WARN report a text about FORM, with the source location of FORM. The text is
+formatted from CONTROL and ARGUMENTS."
   (call-at-place form
                  (lambda ()
                    (funcall warn "~A~@[ (~A)~]: ~A" (text-title) (clause-place form)
@@ -25,12 +26,13 @@
   (warn-at-form #'doubt-definition form control arguments))
 
 (defun doubt-own-form (form control &rest arguments)
-  "Do as DOUBT-FORM if FORM is of the plan's own text."
+  "Do as DOUBT-FORM if FORM belongs to the text of the plan itself."
   (when (own-text-p form)
     (warn-at-form #'doubt-definition form control arguments)))
 
 (defun known-operators (&optional (package *package*))
-  "Return the names, longer than a letter, that calls in PACKAGE could be meant for."
+  "Return the names of operators that a misspelt call in PACKAGE could mean. Names of one letter are
+left out."
   (let ((names (declared-names)))
     (do-symbols (symbol package names)
       (when (and (known-function-p symbol nil)
@@ -39,7 +41,7 @@
         (push symbol names)))))
 
 (defun nearest-operator (name)
-  "Return the name of the known operator that NAME may be meant for, or NIL."
+  "Return the name of the known operator most similar to NAME, or NIL."
   (let ((nearest (and (< 1 (length (symbol-name name)))
                       (nearest-name name (known-operators)))))
     (and nearest (plain-name nearest))))
@@ -51,40 +53,42 @@
                     (first form) (shape-text lambda-list) trouble))))
 
 (defun nisp-namesake (name)
-  "Return the construct or function of NISP that is called like NAME and is another, or NIL."
+  "Return the construct or function of NISP that has the same name as NAME but is another symbol, or
+NIL."
   (multiple-value-bind (symbol status)
       ;; To packages with local nicknames NISP may mean another.
       (let ((*package* (find-package "KEYWORD"))) (find-symbol (symbol-name name) "NISP"))
     (and (eq :external status) (not (eq symbol name)) (fboundp symbol) symbol)))
 
 (defun doubt-namesake (form)
-  "Warn if FORM, of the author's text, uses a macro of the Lisp system's that is called like a
-construct of NISP, as WAIT-FOR is in packages that do not use NISP."
+  "Warn if FORM, a form that the author wrote, uses a macro of the Lisp system with the name of a
+construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
   (let ((name (first form)))
     (when (and *definition*
                (lisps-own-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisp-namesake name))
-      (doubt-form form "~(~A~) is not that of plans; NISP has one. Write (in-package :ars-user), ~
-                        or nisp:~:*~(~A~)." (symbol-name name)))))
+      (doubt-form form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
+                        (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
 
 (defgeneric advice-on-call (name)
-  (:documentation "Return in sentences why NAME, a symbol, is the name of no plan procedure or
-function, and what to write; or NIL. Layers that know more names have methods.")
+  (:documentation "Return sentences about why the symbol NAME is not the name of a plan procedure or
+function, and what to write instead; or NIL. Layers that know more names have methods.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun unknown-call-remedy (name)
-  "Return NAME, of no plan procedure or function, and in sentences what to write instead; or NIL."
+  "Return a text of NAME, which is not the name of a plan procedure or function, and sentences about
+what to write instead; or NIL."
   (let ((namesake (find-procedure name nil)) (advice (advice-on-call name)))
     (cond (namesake
-           (format nil "~(~S~). If the plan of another package is meant, write ~(~S~)."
+           (format nil "~(~S~). If you mean the plan in another package, write ~(~S~)."
                    name (procedure-name namesake)))
           (advice (format nil "~(~A~): ~A" name advice))
           ((known-fluent-variable-p name)
            (format nil "~(~A~). It is a fluent: leave out the parentheses." name))
           ((nisp-namesake name)
-           (format nil "~(~S~); NISP has one. Write (in-package :ars-user), or use the package ~
-                        NISP in yours." name)))))
+           (format nil "~(~S~); the package NISP has one. Write (in-package :ars-user), or let ~
+                        your package use NISP." name)))))
 
 (defun warn-of-unknown (form)
   (let* ((name (first form)) (remedy (unknown-call-remedy name)))
@@ -96,18 +100,19 @@ function, and what to write; or NIL. Layers that know more names have methods.")
                        name (nearest-operator name))))))
 
 (defun check-known-call (form)
-  "Warn if the call FORM is wrong, as far as is known now."
+  "Warn if the call FORM is wrong by the definitions known now."
   (let ((name (first form)))
     (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
           ((macro-function name)
-           (warn-of-form form "~(~A~) is a macro that is defined only later." name))
+           (warn-of-form form "~(~A~) is a macro that is defined only after this call." name))
           ((known-function-p name nil)
            (multiple-value-bind (arguments known) (function-arguments name)
              (when known (check-fit form arguments))))
           (t (warn-of-unknown form)))))
 
 (defun check-later (check form)
-  "Call CHECK with FORM when all has been read, as if at this place."
+  "Call CHECK with FORM at the end of the compilation unit, with the source location and package of
+the current form."
   (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
         (loaded *load-truename*))
     (at-end-of-unit form
@@ -118,21 +123,23 @@ function, and what to write; or NIL. Layers that know more names have methods.")
                           (funcall check form)))))))
 
 (defun check-call (form scope)
-  "Warn, when all has been read, if FORM, a call of a plan or an unknown function, is wrong."
+  "Warn if FORM, a call of a plan or of an unknown function in SCOPE, is wrong. Calls of global
+names are checked at the end of the compilation unit."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
         (check-fit form (fourth local))
         (check-later #'check-known-call form))))
 
 (defun check-lisp-call (form)
-  "Warn if FORM, a call in a Lisp form that a plan cannot wait inside, turns out to call a plan."
+  "Warn if FORM, a call inside a Lisp form in which plans cannot wait, turns out to be a call of a
+plan."
   (when (procedure-name-p (first form))
-    (warn-of-form form "~(~A~) is a plan procedure, defined only later. It cannot be called inside ~
-                        of a lambda, or another form that only Lisp runs."
+    (warn-of-form form "~(~A~) is a plan procedure that is defined only later. A plan procedure ~
+                        cannot be called inside a lambda, or another form that only Lisp runs."
                   (first form))))
 
 (defun list-slip (part expected)
-  "Return in words that PART, a name, perhaps quoted, stands where a list like EXPECTED should."
+  "Return a text that PART, a name or a quoted name, must be a list of the shape EXPECTED; or NIL."
   (let ((name (if (typep part '(cons (eql quote) (cons symbol null))) (second part) part)))
     (and name
          (typep name '(or symbol real))
@@ -140,7 +147,7 @@ function, and what to write; or NIL. Layers that know more names have methods.")
          (format nil "~(~S~): write (~(~A~))" part name))))
 
 (defun value-slip (shape rest)
-  "Return in words that the first of REST, forms, stands where a keyword of SHAPE should; or NIL."
+  "Return a text that a keyword of SHAPE is missing before the first of the forms REST; or NIL."
   (let ((value (first rest)))
     (and (oddp (length rest))
          (not (keywordp value))
@@ -148,8 +155,9 @@ function, and what to write; or NIL. Layers that know more names have methods.")
                  (loop for key in (shape-keys shape) collect (format nil "~S ~S" key value))))))
 
 (defun slip-in-construct (form lambda-list)
-  "Return in words the keyword in FORM, a construct's, or in a list of options there, that is none
-of LAMBDA-LIST's, or what stands there for such a list; or NIL."
+  "Return a text of the mistake in the arguments of FORM, a call of a construct with LAMBDA-LIST, or
+in a list of options in FORM; or NIL. A mistake is a keyword that LAMBDA-LIST does not have, or
+another form in the place of a keyword or a list of options."
   (let ((shape (shape-of lambda-list)))
     (and (proper-list-p form)
          (or (and (consp (shape-keys shape))
@@ -163,8 +171,8 @@ of LAMBDA-LIST's, or what stands there for such a list; or NIL."
                                     (slip-in-construct (cons (first form) part) expected))))))))
 
 (defun find-call (test forms)
-  "Return the first call in FORMS for which TEST is true, or NIL. Code that is called later is not
-searched, nor a call for which TEST returns :NOWHERE."
+  "Return the first call in FORMS for which TEST is true, or NIL. Do not search code that is called
+later, nor inside a call for which TEST returns :NOWHERE."
   (loop for tail = forms then (rest tail)
         while (consp tail)
         thereis (let* ((form (first tail)) (answer (and (consp form) (funcall test form))))
@@ -180,7 +188,7 @@ searched, nor a call for which TEST returns :NOWHERE."
 ;;; Forms after a form that never ends.
 
 (defun may-return-p (form)
-  "True if FORM leaves a block, or may stand for one that does."
+  "True if FORM leaves a block, or is a macro call that may expand to such a form."
   (or (operator-in-p form '("RETURN" "RETURN-FROM" "GO"))
       (let ((operator (first form)))
         (and (symbolp operator)
@@ -193,31 +201,32 @@ searched, nor a call for which TEST returns :NOWHERE."
                                                                      home)))))))))))
 
 (defun endless-whenever-p (form)
-  "True if FORM is a WHENEVER that only a failure or what is around it can end."
+  "True if FORM is a WHENEVER that only a failure or a form around it can end."
   (and (consp form)
        (operator-in-p form '("WHENEVER"))
        (null (find-call #'may-return-p (rest form)))))
 
 (defun check-after-whenever (forms)
-  "Warn if one of FORMS, steps, is a WHENEVER that never ends, and not the last."
+  "Warn if one of FORMS, a list of steps, is a WHENEVER that never ends and is not the last step."
   (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
-      (doubt-form form "what stands after whenever is never done, as that goes on until something ~
-                        in it calls (return). Put both into (par ...), or use (with-policy ~
-                        (whenever ...) body...)."))))
+      (doubt-form form "the forms after whenever never run, because whenever goes on until a form ~
+                        in it calls (return). Put whenever and these forms into (par ...), or use ~
+                        (with-policy (whenever ...) body...)."))))
 
 ;;; Variables.
 
 (defun check-use (variables where form)
-  "Warn of those of VARIABLES, bound by FORM, that the forms WHERE do not mention."
+  "Warn about each of VARIABLES, the variables bound by FORM, that the list of forms WHERE does not
+mention."
   (when (in-source-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
-        (doubt-form form "the variable ~(~A~) is never used. If that is meant, say (declare ~
+        (doubt-form form "the variable ~(~A~) is never used. If this is intended, write (declare ~
                           (ignore ~:*~(~A~)))." variable)))))
 
 (defun check-distinct (variables form)
-  "Signal MALFORMED-DEFINITION if one of VARIABLES, bound by FORM at once, is there twice."
+  "Signal MALFORMED-DEFINITION if FORM binds one of VARIABLES twice."
   (let ((twice (loop for (variable . more) on variables
                      when (member variable more) return variable)))
     (when twice

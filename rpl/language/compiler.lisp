@@ -15,7 +15,7 @@
        (not (local-function-p (first form) environment))))
 
 (defun operand-form (form environment)
-  "Return the form for the value of FORM, an argument of a lifted operator in a condition."
+  "Return a form for the value of FORM, an argument of a lifted operator in a condition."
   (cond ((own-operation-p form environment '("AND" "OR" "NOT" "NULL"))
          (condition-form form environment))
         ((own-operation-p form environment *lifted-operators*)
@@ -25,7 +25,7 @@
         (t `(operand-value ,form))))
 
 (defun condition-form (form environment)
-  "Return a form that is true if FORM is, fluents counting by their values."
+  "Return a form that is true if FORM is true, where the value of a fluent counts."
   (flet ((conditions (operator)
            (keep-place `(,operator ,@(loop for form in (rest form)
                                            collect (condition-form form environment)))
@@ -40,7 +40,8 @@
           (t (keep-place `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
-  "Return what FORM, a call in the plan's own text, means; FORM itself if it is as in Lisp."
+  "Return a Lisp form with the meaning that FORM, a call in the text of a plan, has in plans. If
+FORM means the same in Lisp, return FORM."
   (let ((name (or (plan-operator-name form) "")))
     (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
       (mapc #'check-condition (rest form)))
@@ -63,13 +64,15 @@
             (t form)))))
 
 (defun ccase-meaning (form)
-  "Return what FORM, a CCASE, means: another key is stored into a variable, not into the fluent."
+  "Return a Lisp form with the meaning of FORM, a CCASE, in plans. A new key is stored in a
+variable, not in the fluent."
   (with-gensyms (key)
     `(let ((,key (operand-value ,(second form))))
        (,(first form) ,key ,@(cddr form)))))
 
 (defun let-meaning (form)
-  "Return FORM, a LET, without types; FORM itself if there are none."
+  "Return FORM, a LET, without the types of its variables. If FORM has no types, return FORM
+itself."
   (if (and (listp (second form)) (find '- (second form)))
       `(,(first form) ,(untyped-bindings (second form)) ,@(cddr form))
       form))
@@ -83,10 +86,10 @@
 
 (defparameter *tests-in-loops*
   '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")
-  "The words after which a test stands in LOOP.")
+  "The keywords of LOOP that a test follows.")
 
 (defun extended-loop-meaning (form environment)
-  "Return FORM, a LOOP of Lisp's own kind, whose tests read fluents by value."
+  "Return FORM, an extended LOOP of Lisp, with tests that use the values of fluents."
   (let ((last nil) (test-p nil))
     (flet ((word-p (word words) (and (symbolp word) (member word words :test #'string=))))
       (cons (first form)
@@ -123,17 +126,18 @@
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun condition-lambda (form scope)
-  "Return the lambda expression, of the environment, for the fluent that FORM, a condition, is."
+  "Return a lambda expression that returns the fluent or other object of the condition FORM, for an
+environment."
   (check-condition form)
   (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 
 (defun awaited-lambda (condition form scope)
-  "Return the lambda expression as CONDITION-LAMBDA does, for what FORM waits for."
+  "Do as CONDITION-LAMBDA for CONDITION, which FORM waits for, and warn of mistakes in CONDITION."
   (check-awaited condition form scope)
   (condition-lambda condition scope))
 
 (defun value-lambda (form scope)
-  "Return the lambda expression, of the environment, for the one value of FORM."
+  "Return a lambda expression that returns the first value of FORM, for an environment."
   (leaf-lambda (as-lisp form scope) scope))
 
 (defun bundle-up (&optional value &rest more)
@@ -150,16 +154,16 @@
 ;;; Functions named X-CODE return a form that builds nodes. It is run when the plan is loaded.
 
 (defun element-names (lambda-list)
-  "Return the variables of LAMBDA-LIST, a destructuring one without defaults."
+  "Return a list of the variables of LAMBDA-LIST, a destructuring lambda list without defaults."
   (cond ((null lambda-list) '())
         ((atom lambda-list)
          (unless (member lambda-list lambda-list-keywords) (list lambda-list)))
         (t (append (element-names (car lambda-list)) (element-names (cdr lambda-list))))))
 
 (defmacro define-plan-form (name suspends lambda-list (form scope) &body body)
-  "Let plans understand the operator called NAME, a string, or a symbol: BODY returns the code for
-FORM in SCOPE, its arguments bound by LAMBDA-LIST. SUSPENDS says whether it makes a task wait: see
-SUSPENSION."
+  "Define the meaning in plans of the operator with the name NAME, a string or a symbol. BODY
+returns the code for FORM in SCOPE; the variables of LAMBDA-LIST are bound to the arguments of FORM.
+SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
   (let ((names (element-names lambda-list)))
     (with-gensyms (fits values)
       `(setf (gethash (operator-key ',name) *plan-forms*)
@@ -182,19 +186,21 @@ SUSPENSION."
                            (slip-in-construct form lambda-list)))))
 
 (defun refuse-code (form scope &optional (container form))
-  "Return code for FORM, of CONTAINER, a leaf. Signals MISPLACED-SUSPENSION if it would wait."
+  "Return code for FORM as a leaf. Signal MISPLACED-SUSPENSION if FORM, which is inside CONTAINER,
+would wait."
   (multiple-value-bind (suspends reason) (suspension form scope)
     (if (eq suspends :must)
         (reject-suspension reason container)
         (leaf-code form scope))))
 
 (defun suspends-p (form scope)
-  "True if FORM in SCOPE makes its task wait, or may do so."
+  "True if FORM in SCOPE makes its task wait, or may make it wait."
   (and (or (consp form) (symbol-macro-p form (scope-environment scope)))
        (suspension form scope)))
 
 (defun binds-fluents-p (form scope)
-  "True if FORM is a LET of the plan that binds variables to fluents, which leaves do not note."
+  "True if FORM is a LET in the text of a plan that binds variables to fluents. Leaves do not record
+such bindings."
   (and (consp form)
        (own-text-p form)
        (operator-in-p form '("LET" "LET*"))
@@ -204,8 +210,9 @@ SUSPENSION."
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
 (defun hoisted-code (form scope &optional (fixed 1))
-  "Return code for FORM; those of its elements after the first FIXED that suspend are bound before
-it, and those to the left of them too, to keep the order."
+  "Return code for FORM, whose first FIXED elements stay in place. The other elements that suspend,
+and those to the left of them, are bound to variables before FORM. This keeps the order of
+evaluation."
   (let* ((parts (nthcdr fixed form))
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
          (names (loop for part in (subseq parts 0 count)
@@ -223,7 +230,7 @@ it, and those to the left of them too, to keep the order."
                scope)))
 
 (defun function-form-code (form scope)
-  "Return code for FORM, a call whose operator has no meaning of its own in plans."
+  "Return code for FORM, a call of an operator without a special meaning in plans."
   (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))
          (hoisted-code form scope))
         ((call-suspends form scope (scope-environment scope)) (call-code form scope))
@@ -238,7 +245,7 @@ it, and those to the left of them too, to keep the order."
                 form)))
 
 (defun naming-code (code scope)
-  "Return CODE for a node that knows the names of the variables in SCOPE."
+  "Return CODE, extended so that its node has the names of the variables in SCOPE."
   (let ((names (names-by-level scope)))
     (if (some #'identity names)
         `(name-variables ,code ',names)

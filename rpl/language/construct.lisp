@@ -9,12 +9,12 @@
 ;;; FRAME-STATE use the number that stands for a state, in the frame's counter.
 
 (defun clause (key clauses)
-  "Return what follows KEY in that of CLAUSES, (key ...), and true if there is one."
+  "Return the rest of the clause (KEY ...) in CLAUSES, and true if CLAUSES has such a clause."
   (let ((clause (assoc key clauses)))
     (values (rest clause) (and clause t))))
 
 (defun check-clauses (definer name clauses allowed)
-  "Signal MALFORMED-DEFINITION unless each of CLAUSES starts with one of ALLOWED, keywords."
+  "Signal MALFORMED-DEFINITION unless each of CLAUSES starts with one of the keywords ALLOWED."
   (dolist (clause clauses)
     (unless (member (first (ensure-list clause)) allowed)
       (reject-clause (title definer name) clause
@@ -25,7 +25,8 @@
       (reject-name "state" name names)))
 
 (defun with-node-form (name clauses forms)
-  "Return a form that runs FORMS with the parts and states that CLAUSES give the node NAME."
+  "Return a form that runs FORMS with access to the parts and states that CLAUSES define for nodes
+of type NAME."
   (let ((states (mapcar #'first (clause :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))
@@ -38,7 +39,8 @@
          ,@forms))))
 
 (defun state-forms (states)
-  "Return the forms of a step in STATES, each (state form...): a local function for each of them."
+  "Return the forms of a step with the states STATES, each (state form...). Each state becomes a
+local function."
   (let* ((names (mapcar #'first states))
          (functions (loop for name in names collect (make-symbol (symbol-name name)))))
     `((macrolet ((at-once (state)
@@ -60,7 +62,8 @@
      ,(with-node-form name clauses forms)))
 
 (defun node-functions (name clauses)
-  "Return a list of (slot function definition): what a node called NAME does, as CLAUSES say."
+  "Return a list of lists (slot function definition) for the slots of a node of type NAME, as
+CLAUSES define them."
   (flet ((row (slot prefix variables forms)
            (when forms
              (let ((function (symbolicate prefix '- name)))
@@ -73,20 +76,22 @@
             (row 'child-ended 'child-ended '(child how result) (clause :child-ended clauses)))))
 
 (defmacro define-expression (name documentation &body clauses)
-  "Define NAME as a kind of node, a structure. DOCUMENTATION says what it does. CLAUSES:
-(:parts (name type)...): its slots, besides those of all nodes; all must be given to MAKE-NAME.
-(:steps (state form...)...): what a step does in each state. A frame begins in the first. The forms
-of the others run when what the frame has started in that state, such as an inner expression, has
-ended. Visible are NODE, TASK, FRAME, the VALUE of what has ended, the parts by name, the frame's
-ENVIRONMENT, and MEMORY, a place for its own data, at first NIL. (next state) is the state of the
-next step; (at-once state) takes that step, too. The forms return the next frame and its value:
-(values (frame-up frame) value) ends the expression, (enter part environment frame) runs a part; or
-+PARKED+ if TASK now waits.
-(:step form...): the same for an expression without states, which may use (frame-counter frame).
-(:unwind form...): what is done when SIGNAL passes, see NODE; (in-state-p state) is true if the
-frame is in that state. (:child-ended form...): what is done when CHILD has ended as HOW with
-RESULT.
-(:hot): a profile has shown that this one must be fast."
+  "Define NAME as a type of nodes, a structure. DOCUMENTATION says what the nodes do. CLAUSES:
+(:parts (name type)...): the slots of the node, besides those of all nodes. All must be given to
+MAKE-NAME.
+(:steps (state form...)...): the forms of a step in each state. A frame begins in the first state.
+The forms of another state run when the activity that the frame started for this state, such as an
+inner expression, has ended. These variables are visible: NODE, TASK, FRAME, VALUE (the value of the
+ended activity), the parts by name, ENVIRONMENT (of the frame), and MEMORY (a place for data of the
+frame, at first NIL). (next state) sets the state of the next step; (at-once state) also takes that
+step now. The forms return the next frame and its value. (values (frame-up frame) value) ends the
+expression, (enter part environment frame) runs a part, and +PARKED+ means that TASK now waits.
+(:step form...): the forms of a step in an expression without states. They may use (frame-counter
+frame).
+(:unwind form...): the forms that run when SIGNAL passes, see NODE. (in-state-p state) is true if
+the frame is in that state.
+(:child-ended form...): the forms that run when CHILD has ended as HOW with RESULT.
+(:hot): compile the functions for speed, because a profile has shown that this matters."
   (check-clauses "define-expression" name clauses
                  '(:parts :steps :step :unwind :child-ended :hot))
   (let ((functions (node-functions name clauses)))
@@ -112,7 +117,7 @@ RESULT.
 ;;; All constructs.
 
 (defvar *constructs* '()
-  "For each construct, the last one first, its name and its clauses.")
+  "A list of the names of constructs, each with its clauses, the newest construct first.")
 
 (defun note-construct (name clauses)
   (setf (rest (or (assoc name *constructs*)
@@ -120,11 +125,11 @@ RESULT.
         clauses))
 
 (defun all-constructs ()
-  "Return the names of the constructs that DEFINE-CONSTRUCT has made, in order of definition."
+  "Return the names of all constructs defined by DEFINE-CONSTRUCT, in order of definition."
   (reverse (mapcar #'first *constructs*)))
 
 (defun all-clauses (clauses)
-  "Return CLAUSES and, if one is (:like construct), those of that one."
+  "Return CLAUSES and, if CLAUSES has (:like construct), the clauses of that construct."
   (let ((like (first (clause :like clauses))))
     (if like
         (append clauses (remove :manual (or (rest (assoc like *constructs*))
@@ -135,8 +140,8 @@ RESULT.
 ;;; Values that the task must wait for before the construct begins.
 
 (defmacro hoisting (arguments form scope &body body)
-  "Run BODY, which returns the code for FORM in SCOPE; but should one of ARGUMENTS, parts of FORM,
-make its task wait, bind it before FORM, and so those to the left of it."
+  "Run BODY, which returns the code for FORM in SCOPE. If one of ARGUMENTS, parts of FORM, makes its
+task wait, bind that argument, and those to the left of it, to variables before FORM."
   (if (null arguments)
       `(progn ,@body)
       `(call-hoisting (list* ,@(if (eq '&rest (first (last arguments 2)))
@@ -158,8 +163,8 @@ make its task wait, bind it before FORM, and so those to the left of it."
           (t (funcall coder)))))
 
 (defun with-symbol-expanded (symbol form scope)
-  "Return FORM with what SYMBOL, a symbol macro that is an argument of it, stands for in its place:
-the first one, as arguments come before bodies."
+  "Return FORM with the expansion of SYMBOL, a symbol macro that is an argument of FORM. Only the
+first occurrence is expanded, because arguments come before bodies."
   (let ((expansion (note-own-text (macroexpand-1 symbol (scope-environment scope)))) (done-p nil))
     (labels ((expanded (part)
                (cond (done-p part)
@@ -170,7 +175,8 @@ the first one, as arguments come before bodies."
       (cons (first form) (expanded (rest form))))))
 
 (defun hoisted-form (parts form)
-  "Return FORM with variables for PARTS, conses in it, that are bound around it."
+  "Return FORM with variables instead of PARTS, conses in FORM. The variables are bound around
+FORM."
   (let ((names (loop for nil in parts collect (gensym "PART"))))
     `(let* ,(mapcar #'list names parts)
        ,(reduce (lambda (form pair) (subst (first pair) (second pair) form :test #'eq))
@@ -179,7 +185,8 @@ the first one, as arguments come before bodies."
 ;;; The definition.
 
 (defun stub-form (name lambda-list documentation in-lisp)
-  "Return the definition of the macro that Lisp knows as NAME; IN-LISP returns its expansion there."
+  "Return the definition of the Lisp macro NAME. IN-LISP is the form for its expansion in ordinary
+Lisp, or NIL."
   (if in-lisp
       (user-macro-form name `(&whole form ,@lambda-list) (cons name lambda-list)
                        `(,documentation
@@ -209,22 +216,24 @@ the first one, as arguments come before bodies."
          ,(construct-code-form node clauses)))))
 
 (defmacro define-construct (name lambda-list documentation &body clauses)
-  "Add the construct NAME to the plan language, exported from the current package. LAMBDA-LIST has
-no defaults. DOCUMENTATION is for users. CLAUSES:
-(:manual): it is in the manual.
-(:command): there is a command of the same name, which users see; the command's documentation must
-say what the name means in plans, too.
-(:waits :MUST, :MAY or NIL): whether it makes its task wait, see SUSPENSION; default :MUST.
-(:arguments form...): variables of LAMBDA-LIST, or forms that return parts of their values, that are
-ordinary values. If one of them waits, it is evaluated before. The last may be &rest and a list.
-(:parts (name type form)...): the parts of its node; each form returns code, with the variables of
-LAMBDA-LIST, FORM and SCOPE bound.
-(:code form): the code for the whole, if it is another expression, or if the node needs something
-around it; (build [scope]) in it is the code for the node.
+  "Add the construct NAME to the plan language, and export NAME from the current package.
+LAMBDA-LIST has no defaults. DOCUMENTATION is for users. CLAUSES:
+(:manual): the construct is in the manual.
+(:command): there is a command of the same name, which users see. The documentation of the command
+must also explain the construct.
+(:waits :MUST, :MAY or NIL): whether the construct makes its task wait, see SUSPENSION; default
+:MUST.
+(:arguments form...): the arguments that are ordinary values: variables of LAMBDA-LIST, or forms
+that return parts of their values. If such an argument waits, it is evaluated first. The last form
+may be a list after &rest.
+(:parts (name type form)...): the parts of the node. Each form returns code for a part; FORM, SCOPE
+and the variables of LAMBDA-LIST are bound.
+(:code form): the code for the whole construct, if it is another expression, or if the node needs
+something around it. (build [scope]) in the form returns the code for the node.
 (:steps ...), (:step ...), (:unwind ...), (:child-ended ...), (:hot): see DEFINE-EXPRESSION.
-(:in-lisp form): its expansion in ordinary Lisp, where it is an error otherwise; in plans as well if
-there is neither :code nor a step.
-(:like construct): take missing clauses from that one, whose lambda list must be the same."
+(:in-lisp form): the expansion in ordinary Lisp. Without this clause, the construct is an error in
+ordinary Lisp. If the construct has neither :code nor a step, plans use this expansion, too.
+(:like construct): take missing clauses from that construct, whose lambda list must be the same."
   (check-clauses "define-construct" name clauses
                  '(:manual :command :waits :arguments :parts :code :steps :step :unwind
                    :child-ended :hot :in-lisp :like))

@@ -5,7 +5,7 @@
 (export '(split-documentation variable-of))
 
 (defun procedure-parts (parameters environment)
-  "Return the scope of a procedure's body, and the lambda expression for its entry."
+  "Return the scope of a procedure's body, and the lambda expression for the procedure's entry."
   (let ((scope (make-scope :environment environment))
         (variables (lambda-list-variables parameters)))
     (check-lambda-list parameters scope)
@@ -13,7 +13,7 @@
             (entry-lambda parameters scope nil))))
 
 (defun split-documentation (body)
-  "Return BODY without the string that it may start with, and that."
+  "Return BODY without its documentation string, and this string or NIL."
   (if (and (stringp (first body)) (rest body))
       (values (rest body) (first body))
       (values body nil)))
@@ -46,17 +46,18 @@
 
 (public def-interp-proc)
 (define-user-macro def-interp-proc (&whole form name parameters &body body &environment environment)
-  "Define NAME as a plan procedure with PARAMETERS, an ordinary lambda list in which a hyphen and a
-type may follow each variable; BODY is plan text and may start with a documentation string. The
-value is that of its last form. Defining it anew takes effect at the next call, also in running
-plans (manual D.2)."
+  "Define NAME as a plan procedure with PARAMETERS. PARAMETERS is an ordinary lambda list in which a
+hyphen and a type may follow each variable. BODY is plan text and may start with a documentation
+string. The value of the procedure is that of its last form. A new definition takes effect at the
+next call, also in running plans (manual D.2)."
   (check-plan-name (title "def-interp-proc" name) name)
   (call-with-definition form (lambda () (procedure-form name parameters body environment))))
 
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
-  "Return a plan procedure without a name: PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
-the variables around it, but not blocks, tags and local plans. Run it by CALL-PLAN."
+  "Return a plan procedure without a name. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
+the variables around INTERP-LAMBDA, but not the blocks, tags and local plans. Run the procedure by
+CALL-PLAN."
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
                                       (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))
@@ -70,15 +71,16 @@ the variables around it, but not blocks, tags and local plans. Run it by CALL-PL
 
 (addition make-plan)
 (defun make-plan (form &key compile)
-  "Return a plan procedure without parameters that runs FORM, plan text made by a program. Its Lisp
-code is interpreted, which makes this fast and the plan slow; or compiled if COMPILE is true."
+  "Return a plan procedure without parameters that runs FORM, plan text made by a program. If
+COMPILE is false, the Lisp code in FORM is interpreted: MAKE-PLAN is fast, and the plan slow. If
+COMPILE is true, the code is compiled."
   (evaluate-form `(interp-lambda () ,form) :compile compile))
 
 ;;; Macros.
 
 (defun pattern-parameters (pattern)
-  "Return PATTERN as a macro lambda list: ?x stands for the variable x, ?() for anything; and a list
-of the variable and the word for each word that must be there literally."
+  "Return PATTERN as a macro lambda list. In PATTERN, ?x stands for the variable x, and ?() for
+anything. The second value is a list of (variable word) for each word that must occur literally."
   (let ((literals '()))
     (labels ((parameter (pattern)
                (cond ((variable-of pattern))
@@ -93,7 +95,7 @@ of the variable and the word for each word that must be there literally."
       (values (parameters pattern) (nreverse literals)))))
 
 (defun variable-of (pattern)
-  "Return the variable that PATTERN, perhaps ?x, stands for, or NIL."
+  "Return the variable of PATTERN if PATTERN is a symbol such as ?x, or NIL."
   (cond ((matchvar-p pattern) (or (matchvar-name pattern) (gensym "ANY")))
         ((and (symbolp pattern) (starts-with-subseq "?" (symbol-name pattern)))
          (if (string= "?" (symbol-name pattern))
@@ -106,7 +108,8 @@ of the variable and the word for each word that must be there literally."
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
 (defparameter *largest-pattern* 250
-  "How many lists, words and variables may be in a pattern: few enough for the compiler's stack.")
+  "The largest number of lists, words and variables in a pattern. It is small enough for the
+compiler's stack.")
 
 (defun larger-than-p (form limit)
   (let ((open (list form)))
@@ -126,9 +129,9 @@ of the variable and the word for each word that must be there literally."
 (public def-interp-macro)
 (define-user-macro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
-bound while TEMPLATE is evaluated; a pattern may end in a dot and ?x for all forms that are left.
-The value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE
-(manual D.8)."
+bound while TEMPLATE is evaluated. A pattern may end in a dot and ?x for all remaining forms. The
+value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE (manual
+D.8)."
   (check-plan-name (title "def-interp-macro" name) name)
   (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
@@ -146,8 +149,8 @@ The value of TEMPLATE is the plan text to use. A documentation string may come b
            ',name)))))
 
 (defun pattern-to-show (parameters literals)
-  "Return PARAMETERS as a lambda list to show, with the words of LITERALS. A variable for all the
-rest called BODY or FORMS is for a body."
+  "Return PARAMETERS as a lambda list for display, with the words of LITERALS. A variable for all
+remaining forms with the name BODY or FORMS is shown after &BODY."
   (cond ((null parameters) '())
         ((atom parameters) (if (assoc parameters literals)
                                (second (assoc parameters literals))

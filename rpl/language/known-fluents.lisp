@@ -10,10 +10,11 @@
 
 (defparameter *makers-of-fluents*
   '("CREATE-FLUENT" "STATE" "TASK-STATUS" "FL-PULSED" "FL-VALUE-CHANGED")
-  "Functions that always return a fluent.")
+  "Names of functions that always return a fluent.")
 
 (defun vector-variable (form)
-  "Return the name of the kind of part if FORM is a variable of a vector of fluents, or NIL."
+  "Return the name of the kind of part if FORM is the variable of a vector of fluents for such
+parts, or NIL."
   (and (symbolp form) (known-vector-variable-p form)))
 
 (defun known-fluent-p (form environment)
@@ -41,8 +42,8 @@
 ;;; Waits for what cannot change.
 
 (defun known-value-p (form environment)
-  "True if FORM, in ENVIRONMENT, is known to give a value and no fluent: a constant, what
-FLUENT-VALUE returns, or what a lifted operator makes of such."
+  "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Such forms are
+constants, calls of FLUENT-VALUE, and calls of lifted operators with such forms."
   (cond ((constantp form) t)
         ((not (and (consp form) (symbolp (first form)) (proper-list-p form))) nil)
         ((local-function-p (first form) environment) nil)
@@ -51,7 +52,8 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
          (every (lambda (argument) (known-value-p argument environment)) (rest form)))))
 
 (defun as-fluents (form)
-  "Return FORM, known to give a value, as it gives the fluent: without FLUENT-VALUE and quotes."
+  "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent and not a
+value."
   (cond ((and (consp form) (or (operator-in-p form '("FLUENT-VALUE")) (eq 'quote (first form))))
          (second form))
         ((and (consp form) (proper-list-p form))
@@ -63,7 +65,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
         (t form)))
 
 (defun mistaken-for-fluent-p (form environment)
-  "True if FORM is known to give the value of a fluent, or is the quoted name of one."
+  "True if FORM is known to return the value of a fluent, or is the quoted name of a fluent."
   (typecase form
     ((cons (eql quote)) (known-fluent-p (second form) environment))
     (cons (and (known-value-p form environment)
@@ -100,7 +102,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
     (or may (not known))))
 
 (defun argument-types (name count)
-  "Return the types of the first arguments, COUNT at most, that the function NAME takes in order."
+  "Return a list of the types of the first arguments of the function NAME, at most COUNT types."
   (let ((types '()))
     (loop for (part . more) on (function-arguments name)
           while (< (length types) count)
@@ -124,7 +126,8 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
 
 ;; What a quoted list holds is never a fluent. With a :test of the author's it may still be found.
 (defun sought-in-vain (form environment)
-  "Return the fluent that FORM, a call, looks for in a constant, where none can be; or NIL."
+  "Return the fluent that FORM, a call, searches for in a constant, which cannot contain fluents; or
+NIL."
   (and (operator-in-p form '("MEMBER" "FIND" "POSITION" "COUNT" "ASSOC" "RASSOC"))
        (cddr form)
        (constantp (third form))
@@ -143,18 +146,18 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
                                          (fluent-value ,fluent) ,by))))))
 
 (defun check-assignments (form environment)
-  "Warn if FORM, of the plan's text, puts a value in the place of a fluent."
+  "Warn if FORM, in the text of a plan, assigns a value to a variable that holds a fluent."
   (when (operator-in-p form '("SETQ" "SETF"))
     (loop for (place value) on (rest form) by #'cddr
           when (and (symbolp place)
                     (known-fluent-p place environment)
                     (known-value-p value environment))
-            do (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is lost. ~
-                                   Write ~S."
+            do (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is then ~
+                                   lost. Write ~S."
                              (first form) value place `(set-value ,place ,value)))))
 
 (defun check-fluent-arguments (form environment)
-  "Warn if FORM, of the plan's text, gives a fluent to a function that cannot take it."
+  "Warn if FORM, in the text of a plan, gives a fluent to a function that cannot take fluents."
   (let ((name (first form)))
     (when (and (proper-list-p form)
                (not (operator-in-p form *lifted-operators*))
@@ -166,7 +169,7 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
                  (found (or fluent (sought-in-vain form environment))))
             (when found
               (warn-of-form form "~(~A~) ~:[never finds~;cannot take~] ~S, which is a fluent. ~
-                                  Write (fluent-value ~:*~S) for its value now, or (fl-funcall ~
+                                  Write (fluent-value ~:*~S) for its current value, or (fl-funcall ~
                                   #'~(~3:*~A~) ...) for a network."
                             name fluent found)))
           (check-later #'check-lisp-call form)))))
@@ -176,7 +179,8 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
 (defparameter *assigning-operators*
   '("SETQ" "SETF" "PSETQ" "PSETF" "PUSH" "PUSHNEW" "POP" "MULTIPLE-VALUE-SETQ" "ROTATEF"
     "SHIFTF")
-  "Operators that give variables another value. INCF and DECF do so to numbers only.")
+  "Names of operators that assign variables. INCF and DECF are missing because they assign only
+numbers.")
 
 (defun assigned-p (variable forms)
   (map-calls (lambda (call)
@@ -186,7 +190,8 @@ FLUENT-VALUE returns, or what a lifted operator makes of such."
              forms))
 
 (defun bound-to-fluents (bindings body scope sequential)
-  "Return the variables that BINDINGS, of a LET or LET*, bind to fluents and BODY does not assign."
+  "Return a list of the variables that BINDINGS, the bindings of a LET or LET*, bind to fluents and
+that BODY does not assign."
   (let ((*fluents-here* (scope-fluents scope)) (found '()))
     (loop for (variable value) in (remove-if #'atom bindings)
           do (cond ((and (known-fluent-p value (scope-environment scope))

@@ -7,11 +7,12 @@
 ;;; that Lisp runs, but not in what these only call later.
 
 (defvar *mistakes* '()
-  "The names of the rules, a property list by where they look: :TEXT or :LEAF.")
+  "The names of the rules for mistakes: a property list of the lists for :TEXT and :LEAF.")
 
 (defmacro define-mistake (name where (form) documentation &body body)
-  "Define the rule NAME, which looks for a mistake in FORM, a call, and returns in sentences what is
-wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
+  "Define the rule NAME, a function that looks for a mistake in FORM, a call. The rule returns
+sentences about the mistake, or NIL. WHERE is :TEXT for calls in plan text, or :LEAF for calls in
+forms that Lisp runs."
   `(progn
      (defun ,name (,form) ,documentation ,@body)
      (pushnew ',name (getf *mistakes* ,where))))
@@ -25,7 +26,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
              form))
 
 (defun doubt-leaf (form)
-  "Warn of the first mistake of each kind in FORM, which Lisp runs."
+  "Warn of the first mistake of each kind in FORM, a form that Lisp runs."
   (when *definition*
     (dolist (rule (getf *mistakes* :leaf))
       (let ((call (find-call rule (list form))))
@@ -39,16 +40,17 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
 
 (defparameter *task-states*
   '(:created :running :blocked :suspended :succeeded :failed :evaporated)
-  "The values of TASK-STATUS.")
+  "The values that a fluent of TASK-STATUS can have.")
 
 (defun compared-fluent (form)
-  "Return the form for the fluent whose value FORM is: what FLUENT-VALUE or VREF is given, or FORM."
+  "Return the form of the fluent whose value FORM returns. In a call of FLUENT-VALUE or VREF, this
+is the argument, otherwise FORM."
   (if (and (operator-in-p form '("FLUENT-VALUE" "VREF")) (consp (rest form)))
       (compared-fluent (second form))
       form))
 
 (defun status-doubt (word)
-  "Return in a sentence why no task is ever in the state WORD, or NIL if one may be."
+  "Return a sentence about why no task ever has the state WORD, or NIL if a task may have it."
   (unless (member word *task-states*)
     (let ((like (nearest-name word *task-states*)))
       (format nil "the status of a task is never ~(~S~). ~:[It is one of ~{~(~S~)~^, ~}.~;~
@@ -56,14 +58,14 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
               word like *task-states*))))
 
 (defun error-fluent-p (form)
-  "True if FORM is the variable of a fluent of ours whose value is an error code."
+  "True if FORM is the variable of one of the simulator's fluents whose values are error codes."
   (and form
        (symbolp form)
        (our-symbol-p form)
        (search "-ERROR*" (symbol-name form))))
 
 (define-mistake comparison-doubt :text (form)
-  "FORM compares the value of a fluent with words that it never is."
+  "FORM compares the value of a fluent with words that the fluent never has as its value."
   (multiple-value-bind (words subject) (compared-words form)
     (let* ((fluent (compared-fluent subject))
            (doubts (remove nil (cond ((operator-in-p fluent '("TASK-STATUS"))
@@ -74,19 +76,21 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
 ;;; Pulses take no time: no test between two waits finds them true.
 
 (defun tests-in-loop (form)
-  "Return the tests after UNTIL and WHILE in FORM, a call, if that is a LOOP or N-TIMES."
+  "Return a list of the tests after UNTIL and WHILE in FORM, if FORM is a call of LOOP or N-TIMES."
   (when (and (operator-in-p form '("LOOP" "N-TIMES")) (proper-list-p form))
     (loop for (word test) on (rest form)
           when (and (symbolp word) (member word '("UNTIL" "WHILE") :test #'string=))
             collect test)))
 
 (defun pulse-form-p (form)
-  "True if FORM is the variable of a fluent that is only pulsed, or one of a vector of such."
+  "True if FORM is the variable of a fluent that is only pulsed, or an element of a vector of such
+fluents."
   (or (known-pulse-p form)
       (and (operator-in-p form '("VREF")) (consp (rest form)) (known-pulse-p (second form)))))
 
 (defun pulse-in-test (test)
-  "Return the form of a fluent that is only pulsed if TEST reads one by value; or NIL."
+  "Return the form of a fluent that is only pulsed, if TEST tests the value of such a fluent; or
+NIL."
   (cond ((pulse-form-p test) test)
         ((not (proper-list-p test)) nil)
         ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
@@ -101,30 +105,31 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
                    (some #'pulse-in-test (append (tests-in-loop form) (test-forms form))))))
     (and pulse
          (format nil "the test of ~A is never true: a pulse takes no time. (wait-for ~:*~A) ~
-                      waits for the next one. A view made before the command, ~
-                      (fl-pulsed ~:*~A), is true if there was a pulse since." pulse))))
+                      waits for the next pulse. A view made before the command, ~
+                      (fl-pulsed ~:*~A), is true if a pulse has come since then." pulse))))
 
 ;; Each pulse has ended before the next begins.
 (defun joined-pulses (form)
-  "Return the pulses that FORM, a call, joins by AND, if it is one of several; or NIL."
+  "Return a list of the pulses in FORM, if FORM is a call of AND with several pulses; or NIL."
   (and (operator-in-p form '("AND"))
        (proper-list-p form)
        (let ((pulses (remove-duplicates (remove-if-not #'pulse-form-p (rest form)) :test #'equal)))
          (and (rest pulses) pulses))))
 
 (define-mistake pulses-joined :text (form)
-  "FORM waits for several pulses at one time."
+  "FORM waits for several pulses at the same instant."
   (let ((join (and (operator-in-p form '("WAIT-FOR" "WAIT-UNTIL" "WHENEVER"))
                    (proper-list-p form)
                    (find-call #'joined-pulses (list (second form))))))
     (and join
-         (format nil "~A is never true: a pulse takes no time, and no two come at once. To wait ~
-                      for all of them write (par~{ (wait-for ~A)~})." join (joined-pulses join)))))
+         (format nil "~A is never true: a pulse takes no time, and no two pulses come at the same ~
+                      instant. To wait for all of them, write (par~{ (wait-for ~A)~})."
+                 join (joined-pulses join)))))
 
 ;;; Commands return nothing, and commands that are not those of plans set no fluent at their end.
 
 (defun values-used-in-plan (form)
-  "Return the forms whose values FORM, a call in a plan's text, uses."
+  "Return a list of the forms in FORM, a call in a plan's text, whose values FORM uses."
   (let ((name (first form)))
     (cond ((not (and (symbolp name) (proper-list-p form))) '())
           ((operator-in-p form '("WAIT-FOR" "WHENEVER" "WAIT-UNTIL")) (list (second form)))
@@ -134,28 +139,29 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
           (t (append (values-used-in form) (tests-in-loop form))))))
 
 (define-mistake command-used :text (form)
-  "FORM uses the value of one of the robot's commands."
+  "FORM uses the value of a command of the robot."
   (destructuring-bind (&optional name part &rest arguments)
       (find-if (lambda (used)
                  (and (consp used) (proper-list-p used) (plan-function-p (first used))))
                (values-used-in-plan form))
     (declare (ignore arguments))
     (and name
-         (format nil "~A returns nothing: its command only begins. Write it alone~@[, then ~A~]~
-                      ~@[; what it has found is then in ~{~A~^, ~}~]."
+         (format nil "~A returns nothing, because the command only begins. Write the call ~
+                      alone~@[, then ~A~]~@[; the results are then in ~{~A~^, ~}~]."
                  name (end-text name part) (results-of-command name part)))))
 
 (define-mistake command-of-others :leaf (form)
-  "FORM is a command that plans call by another function, and not in what is called later."
+  "FORM is a command for which plans have another function. Code that is called later does not
+count."
   (cond ((and (symbolp (first form)) (same-name-p (first form) 'continuation)) :nowhere)
         ((has-plan-function-p (first form))
-         (format nil "~(~A~) does not tell plans of its end. In a plan write ~A."
+         (format nil "~(~A~) does not notify plans of its end. In a plan write ~A."
                  (first form) (plan-call-text (first form))))))
 
 ;;; Handlers of Lisp's. A failure is no error.
 
 (defun errors-only-p (clauses)
-  "True if each of CLAUSES, of a handler, is for errors."
+  "True if each of CLAUSES, the clauses of a Lisp handler, is for errors."
   (every (lambda (clause)
            (and (consp clause)
                 (or (eq :no-error (first clause))
@@ -163,7 +169,8 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
          clauses))
 
 (defun forms-with-errors-handled (form)
-  "Return the forms in FORM, of Lisp's, in which errors are handled and failures are not."
+  "Return a list of the forms inside FORM, a Lisp form, in which errors are handled but failures are
+not."
   (cond ((operator-in-p form '("IGNORE-ERRORS")) (rest form))
         ((operator-in-p form '("HANDLER-CASE"))
          (and (cddr form) (errors-only-p (cddr form)) (list (second form))))
@@ -171,23 +178,23 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
          (and (consp (second form)) (errors-only-p (second form)) (cddr form)))))
 
 (define-mistake vain-handler :leaf (form)
-  "FORM is a handler of errors around a FAIL."
+  "FORM is a Lisp error handler around a FAIL."
   (and (find-call #'fail-p (forms-with-errors-handled form))
-       (format nil "~(~A~) does not handle failures of plans, as FAIL makes them. Write ~
+       (format nil "~(~A~) does not handle failures of plans, which FAIL makes. Write ~
                     (handle-failure ((class (e) ...)) body...)." (first form))))
 
 ;;; Operators that let time pass, but not for plans.
 
 (defparameter *vain-waits*
-  '(("SLEEP" . "sleep stops all plans for so many seconds, and no tick need pass meanwhile.")
+  '(("SLEEP" . "sleep stops all plans for seconds of real time, in which perhaps no tick passes.")
     ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("AWAIT-IDLE" . "await-idle is for programs: a plan would wait for itself.")
     ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
-  "Lists (operator . what is wrong with it in plans).")
+  "Conses (operator . text) of operators that do not wait in plans, and why.")
 
 (define-mistake vain-wait :leaf (form)
-  "FORM lets time pass for programs only."
+  "FORM lets time pass in programs, but not in plans."
   (when (operator-in-p form (mapcar #'car *vain-waits*))
     (destructuring-bind (name &optional (time 'ticks) &rest options) form
       (declare (ignore options))
@@ -196,7 +203,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
               (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
                     ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
                     ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
-                    (t (format nil "(wait-time ~S), for so many ticks" time)))))))
+                    (t (format nil "(wait-time ~S), for that many ticks" time)))))))
 
 ;;; In Lisp code outside of plans a fluent is an object like any other.
 
@@ -218,6 +225,7 @@ wrong, or NIL. WHERE says in which calls it looks: :TEXT or :LEAF."
               (member (first form) '("NOT" "NULL") :test #'string=))
          (test-doubt (second form)))
         ((known-pulse-p (read-fluent form))
-         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. Plans write ~
-                      (wait-for ~(~A~)); in Lisp, (await-idle), or (run-until (idle-p)) headless."
+         (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. In plans ~
+                      write (wait-for ~(~A~)); in Lisp write (await-idle), or (run-until (idle-p)) ~
+                      in a headless run."
                  form (read-fluent form)))))

@@ -8,7 +8,7 @@
 ;;; siblings evaporate, and the escape goes on in the task around them.
 
 (define-expression block-node
-  "BODY, which can be left with a value."
+  "Runs BODY, which can be left with a value."
   (:parts (body node))
   (:steps
    (begin
@@ -21,7 +21,7 @@
         (values t (frame-up frame) (escape-value signal)))))
 
 (define-expression leave
-  "End of the block TARGET with the value of RESULT."
+  "Leaves the block TARGET with the value of RESULT."
   (:parts (target node) (result node))
   (:steps
    (begin
@@ -30,11 +30,12 @@
    (getting-result (unwind task frame (make-escape target value)))))
 
 (setf (documentation 'make-leave 'function)
-      "Return a node that leaves for its target with the value of its result, both nodes.")
+      "Return a node that leaves a block, with the slots TARGET, the node of the block, and RESULT,
+the node for the value.")
 
 (defun block-code (name form scope coder)
-  "Return the code that CODER returns for a scope in which a block called NAME, whose source is
-FORM, can be left. There is a node for it only if it is."
+  "Return the code that CODER returns for a scope inside a block with the name NAME. FORM is the
+source of the block. The code has a node for the block only if some form leaves the block."
   (with-gensyms (target)
     (let ((code (funcall coder (inner-scope scope :blocks (acons name target
                                                                  (scope-blocks scope))))))
@@ -57,7 +58,7 @@ FORM, can be left. There is a node for it only if it is."
 ;;; Tags.
 
 (define-expression tag-body
-  "Expressions run in order, some of which can be gone to. A frame counts those done with."
+  "Runs expressions in order; jumps can go to some of them. A frame counts the expressions begun."
   (:parts (parts simple-vector))
   (:step
    (let ((i (frame-counter frame)))
@@ -71,7 +72,7 @@ FORM, can be left. There is a node for it only if it is."
      (values t frame nil))))
 
 (define-expression jump
-  "Going on at the expression number PLACE of TARGET."
+  "Continues at the expression number PLACE of TARGET."
   (:parts (target node) (place fixnum))
   (:step (unwind task (frame-up frame) (make-escape target place))))
 
@@ -98,19 +99,21 @@ FORM, can be left. There is a node for it only if it is."
 ;;; them out. All of these can be left by RETURN.
 
 (defun give-way (task)
-  "Run other ready tasks before TASK continues. Return what a step returns."
+  "Let other ready tasks run before TASK continues. Return what a step returns."
   (make-ready task)
   +parked+)
 
 (defun turn-count (count)
   (let ((count (fluent-value count)))
     (check-argument n-times count (quantity-p count)
-                    "a number of turns, from -1e15 to 1e15, first of all: (n-times count form...)")
+                    "a number of turns, from -1e15 to 1e15, as the first argument: (n-times count
+form...)")
     count))
 
 (define-expression turns
-  "BODY again and again: while UNTIL of the environment is false, at most TIMES of it times. A frame
-remembers how many are left, NIL if any number."
+  "Runs BODY repeatedly, while the function UNTIL returns false for the environment. The function
+TIMES returns the largest number of turns, NIL for any number. A frame remembers the number of turns
+left."
   (:hot)                                ; 40 ns a turn
   (:parts (until function) (times function) (body node))
   (:steps
@@ -130,13 +133,15 @@ remembers how many are left, NIL if any number."
                (enter body environment frame)))))))
 
 (defun turns-test (forms)
-  "Return the condition that FORMS, after LOOP, end on, and the body. NIL is never true."
+  "Return the condition that ends a loop of FORMS, which follow LOOP, and the body of the loop. The
+condition is NIL if the loop has no test."
   (cond ((keyword-test forms "UNTIL") (values (second forms) (cddr forms)))
         ((keyword-test forms "WHILE") (values (note-own-text `(not ,(second forms))) (cddr forms)))
         (t (values nil forms))))
 
 (defun turns-code (form count forms scope)
-  "Return code for FORMS, after LOOP or N-TIMES, at most COUNT times (NIL: for ever)."
+  "Return code for a loop of FORMS, which follow LOOP or N-TIMES. COUNT is the form for the largest
+number of turns, NIL for no limit."
   (multiple-value-bind (test body) (turns-test forms)
     (if (suspends-p test scope)
         (turns-code form count
@@ -155,28 +160,28 @@ remembers how many are left, NIL if any number."
 
 (define-construct n-times (count &body body)
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
-a test made before each turn. COUNT is a number up to 1e15. Return NIL."
+a test, which is evaluated before each turn. COUNT is a number up to 1e15. Return NIL."
   (:arguments count)
   (:code (turns-code form (note-own-text `(turn-count ,count)) body scope)))
 
 ;;; Over the elements of a list, and numbers.
 
 (defun item-list (operator sequence)
-  "Return the elements of SEQUENCE, which OPERATOR goes through, in a list. Signals WRONG-ARGUMENT
-unless it is a vector or a proper list."
+  "Return a list of the elements of SEQUENCE, over which OPERATOR iterates. Signals WRONG-ARGUMENT
+unless SEQUENCE is a vector or a proper list."
   (unless (typep sequence '(and sequence (or (not list) (satisfies proper-list-p))))
     (reject-argument operator 'sequence sequence "a vector, or a proper list"))
   (coerce sequence 'list))
 
 (defun whole-list (operator list)
-  "Return LIST, which OPERATOR goes through. Signals WRONG-ARGUMENT unless it is a proper list."
+  "Return LIST, over which OPERATOR iterates. Signals WRONG-ARGUMENT unless LIST is a proper list."
   (unless (proper-list-p list)
     (reject-argument operator 'list list "a proper list"))
   list)
 
 (define-expression each
-  "BODY for each element of the list that ITEMS of the environment returns, in an environment of
-that one; then ENDING, in one of NIL. A frame remembers the elements left."
+  "Runs BODY for each element of the list that ITEMS returns, in an environment with this element.
+Then runs ENDING in an environment with NIL. A frame remembers the elements left."
   (:parts (items function) (body node) (ending node))
   (:steps
    (begin
@@ -191,8 +196,9 @@ that one; then ENDING, in one of NIL. A frame remembers the elements left."
              (enter body (vector environment (pop memory)) frame))))))
 
 (define-expression each-number
-  "BODY for each number below what LIMIT of the environment returns, in an environment of that one;
-then ENDING, in one of how many there were. A frame remembers the next one and the limit, a cons."
+  "Runs BODY for each number from 0 below the number that LIMIT returns, in an environment with this
+number. Then runs ENDING in an environment with the number of turns. A frame remembers a cons of the
+next number and the limit."
   (:parts (limit function) (body node) (ending node))
   (:steps
    (begin
@@ -210,7 +216,7 @@ then ENDING, in one of how many there were. A frame remembers the next one and t
                (enter body (vector environment number) frame)))))))
 
 (defun each-body-code (variable body scope)
-  "Return code for BODY, run in an environment in which VARIABLE is bound."
+  "Return code for BODY in an environment in which VARIABLE is bound."
   (binding-body-code body (variable-scope (single-scope scope) (list variable))))
 
 (defun each-code (maker form variable part result body scope)

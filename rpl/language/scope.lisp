@@ -6,7 +6,7 @@
           variable-scope scope-variables scope))
 
 (defun variable-trouble (name environment)
-  "Return in words why NAME cannot be a variable, lexical or special, in ENVIRONMENT; or NIL."
+  "Return a text of why NAME cannot be a variable, lexical or special, in ENVIRONMENT; or NIL."
   (cond ((not (symbolp name)) "is no symbol")
         ((or (null name) (keywordp name)) "is a constant")
         ((member name lambda-list-keywords) "is a word of lambda lists")
@@ -15,7 +15,8 @@
              (:global "is a global variable")))))
 
 (defun check-variables (variables environment &optional (form nil form-p))
-  "Signal MALFORMED-DEFINITION, about FORM if given, unless VARIABLES can be bound in ENVIRONMENT."
+  "Signal MALFORMED-DEFINITION unless VARIABLES can be bound in ENVIRONMENT. The error is about
+FORM, if FORM is given."
   (dolist (variable variables)
     (let ((trouble (variable-trouble variable environment)))
       (when trouble
@@ -26,7 +27,8 @@
 ;;; Lambda lists.
 
 (defun parameters-trouble (parameters environment)
-  "Return in words why PARAMETERS, without types, are no ordinary lambda list, or NIL."
+  "Return a text of why PARAMETERS, a lambda list without types, is not an ordinary lambda list; or
+NIL."
   (flet ((first-trouble (names)
            (loop for name in names
                  for trouble = (variable-trouble name environment)
@@ -41,31 +43,31 @@
               "this is none"))))
     (let* ((variables (lambda-list-variables parameters))
            (twice (find-if (lambda (variable) (< 1 (count variable variables))) variables)))
-      (cond (twice (format nil "~(~S~) is there twice" twice))
+      (cond (twice (format nil "~(~S~) occurs twice" twice))
             ((equal '(&rest) (last parameters)) "a variable comes after &rest")
             (t (first-trouble variables))))))
 
 (defun forgotten-parameters-text (parameters environment)
   (and (typep parameters '(cons symbol))
        (known-function-p (first parameters) environment)
-       "The list of parameters stands before the body; write () if there are none"))
+       "The list of parameters comes before the body; write () if the plan has no parameters"))
 
 (defun doubt-parameters (parameters definition environment)
-  "Warn if one of PARAMETERS, of DEFINITION, is called like a function by which plans command the
-robot: then they may be the first form of a body, with no list of parameters before it."
+  "Warn if one of PARAMETERS, in DEFINITION, has the name of a function by which plans command the
+robot. Such a list is probably the first form of a body without a list of parameters before it."
   (let ((name (find-if (lambda (name)
                          (and (starts-with-subseq "RPL-" (string name))
                               (known-function-p name environment)))
                        (lambda-list-variables parameters))))
     (when name
-      (doubt-definition "~A: a parameter is called like the function ~(~A~). If (~1@*~(~A~)) is ~
+      (doubt-definition "~A: a parameter has the name of the function ~(~A~). If (~1@*~(~A~)) is ~
                          the first form of the body, write the list of parameters before it: () ~
-                         if there are none."
+                         if the plan has no parameters."
                         definition name))))
 
 (defun plain-parameters (parameters form environment &optional (definition (text-title)))
-  "Return the lambda list PARAMETERS, of FORM in DEFINITION, without types; or signal
-MALFORMED-DEFINITION."
+  "Return the lambda list PARAMETERS, a part of FORM in DEFINITION, without types. Signals
+MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
   (flet ((reject (trouble)
            (reject-clause definition (if (consp parameters) parameters form)
                           (format nil "an ordinary lambda list, such as (a &optional b &key c); ~
@@ -92,7 +94,8 @@ MALFORMED-DEFINITION."
 
 (defun check-local-functions (form environment)
   (unless (proper-list-p (second form))
-    (reject-clause (text-title) form "(name parameters form...) for each, in a proper list"))
+    (reject-clause (text-title) form "(name parameters form...) for each local function, in a proper
+list"))
   (dolist (definition (second form))
     (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
       (reject-clause (text-title) (if (consp definition) definition form)
@@ -115,19 +118,20 @@ MALFORMED-DEFINITION."
 ;;; its element. Local functions live in environments too.
 
 (define-record (scope (:copier copy-scope))
-  "What is visible at a place in a plan. The slots that say nothing else map names to the variables,
-in the code that builds the plan, that hold their nodes."
-  (variable (gensym "ENVIRONMENT") symbol "the variable of the environment in leaves; each procedure
-has one of its own, as plans can be written in the leaves of others" :writable)
+  "The names that are visible at a place in a plan. Slots without documentation map names to
+variables. In the code that builds the plan, these variables hold the nodes of the names."
+  (variable (gensym "ENVIRONMENT") symbol "the variable of the environment in leaves. Each procedure
+has a separate variable, because a leaf of a plan can contain other plans" :writable)
   (environment nil t "the Lisp environment at the place" :writable :export)
   (level 0 fixnum :writable)
-  (layers '() list "how leaves get to see what is visible, innermost first" :writable)
-  (blocks '() list "an alist from the names of the blocks around to the variables of their
+  (layers '() list "the layers of names that are made visible in leaves, innermost first" :writable)
+  (blocks '() list "an alist from the names of the blocks around the place to the variables of their
 nodes" :writable :export)
   (tags '() list :writable)
   (procedures '() list :writable)
   (retry nil symbol
-         "the variable of the node that (retry) begins again, NIL outside" :writable :export)
+         "the variable of the node that (retry) begins again; NIL outside of failure
+handlers" :writable :export)
   (task-tags '() list :writable)
   (fluents '() list "the variables that are known to hold fluents" :writable)
   (several nil boolean :writable))
@@ -141,28 +145,30 @@ nodes" :writable :export)
        ,inner)))
 
 (defun layered-scope (scope layer level &rest additions)
-  "Return SCOPE with LAYER, at LEVEL, as its innermost; macros see ADDITIONS."
+  "Return a copy of SCOPE with LAYER, at LEVEL, as the innermost layer. The Lisp environment of the
+copy also has ADDITIONS, for macros."
   (inner-scope scope
                :level level
                :layers (cons layer (scope-layers scope))
                :environment (apply #'extended-environment (scope-environment scope) additions)))
 
 (defun single-scope (scope)
-  "Return SCOPE for an expression of which only one value matters."
+  "Return a scope like SCOPE for an expression of which only the first value is used."
   (if (scope-several scope) (inner-scope scope :several nil) scope))
 
 (defun several-scope (scope)
-  "Return SCOPE for an expression all of whose values matter."
+  "Return a scope like SCOPE for an expression of which all values are used."
   (inner-scope scope :several t))
 
 (defun check-lexical (variables environment)
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
       (reject-clause (text-title) variable
-                     "the name of a lexical variable; bind this one by with-task-variables"))))
+                     "the name of a lexical variable; bind task variables by
+with-task-variables"))))
 
 (defun variable-scope (scope variables)
-  "Return SCOPE with VARIABLES bound in a separate environment."
+  "Return a copy of SCOPE in which VARIABLES are bound in a new environment."
   (check-variables variables (scope-environment scope))
   (check-lexical variables (scope-environment scope))
   (let ((level (1+ (scope-level scope)))
@@ -170,7 +176,8 @@ nodes" :writable :export)
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause (text-title) special "the name of a lexical variable; this one is special"))
+      (reject-clause (text-title) special "the name of a lexical variable; this variable is
+special"))
     (inner-scope (layered-scope scope (list :variables level variables) level
                                 :variable (remove-duplicates variables))
                  :fluents (set-difference (scope-fluents scope) variables))))
@@ -180,7 +187,8 @@ nodes" :writable :export)
     (layered-scope scope (list :functions level names) level :function names)))
 
 (defun wrapped-scope (scope wrapping)
-  "Return SCOPE with WRAPPING, a MACROLET or SYMBOL-MACROLET without a body, around leaves."
+  "Return a copy of SCOPE in which leaves are wrapped in WRAPPING, a MACROLET or SYMBOL-MACROLET
+without a body."
   (destructuring-bind (operator definitions) wrapping
     (multiple-value-call #'layered-scope scope (list :wrapping wrapping) (scope-level scope)
       (ecase operator
@@ -192,12 +200,13 @@ nodes" :writable :export)
         (symbol-macrolet (values :symbol-macro definitions))))))
 
 (defun scope-variables (scope)
-  "Return the variables of the plan that are visible in SCOPE."
+  "Return a list of the variables of the plan that are visible in SCOPE."
   (loop for (kind nil names) in (scope-layers scope)
         when (eq kind :variables) append names))
 
 (defun names-by-level (scope)
-  "Return a list of lists: the variables in each environment of SCOPE, innermost first."
+  "Return a list of lists: the names of the variables in each environment of SCOPE, innermost
+first."
   (loop for level from (scope-level scope) above 0
         collect (loop for (kind layer-level names) in (scope-layers scope)
                       when (and (eq kind :variables) (= level layer-level))
@@ -206,7 +215,7 @@ nodes" :writable :export)
 ;;; How a leaf sees its scope.
 
 (defun element-form (scope level index)
-  "Return the form, within a leaf of SCOPE, for element INDEX of the environment made at LEVEL."
+  "Return a form for element INDEX of the environment made at LEVEL, for use in a leaf of SCOPE."
   `(svref ,(loop with form = (scope-variable scope)
                  repeat (- (scope-level scope) level)
                  do (setf form `(the simple-vector (svref ,form 0)))
@@ -214,11 +223,11 @@ nodes" :writable :export)
           ,index))
 
 (defun environment-form (scope level)
-  "Return the form, within a leaf of SCOPE, for the environment made at LEVEL."
+  "Return a form for the environment made at LEVEL, for use in a leaf of SCOPE."
   (second (element-form scope level 0)))
 
 (defun layer-wrapping (layer scope)
-  "Return the form, to be completed by a body, that makes LAYER visible in a leaf of SCOPE."
+  "Return a form that makes LAYER visible in a leaf of SCOPE. The body of the form is missing."
   (destructuring-bind (kind &rest parts) layer
     (ecase kind
       (:variables
@@ -246,10 +255,11 @@ nodes" :writable :export)
       (setf form `(,@(layer-wrapping layer scope) ,form)))))
 
 (defvar *form-at-hand* nil
-  "The innermost form around, of those in the source that is being compiled, or NIL.")
+  "The innermost form of the source text around the form that is being compiled, or NIL.")
 
 (defun place-made (form)
-  "Give code made around parts of the current form its source place, for the compiler. Return FORM."
+  "Give FORM, code made around parts of the current source form, the source location of that form.
+Return FORM."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (in-source-p form)))
                (keep-place form *form-at-hand*)
@@ -261,7 +271,8 @@ nodes" :writable :export)
   form)
 
 (defun leaf-lambda (form scope &rest parameters)
-  "Return the lambda expression for FORM in SCOPE: it takes the environment and PARAMETERS."
+  "Return a lambda expression for FORM in SCOPE, whose parameters are the environment and
+PARAMETERS."
   (place-made
    `(lambda (,(scope-variable scope) ,@parameters)
       (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))

@@ -14,7 +14,7 @@
 ;;; So the conses of the text are recorded, and those of expansions of macros that are not Lisp's.
 
 (defun text-title ()
-  "Return the name, for messages, of the text that is being compiled."
+  "Return the name, for messages, of the definition or plan that is being compiled."
   (if *definition*
       (let ((form (defining-form *definition*)))
         (title (first form) (second form)))
@@ -35,8 +35,10 @@
   (:documentation "A plan waits, fails or runs another plan inside a form that only Lisp runs."))
 
 (setf (documentation 'misplaced-form 'function) "Return the form that would make the task wait."
-      (documentation 'misplaced-container 'function) "Return the form that it cannot wait inside."
-      (documentation 'misplaced-advice 'function) "Return a sentence on what to write instead.")
+      (documentation 'misplaced-container 'function) "Return the form in which the plan cannot
+wait."
+      (documentation 'misplaced-advice 'function) "Return a sentence about what to write instead of
+the misplaced form.")
 
 (defun operator-text (form)
   (format nil "~(~A~)" (if (consp form) (first form) form)))
@@ -45,7 +47,7 @@
   '((("UNWIND-PROTECT") . "Write (evap-protect form cleanup): the cleanup may wait.")
     (("HANDLER-CASE" "HANDLER-BIND" "IGNORE-ERRORS" "RESTART-CASE" "WITH-SIMPLE-RESTART")
      . "Write (handle-failure ((type (e) ...)) body...): it also handles Lisp errors.")
-    (("CATCH" "THROW") . "Write block and return-from: they work across tasks.")
+    (("CATCH" "THROW") . "Write block and return-from, which work across tasks.")
     (("LOOP" "ITER" "ITERATE")
      . "Write (loop UNTIL test ...), dolist, dotimes, n-times or par-loop.")
     (("LAMBDA" "FUNCTION" "NAMED-LAMBDA" "CONTINUATION")
@@ -54,23 +56,24 @@
      . "Special variables hold for the whole thread: bind a lexical variable or a fluent.")
     (("MULTIPLE-VALUE-CALL" "MULTIPLE-VALUE-PROG1") . "Write multiple-value-bind.")
     (("WITHOUT-SCHEDULING")
-     . "It is one step. Write evap-protect for what must be done though it takes time.")
+     . "Its body is one step. Write evap-protect for forms that must run although they take time.")
     (("ON-SUSPENSION")
-     . "The task is being kept from running: write what waits where that one is suspended.")
+     . "The suspended task cannot run: write the forms that wait in the task that suspends it.")
     (("WITH-OPEN-FILE" "WITH-OPEN-STREAM")
      . "Open the file in a leaf, and close it in the cleanup of an evap-protect."))
-  "What to write instead of Lisp forms that a plan cannot wait inside.")
+  "Advice on what to write instead of the Lisp forms in which plans cannot wait, by operator.")
 
 (defun of-iterate-p (form)
-  "True if FORM is one of the library iterate, whose macro looks into all that is in it."
+  "True if FORM is a call of a macro of the library iterate. This macro looks into all forms inside
+it."
   (and (symbolp (first form))
        (member (first form) '("ITER" "ITERATE") :test #'string=)
        (symbol-package (first form))
        (string= "ITERATE" (package-name (symbol-package (first form))))))
 
 (defun own-advice-for (form)
-  "Return what is advised about forms like FORM, in which plans cannot wait, or NIL. Macros of users
-that have the names of iterate's are left out."
+  "Return the advice about forms like FORM, in which plans cannot wait, or NIL. Users' macros with
+the names of iterate's macros are left out."
   (and (consp form)
        (symbolp (first form))
        (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (of-iterate-p form))
@@ -79,7 +82,8 @@ that have the names of iterate's are left out."
 
 (defun reject-suspension (form container)
   (let ((advice (or (own-advice-for container)
-                    "Bind the value that it needs with let before, so that the plan waits there.")))
+                    "Bind the value with let before this form, so that the plan waits in the
+let.")))
     (call-at-place form
                    (lambda ()
                      (error 'misplaced-suspension
@@ -93,32 +97,32 @@ that have the names of iterate's are left out."
 ;;; What a construct expands to within a macro of a user.
 
 (defun plan-called-in (form)
-  "Return the name of the plan that FORM, met in ordinary Lisp code, is most likely to carry out, as
-the prompt's line PLAN does; or NIL."
+  "Return the name of the plan that FORM probably should run, or NIL. FORM was found in ordinary
+Lisp code, and looks like the prompt's command PLAN."
   (let ((name (and (operator-in-p form '("PLAN")) (second form))))
     (and name (symbolp name) (find-procedure name nil) name)))
 
 (defun reject-in-lisp (form)
-  "Signal MISUSE: FORM, of the plan language, was met in ordinary Lisp code."
+  "Signal MISUSE, because FORM, a form of the plan language, was found in ordinary Lisp code."
   (reject-use "~S is part of the plan language. ~:[Write it in a def-interp-proc, which ~
-               (run-plan 'NAME) carries out, or outside of any lambda or Lisp form there that ~
-               keeps plans from waiting~;To carry out the plan, write (run-plan '~:*~(~A~))~]."
+               (run-plan 'NAME) runs. There it must not be in a lambda or another form that keeps ~
+               plans from waiting~;To run the plan, write (run-plan '~:*~(~A~))~]."
               form (plan-called-in form)))
 
 (defvar *own-conses* nil
-  "While a plan is compiled: a table of the conses of its text.")
+  "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
 
 (defmacro in-plans-only (form)
-  "Expand to what plans take for FORM, of the plan language, while a plan is compiled. Signal MISUSE
-otherwise, as in ordinary Lisp code."
+  "Expand to a form that plans accept for FORM, a form of the plan language, while a plan is
+compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   (if *own-conses* `(construct-form ',form) (reject-in-lisp form)))
 
 (defun construct-form (form)
-  "Signal MISUSE: FORM, of the plan language, was met where Lisp runs it."
+  "Signal MISUSE, because Lisp runs FORM, a form of the plan language."
   (reject-in-lisp form))
 
 (defun construct-behind (form)
-  "Return the construct that FORM, in the expansion of a user's macro, stands for; or NIL."
+  "Return the construct that FORM, a form in the expansion of a user's macro, stands for; or NIL."
   (typecase form
     ((cons (eql in-plans-only)) (second form))
     ((cons (eql construct-form)) (second (second form)))))
@@ -126,41 +130,44 @@ otherwise, as in ordinary Lisp code."
 ;;; Names of operators.
 
 (defun our-symbol-p (symbol)
-  "True if SYMBOL is Common Lisp's, or belongs to a package of this system."
+  "True if SYMBOL belongs to the package COMMON-LISP or to a package of this system."
   (let ((package (symbol-package symbol)))
     (or (eq package #.(find-package :cl))
         (and package (starts-with-subseq "ARS-MAGNA." (package-name package))))))
 
 (defun plan-operator-name (form)
-  "Return the name of the operator of FORM if plans may have a meaning for it, or NIL."
+  "Return the name of the operator of FORM if the operator may have a meaning in plans, or NIL."
   (cond ((not (and (consp form) (symbolp (first form)))) nil)
         ((our-symbol-p (first form)) (symbol-name (first form)))
         ((eq (first form) :tag) ":TAG")))
 
 (defun operator-key (name)
-  "Return the key of the operator NAME in *PLAN-FORMS*: its name, or the symbol if it is a user's."
+  "Return the key of the operator NAME in *PLAN-FORMS*. This is the name of the operator, or the
+symbol itself if it is a user's symbol."
   (if (and (symbolp name) (our-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
-  "True if FORM is a call of an operator of Lisp's or ours that is called one of NAMES."
+  "True if FORM is a call of an operator of Lisp or of this system, and the name of the operator is
+one of NAMES."
   (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))
 
 (defun plan-in-leaf-p (form)
-  "True if FORM makes a plan: it reads its text itself."
+  "True if FORM is a form that makes a plan, and so reads its own text."
   (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
 
 (defparameter *lifted-operators*
   '("NOT" "NULL" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
 
 (defun keyword-test (forms name)
-  "True if FORMS start with the symbol NAME and a test, as after LOOP."
+  "True if FORMS, such as the forms after LOOP, start with the symbol NAME and a test."
   (and (rest forms)
        (symbolp (first forms))
        (string= (first forms) name)))
 
 (defun plan-loop-p (form)
-  "True if FORM, a LOOP, is a plan's: (loop [UNTIL or WHILE test] compound-form...)."
+  "True if FORM, a LOOP, has the shape of a plan's LOOP, (loop [UNTIL or WHILE test]
+compound-form...)."
   (let ((forms (rest form)))
     (every #'consp (if (or (keyword-test forms "UNTIL") (keyword-test forms "WHILE"))
                        (cddr forms)
@@ -169,7 +176,7 @@ otherwise, as in ordinary Lisp code."
 ;;; The plan's own text.
 
 (defun note-own-text (form)
-  "Remember that FORM and all in it is the plan's own text. Return FORM."
+  "Record that FORM and all forms in it belong to the text of the plan itself. Return FORM."
   (labels ((note (form)
              (loop while (and (consp form) (not (gethash form *own-conses*)))
                    do (setf (gethash form *own-conses*) t)
@@ -180,14 +187,16 @@ otherwise, as in ordinary Lisp code."
   form)
 
 (defvar *written-forms* nil
-  "While a plan is compiled: a table from conses made to the forms of the text they stand for.")
+  "A table from the conses of expansions to the forms of the plan text that they stand for, while a
+plan is compiled.")
 
 (defun form-as-written (form)
-  "Return the form in the author's text that FORM was made of, or FORM."
+  "Return the form in the author's text from which FORM was made, or FORM."
   (values (gethash form *written-forms* form)))
 
 (defun note-written-as (expansion form)
-  "Remember that what is new in EXPANSION, made of FORM, stands for that. Return EXPANSION."
+  "Record that the new conses in EXPANSION, which was made from FORM, stand for FORM. Return
+EXPANSION."
   (let ((written (form-as-written form)))
     (labels ((note (part)
                (loop while (and (consp part)
@@ -200,15 +209,16 @@ otherwise, as in ordinary Lisp code."
   expansion)
 
 (defun note-expansion (expansion form)
-  "Remember that EXPANSION, made of FORM, is the plan's own text, but stands for FORM. Return it."
+  "Record that EXPANSION, which was made from FORM, belongs to the text of the plan itself but
+stands for FORM. Return EXPANSION."
   (note-own-text (note-written-as expansion form)))
 
 (defun own-text-p (form)
   (gethash form *own-conses*))
 
 (defmacro with-own-text ((form) &body body)
-  "Run BODY with FORM, and what is noted meanwhile, known as a plan's text. Names made there are the
-same every time, so that traces can be compared."
+  "Run BODY with FORM, and all forms recorded meanwhile, known as the text of a plan. Generated
+names are the same every time, so that traces can be compared."
   `(let ((*own-conses* (make-hash-table :test 'eq))
          (*written-forms* (make-hash-table :test 'eq))
          (*gensym-counter* 0))

@@ -8,17 +8,18 @@
 ;;; should get a chance, such as SET-VALUE. Anything else is a leaf.
 
 (defstruct (plan-form (:constructor make-plan-form (name suspends compiler)) (:copier nil))
-  "What a plan makes of the operator called NAME. SUSPENDS is :must, :may or NIL; COMPILER takes the
-form and its scope and returns code that builds a node."
+  "The meaning in plans of the operator with the name NAME. SUSPENDS is :must, :may or NIL: see
+SUSPENSION. COMPILER takes the form and its scope and returns code that builds a node."
   (name "" :type string :read-only t)
   (suspends nil :type (member :must :may nil) :read-only t)
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "The operators that plans have a meaning of their own for: names, and symbols of users.")
+  "A table of the operators with a special meaning in plans. The keys are names, and symbols of
+users.")
 
 (defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
-  "Functions after which other tasks may be ready.")
+  "Names of functions that may make other tasks ready.")
 
 (defun find-plan-form (form environment)
   (and (consp form)
@@ -28,10 +29,11 @@ form and its scope and returns code that builds a node."
        (gethash (or (plan-operator-name form) (first form)) *plan-forms*)))
 
 (defvar *inner-exits* '()
-  "Names of blocks and tags inside the expression that is being looked at.")
+  "The names of the blocks and tags inside the expression that is being examined.")
 
 (defun exit-suspends-p (form scope)
-  "True if FORM leaves for a block or tag of the plan, outside the expression looked at."
+  "True if FORM leaves for a block or tag of the plan in SCOPE, outside of the expression that is
+being examined."
   (let ((name (second form)))
     (and (not (member name *inner-exits*))
          (if (eq (first form) 'go)
@@ -39,8 +41,8 @@ form and its scope and returns code that builds a node."
              (assoc name (scope-blocks scope))))))
 
 (defun check-own-form (form environment)
-  "Signal MALFORMED-DEFINITION if FORM is an IF of the plan's text that is none of a plan's, or a
-LET that binds a task variable; or if it binds what cannot be bound."
+  "Signal MALFORMED-DEFINITION if FORM, in the text of a plan, is a wrong IF, a LET of a task
+variable, or a binding of something that cannot be bound."
   (when (own-text-p form)
     (check-names form environment)
     (when (and (operator-in-p form '("LET" "LET*")) (proper-list-p (second form)))
@@ -51,13 +53,14 @@ LET that binds a task variable; or if it binds what cannot be bound."
       (reject-clause (text-title) form "(if test then [else]): put several forms into (seq ...)"))))
 
 (defun check-operator (form)
-  "Signal MALFORMED-DEFINITION if FORM, of the plan's text, starts with no operator."
+  "Signal MALFORMED-DEFINITION if FORM, in the text of a plan, does not start with an operator."
   (unless (or (typep (first form) '(cons (eql lambda))) (not (own-text-p form)))
     (reject-clause (text-title) form
-                   "an operator first of all: data is written '(...) or (list ...)")))
+                   "an operator as the first element; write data as '(...) or (list ...)")))
 
 (defun call-suspends (form scope environment)
-  "Return :MUST, :MAY or NIL for FORM, a call or special form, its parts left aside."
+  "Return :MUST, :MAY or NIL for FORM, a call or special form, without regard to its parts: see
+SUSPENSION."
   (let ((name (first form)))
     (cond ((local-function-p name environment)
            (and (assoc name (scope-procedures scope)) :must))
@@ -74,7 +77,8 @@ LET that binds a task variable; or if it binds what cannot be bound."
           (t :may))))
 
 (defun exits-in (form plan-form)
-  "Return the parts of FORM and the names of the blocks or tags that it gives them, if any."
+  "Return a list of the parts of FORM, and a list of the blocks or tags that FORM defines for these
+parts. Return NIL if FORM defines none."
   (cond ((eq (first form) 'block) (values (cddr form) (list (second form))))
         ((eq (first form) 'tagbody)
          (values (remove-if #'atom (rest form)) (remove-if #'consp (rest form))))
@@ -84,14 +88,14 @@ LET that binds a task variable; or if it binds what cannot be bound."
 ;;; Symbol macros.
 
 (defun symbol-macro-p (form environment)
-  "True if FORM is a symbol macro in ENVIRONMENT, and no task variable."
+  "True if FORM is a symbol macro in ENVIRONMENT and not a task variable."
   (and (symbolp form)
        (eq :symbol-macro (variable-kind form environment))
        (not (task-variable-p form environment))))
 
 ;; The walk goes into those that are local by itself.
 (defun global-symbol-macro-p (form environment)
-  "True if FORM, met by a walk in ENVIRONMENT, is a symbol macro that is known everywhere."
+  "True if FORM, found by a code walk in ENVIRONMENT, is a global symbol macro."
   (and (symbolp form)
        (symbol-macro-p form nil)
        (not (local-variable-p form environment))
@@ -100,7 +104,7 @@ LET that binds a task variable; or if it binds what cannot be bound."
 ;;; The macro of the library iterate expands all that is in its forms, as Lisp.
 
 (defun waiting-call-in (form environment)
-  "Return a call in FORM, or in what is in it, that makes a task wait; or NIL."
+  "Return the first call in FORM, or in forms inside it, that makes a task wait; or NIL."
   (map-calls (lambda (call)
                (when (and (symbolp (first call)) (waits-p call environment))
                  (return-from waiting-call-in call)))
@@ -115,7 +119,8 @@ LET that binds a task variable; or if it binds what cannot be bound."
              (procedure-name-p (first form))))))
 
 (defun suspension (form scope)
-  "Return :MUST, :MAY or NIL, and the expression in FORM that is the reason."
+  "Return whether FORM makes its task wait: :MUST, :MAY or NIL. The second value is the expression
+in FORM that is the reason."
   (let ((result nil) (reason nil))
     (labels ((note (kind form)
                (when (or (null result) (and (eq kind :must) (eq result :may)))

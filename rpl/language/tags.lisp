@@ -9,9 +9,10 @@
 ;;; with the same status fluent.
 
 (define-expression tagged
-  "BODY as a separate task called NAME. PLACE returns the environment that holds the task and
-its index there, NIL if none does. LAYERS are those of its scope; REPLACED is NIL, or a list of what
-BODY is the code of and of the node that it stands for: see Replacing below."
+  "Runs BODY as a separate task with the name NAME. The function PLACE returns the environment that
+has the task, and the index of the task there; or NIL if no environment has it. LAYERS are the
+layers of its scope. REPLACED is NIL, or a list of the replacing form and the original node: see
+Replacing below."
   (:parts (name symbol) (place function) (body node) (layers list) (replaced list))
   (:steps
    (begin
@@ -37,7 +38,7 @@ BODY is the code of and of the node that it stands for: see Replacing below."
             new)))))
 
 (defun start-branch (branch task environment index level)
-  "Start BRANCH as the part number INDEX of TASK; as the task of its tag, if it is tagged."
+  "Start BRANCH as part number INDEX of TASK. If BRANCH is tagged, start it as the task of its tag."
   (if (tagged-p branch)
       (spawn-gated task (tagged-body branch) environment index level
                    (tag-task branch environment))
@@ -60,7 +61,8 @@ BODY is the code of and of the node that it stands for: see Replacing below."
                   :replaced '())))
 
 (defun tags-in (forms)
-  "Return the names of the tags in FORMS, without those of a WITH-TAGS, PAR-LOOP or the like there."
+  "Return the names of the tags in FORMS. Tags inside a WITH-TAGS, PAR-LOOP or similar construct do
+not count."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
@@ -77,7 +79,8 @@ BODY is the code of and of the node that it stands for: see Replacing below."
     (nreverse names)))
 
 (defun tagged-scope (scope names first)
-  "Return SCOPE, with the variables NAMES, from FIRST on in its innermost environment, as tags."
+  "Return a copy of SCOPE in which the variables NAMES are tags. They are in the innermost
+environment of SCOPE, from index FIRST on."
   (inner-scope scope
                :task-tags (append (loop for name in names
                                         for index from first
@@ -85,7 +88,8 @@ BODY is the code of and of the node that it stands for: see Replacing below."
                                   (scope-task-tags scope))))
 
 (defun with-tags-code (form names scope coder)
-  "Return the code that CODER returns for a scope in which NAMES are bound to tasks."
+  "Return the code that CODER returns for a scope in which NAMES are bound to tasks. FORM is the
+source of the code."
   (if names
       `(make-binding
         :form ',(form-as-written form)
@@ -96,16 +100,16 @@ BODY is the code of and of the node that it stands for: see Replacing below."
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)
-  "Run BODY in a plan, with the name of each (:tag name form) in it bound to the task that runs that
-form. (:tag name form) returns one value. See TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. The body
-of a procedure is a WITH-TAGS too."
+  "Run BODY in a plan, with the name of each (:tag name form) in BODY bound to the task that runs
+that form. (:tag name form) returns one value. See TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. The
+body of a procedure binds tags as WITH-TAGS does."
   (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)
 (defun task-status (task)
-  "Return a fluent with the status of TASK: :created, :running, :blocked (by WITH-TASK-BLOCKED),
-:suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a valve), :succeeded, :failed or
-:evaporated (CRAM's words of 2009 and of 2020)."
+  "Return a fluent whose value is the status of TASK: :created, :running, :blocked (by
+WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a valve), :succeeded,
+:failed or :evaporated (the words of CRAM in 2009 and in 2020)."
   (check-argument task-status task (task-p task) "a task, as begin-plan returns")
   (or (task-status-fluent task)
       (setf (task-status-fluent task)
@@ -117,7 +121,7 @@ of a procedure is a WITH-TAGS too."
 ;;; compiled as if it stood there. Tasks that run keep the nodes that they started with.
 
 (defun scope-of (layers)
-  "Return a scope with LAYERS, the innermost first; it knows no blocks, tags and local plans."
+  "Return a scope with LAYERS, the innermost first, but without blocks, tags and local plans."
   (let ((scope (make-scope)))
     (dolist (layer (reverse layers) scope)
       (destructuring-bind (kind first &optional names) layer
@@ -138,7 +142,8 @@ of a procedure is a WITH-TAGS too."
                               (ensure-list (procedure-body part)))))))
 
 (defun tagged-in (node name)
-  "Return the tagged nodes called NAME in NODE, in order; of those within each other the outermost."
+  "Return a list of the tagged nodes with the name NAME in NODE, in order. If such nodes are nested,
+only the outermost is in the list."
   (let ((seen (make-hash-table :test 'eq)) (found '()))
     (labels ((visit (node)
                (unless (gethash node seen)
@@ -152,7 +157,7 @@ of a procedure is a WITH-TAGS too."
 (defun find-tagged (operator path)
   (unless (and (proper-list-p path) (rest path) (every #'symbolp (rest path)))
     (reject-argument operator 'path path
-                     "a list of a plan and a tag, or of tags around each other"))
+                     "a list of a plan and a tag, or of a plan and nested tags"))
   (let ((nodes (list (procedure-body (if (procedure-p (first path))
                                          (first path)
                                          (find-procedure (first path)))))))
@@ -162,9 +167,10 @@ of a procedure is a WITH-TAGS too."
                          append (tagged-in (if (tagged-p node) (tagged-body node) node) name))
                    :from-end t)))
     (unless (= 1 (length nodes))
-      (reject-use "~(~A~): there are ~D places that ~S leads to, not one. A path is a plan and a ~
-                   tag in it; tags around each other tell places apart."
-                  operator (length nodes) path))
+      (reject-use "~(~A~): ~S leads to ~D places, not to one. A path is a list of a plan and a ~
+                   tag in it. To select one of several places, write the tags around it before ~
+                   this tag."
+                  operator path (length nodes)))
     (first nodes)))
 
 ;;; Replacing.
@@ -175,10 +181,10 @@ of a procedure is a WITH-TAGS too."
 
 (addition task-code)
 (defun task-code (path)
-  "Return the plan text that tasks at PATH run from their next start on, and true if it replaces the
-original. PATH is a list of a plan or its name and a tag in it. Tags around that tag may come before
-it; of nested places the outermost is meant. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE unless
-there is exactly one such place. (Ours.)"
+  "Return the plan text that tasks at PATH run from their next start on, and true if this text
+replaces the original. PATH is a list of a plan or its name and a tag in it. Tags around that tag
+may come before it. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
+WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
   (let ((node (find-tagged 'task-code path)))
     (if (tagged-replaced node)
         (values (first (tagged-replaced node)) t)
@@ -188,9 +194,9 @@ there is exactly one such place. (Ours.)"
 (defun replace-task-code (path form &key compile)
   "Let tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on. Running tasks
 are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and local
-plans there. Its Lisp code is interpreted, as by MAKE-PLAN; compiled if COMPILE is true. Redefining
-the plan discards FORM. Return FORM. Signals as TASK-CODE does, and MALFORMED-DEFINITION. (From
-CRAM, where it takes a function.)"
+plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is true.
+Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
+MALFORMED-DEFINITION. (From CRAM, where it takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
          (body (call-blaming-form
                 (lambda ()
@@ -205,8 +211,8 @@ CRAM, where it takes a function.)"
 
 (addition restore-task-code)
 (defun restore-task-code (path)
-  "Restore the original code of tasks at PATH, see TASK-CODE, from their next start on. Return it.
-(Ours.)"
+  "Restore the original code of tasks at PATH, see TASK-CODE, from their next start on. Return the
+original code."
   (let ((node (find-tagged 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))

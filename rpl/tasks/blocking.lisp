@@ -9,11 +9,11 @@
 ;;; nothing holds the gate any more. Its status is :created until then.
 
 (define-record (gate (:constructor make-gate ()))
-  "What keeps a task from starting."
-  (holds '() list "what keeps the gate closed" :writable :export))
+  "A gate, which keeps a task from starting while it is closed."
+  (holds '() list "the constraints that keep the gate closed" :writable :export))
 
 (defstruct (gate-node (:include node (step #'step-gate)) (:copier nil))
-  "The place of a task before its first expression.")
+  "The node at which a task waits before its first expression.")
 
 (defun step-gate (node task frame value)
   (declare (ignore node value))
@@ -40,7 +40,7 @@
   (format nil "~{~A~^ and ~}" (mapcar #'awaited-text (reverse (gate-holds gate)))))
 
 (defun at-start-p (task)
-  "True if TASK has been made ready but has not taken its first step."
+  "True if TASK is ready but has not taken its first step."
   (let ((frame (task-frame task)))
     (and (eq (task-state task) :ready)
          (null (frame-up frame))
@@ -52,17 +52,19 @@
     (setf (task-frame task) (make-frame +gate+ (frame-environment frame) frame))))
 
 (defun hold-back (task hold)
-  "Keep TASK from starting until RELEASE-HOLD. Signals MISUSE if it has started."
+  "Keep TASK from starting until RELEASE-HOLD with the same HOLD. Signals MISUSE if TASK has
+started."
   (when (null (task-gate task))
     (unless (eq (task-state task) :created)
       (unless (at-start-p task)
-        (reject-use "~A has started already: nothing can come before it." (task-label task)))
+        (reject-use "~A has started already, so nothing can be ordered before
+it." (task-label task)))
       (put-gate task))
     (setf (task-gate task) (make-gate)))
   (push hold (gate-holds (task-gate task))))
 
 (defun release-hold (task hold)
-  "Let HOLD no longer keep TASK from starting."
+  "Remove HOLD, which keeps TASK from starting. TASK starts when it has no more holds."
   (let ((gate (task-gate task)))
     (when gate
       (setf (gate-holds gate) (remove hold (gate-holds gate)))
@@ -70,7 +72,7 @@
         (wake task nil)))))
 
 (defun spawn-gated (parent node environment index level task)
-  "Do as SPAWN; but TASK does not start before its gate, if it has one, is open."
+  "Do as SPAWN. But if TASK has a gate, TASK does not start before its gate is open."
   (spawn parent node environment index level task)
   (when (task-gate task) (put-gate task))
   task)
@@ -80,13 +82,14 @@
 ;;; blocking have a frame whose DATA is a BLOCK-HOOK.
 
 (define-record (block-hook (:constructor make-block-hook (function)))
-  "What an expression does when its task is blocked: it calls FUNCTION with task and frame."
+  "The reaction of an expression when its task is blocked: a call of FUNCTION with the task and the
+frame."
   (function #'list function))
 (declaim-final block-hook)
 
 (defun notify-blocked-parts (task)
-  "Notify the parts of TASK, newest first, and then its own expressions, innermost first, that they
-are stopped; except those that were stopped before."
+  "Notify the parts of TASK that TASK is stopped, newest first, and then the expressions of TASK
+itself, innermost first. Leave out parts that were stopped before."
   (unless (task-ending-p task)
     (dolist (child (reverse (task-children task)))
       (unless (plusp (task-blocked child)) (notify-blocked-parts child)))
@@ -95,14 +98,15 @@ are stopped; except those that were stopped before."
         (funcall (block-hook-function (frame-data frame)) task frame)))))
 
 (defun interrupt-parts (task)
-  "If the running task is a part of TASK let it give way after this step."
+  "If the running task is a part of TASK, let it yield after this step."
   (let* ((runner (task-runner task))
          (current (runner-current runner)))
     (when (and current (eq (task-state current) :running) (part-of-p current task))
       (setf (runner-mask runner) (logior +interrupt+ (runner-mask runner))))))
 
 (defun block-task (task &optional suspension)
-  "Keep TASK from running once more; SUSPENSION says whether its status shows it as suspended."
+  "Block TASK once more, which keeps it from running. If SUSPENSION is true, the status of TASK is
+shown as suspended."
   (let ((blocked (blocked-p task)))
     (incf (task-blocked task))
     (when suspension (incf (task-suspensions task)))
@@ -124,17 +128,18 @@ are stopped; except those that were stopped before."
     (release-held (task-runner task))))
 
 (defun check-together (task other)
-  "Signal MISUSE if TASK, which runs, and OTHER belong to different plan runners."
+  "Signal MISUSE if TASK, the running task, and OTHER belong to different plan runners."
   (when (and (task-runner other) (not (eq (task-runner task) (task-runner other))))
-    (reject-use "~A is part of plans of another robot, which go on by themselves. From here it can ~
-                 only be asked to SUSPEND and WAKE-UP."
+    (reject-use "~A belongs to the plans of another robot, which run by themselves. Here ~
+                 only SUSPEND and WAKE-UP can be applied to it."
                 (task-label other))))
 
 ;;; SUSPEND and WAKE-UP.
 
 (defun call-or-post (word task function)
-  "Call FUNCTION, which does what a call of WORD on TASK does: now, if a plan of the same runner
-asks or TASK is in none; else by a post, before the runner reacts again. Return TASK."
+  "Call FUNCTION, which does the work of a call of WORD on TASK. Call it now if a plan of the same
+runner is the caller or TASK has no runner. Otherwise post it; it is then called before the next
+reaction. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
@@ -143,12 +148,12 @@ asks or TASK is in none; else by a post, before the runner reacts again. Return 
 
 (addition suspend)
 (defun suspend (task)
-  "Stop TASK and its parts until WAKE-UP, and return TASK. Fluents that TASK waits for still count
-for it. A second SUSPEND changes nothing (from CRAM).
-  A task that suspends itself, or a task around it, stops after its current step. One that has not
-started will stop when it does. An evaporating task is not stopped. A suspended part does not keep
-the whole from ending.
-  From a REPL or another thread this takes effect before the plans react again."
+  "Stop TASK and its parts until WAKE-UP, and return TASK. Meanwhile fluents can still end the waits
+of TASK. A second SUSPEND changes nothing (from CRAM).
+  A task that suspends itself, or a task around it, stops after its current step. A task that has
+not started will stop when it starts. An evaporating task is not stopped. A suspended part does not
+keep the task around it from ending.
+  If a REPL or another thread calls SUSPEND, it takes effect before the plans react again."
   (check-argument suspend task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
     (call-or-post #'suspend task
@@ -159,8 +164,8 @@ the whole from ending.
 
 (addition wake-up)
 (defun wake-up (task)
-  "Undo SUSPEND of TASK, and return TASK; does not undo WITH-TASK-BLOCKED and the like. From
-anywhere, as SUSPEND (from CRAM)."
+  "Undo SUSPEND of TASK, and return TASK. WAKE-UP does not undo WITH-TASK-BLOCKED and similar
+constructs. Can be called from anywhere, as SUSPEND (from CRAM)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-meant task)))
     (call-or-post #'wake-up task

@@ -7,22 +7,22 @@
           pulse-of-command fluent-of-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
-  "How many arguments something takes, LEAST to MOST."
+  "The number of arguments, LEAST to MOST, and the keywords that a function or plan takes."
   (least 0 fixnum)
   (most most-positive-fixnum fixnum)
-  (fixed 0 fixnum "how many of the arguments are no keywords" :export)
+  (fixed 0 fixnum "how many arguments come before the keywords" :export)
   (keys :none (or list (eql :none))
         "the list of the keywords, or :NONE if there is no &KEY" :export)
-  (open nil t "true if other keywords do as well"))
+  (open nil t "true if other keywords are allowed, too"))
 
 (defun keyword-of (parameter)
-  "Return the keyword of PARAMETER, after &KEY in a lambda list or a function type."
+  "Return the keyword for PARAMETER, a parameter after &KEY in a lambda list or a function type."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (cond ((consp name) (first name))
           (t (make-keyword name)))))
 
 (defun shape-of (lambda-list)
-  "Return the shape of LAMBDA-LIST, an ordinary one or that of a function type."
+  "Return the shape of LAMBDA-LIST, an ordinary lambda list or that of a function type."
   (let ((mode nil) (least 0) (optional 0) (keys '()) (seen '()))
     (dolist (parameter lambda-list)
       (cond ((member parameter lambda-list-keywords)
@@ -45,8 +45,9 @@
       (format nil "~:A" lambda-list))))
 
 (defun keyword-slip (shape rest &key (wrong-p #'keywordp))
-  "Return in words the keyword in REST, the arguments or forms after the others, that SHAPE does not
-take; or NIL. Elements for which WRONG-P is false may still be keywords."
+  "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST is the list of
+arguments, or of forms for them, after the fixed arguments. Elements for which WRONG-P is false are
+not checked."
   (unless (or (shape-open shape)
               (loop for (key value) on rest by #'cddr
                     thereis (and (eq key :allow-other-keys) value)))
@@ -57,7 +58,7 @@ take; or NIL. Elements for which WRONG-P is false may still be keywords."
                            key (and (keywordp key) (nearest-name key (shape-keys shape)))))))
 
 (defun misfit (shape arguments &key (wrong-p #'keywordp))
-  "Return in words what SHAPE does not take of ARGUMENTS, or of forms for them; NIL if they may fit.
+  "Return a text that says why ARGUMENTS, or forms for them, do not fit SHAPE; NIL if they may fit.
 WRONG-P is as for KEYWORD-SLIP."
   (let* ((count (length arguments))
          (rest (nthcdr (shape-fixed shape) arguments)))
@@ -75,62 +76,65 @@ WRONG-P is as for KEYWORD-SLIP."
 
 (defun note-plan-function (name call wait &optional fluent codes results)
   "Record that plans write CALL instead of a call of the command NAME, and then (wait-for WAIT),
-unless WAIT is NIL. CALL has the names of its arguments, the first a part if the robot may have
-several. FLUENT, a form, or NIL, then has one of CODES if the command failed; RESULTS, forms of
-fluents, have what was found."
+unless WAIT is NIL. CALL is the plan function with the names of its arguments. The first argument is
+the number of a part if the robot may have several such parts. FLUENT is the form of the fluent that
+has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents for the results."
   (setf (get name 'plan-call) (list call wait)
         (get (first call) 'end) (list (second call) wait results)
         (get (first call) 'codes) (list fluent codes)))
 
 (defun plan-function-p (name)
-  "True if NAME is a plan's function for a command."
+  "True if NAME is the name of a plan function for a command."
   (and (symbolp name) (get name 'end) t))
 
 (defun fluent-of-code (name code)
-  "Return the form of the fluent that is set if the command of NAME ends with CODE, or NIL."
+  "Return the form of the fluent that is set if the command of the plan function NAME ends with
+CODE, or NIL."
   (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
     (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
 
 (defun has-plan-function-p (name)
-  "True if plans call another function instead of the one called NAME."
+  "True if plans call a plan function instead of the command NAME."
   (and (symbolp name) (get name 'plan-call) t))
 
 (defun wait-form-text (wait)
   (let ((*print-pretty* nil)) (and wait (format nil "(wait-for ~(~A~))" wait))))
 
 (defun pulse-of-command (name)
-  "Return the form of the fluent that is pulsed when a command called NAME of a plan ends, or NIL."
+  "Return the form of the fluent that is pulsed when the command NAME of a plan ends, or NIL."
   (second (get name 'plan-call)))
 
 (defun plan-call-text (name)
-  "Return in words what plans write instead of a call of NAME."
+  "Return the text of the call that plans write instead of a call of the command NAME."
   (destructuring-bind (call wait) (get name 'plan-call)
     (let ((*print-pretty* nil))
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 
 (defun end-text (name part)
-  "Return in words how plans wait for the end of the command of NAME, a plan's function, on the part
-numbered PART; NIL if no fluent is pulsed then."
+  "Return the text of the form by which plans wait for the end of the command of NAME, a plan
+function, on the part with the number PART. Return NIL if no fluent is pulsed at the end."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore results))
     (wait-form-text (subst part variable wait))))
 
 (defun results-of-command (name part)
-  "Return the forms of the fluents for the results of NAME, a plan's function, on part number PART."
+  "Return the forms of the fluents for the results of NAME, a plan function, on the part with the
+number PART."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore wait))
     (subst part variable results)))
 
 (defgeneric last-command (client task)
-  (:documentation "Return the name of the plan's function that the plan TASK is of has called last,
-and the number of the part that it is for, if any, as CLIENT knows; NIL if it has called none.")
+  (:documentation "Return the name of the plan function that the plan of TASK has called last, and
+the number of its part, if any. Return NIL if the plan has called no plan function. CLIENT has
+recorded the calls.")
   (:method (client task)
     (declare (ignore client task))
     nil))
 
 (defgeneric last-pulse (client task fluent)
-  (:documentation "Return the tick at which FLUENT was pulsed last by the end of a command, if that
-was one of the plan that TASK is of, as CLIENT knows; or NIL.")
+  (:documentation "Return the tick of the last pulse of FLUENT, if the end of a command of the plan
+of TASK caused this pulse; otherwise NIL. CLIENT has recorded the commands.")
   (:method (client task fluent)
     (declare (ignore client task fluent))
     nil))

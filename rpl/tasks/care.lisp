@@ -5,25 +5,27 @@
 (export '(*failure-hooks* failure-of plan-backtrace operator-called-p leave-plan))
 
 (defun operator-called-p (form &rest names)
-  "True if FORM, of a plan's text, is a use of an operator that is called like one of NAMES."
+  "True if FORM, a form of plan text, has an operator with the name of one of NAMES."
   (and (typep form '(cons symbol)) (member (first form) names :test #'string=)))
 
 (defun plan-backtrace (task frame)
-  "Return the expressions under way in TASK at FRAME and around it, innermost first."
+  "Return the expressions in progress in TASK at FRAME and in the tasks around TASK, innermost
+first."
   (nconc (forms-under-way frame)
          (loop for whole in (rest (lineage task)) nconc (forms-under-way (task-frame whole)))))
 
 (defun handled-failure (task frame)
-  "Return the failure that TASK at FRAME, or a task around it, is handling or cleaning up after."
+  "Return the failure that TASK at FRAME, or a task around TASK, is handling or cleaning up after."
   (loop for each in (frames-around task frame)
         when (typep (frame-data each) 'plan-failure) return (frame-data each)))
 
 (define-event *failure-hooks*
-  "Functions that are called with each failure, its task and frame, where it happens.")
+  "Functions to call when a failure happens, with the failure, its task and its frame.")
 
 (defun failure-of (condition task frame)
-  "Return the failure that CONDITION, met by TASK at FRAME, means, with all that is known of it. It
-counts as the steps that take as long, so that a plan that only fails uses up its slice."
+  "Return the failure for CONDITION, which TASK at FRAME has met, with all data of a failure. The
+failure counts as the number of steps that take as long. So a plan that only fails uses up its
+slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
@@ -41,7 +43,8 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     failure))
 
 (defun lisp-backtrace ()
-  "Return as a string the Lisp calls under way in a plan's code that has just signalled an error."
+  "Return a text of the Lisp calls in progress in the code of a plan that has just signalled an
+error."
   (let* ((calls (calls-under-way))
          (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
                                calls :key #'first)))
@@ -52,14 +55,14 @@ counts as the steps that take as long, so that a plan that only fails uses up it
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
 
 (defmethod value-behind ((task task))
-  "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN, the values of one that it runs.")
+  "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN returns the values of a plan.")
 
 ;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
 ;;; even between two changes that belong together. Only what tasks contain is reliable then: their
 ;;; parents, states and frames. Everything else, such as queues, timers and watchers, is rebuilt.
 
 (defun live-parts (task)
-  "Return TASK and its parts that are not over. Repair the links between them."
+  "Return TASK and its parts that are not over, and repair the links between them."
   (let ((children (loop for child = (task-newest-child task) then (task-older child)
                         repeat 1000000
                         while child
@@ -74,7 +77,7 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     (cons task (mapcan #'live-parts children))))
 
 (defun repair-queues (runner tasks)
-  "Queue those of TASKS, all of RUNNER, that are ready, and nothing else."
+  "Rebuild the ready queues of RUNNER from TASKS, all its tasks. Only ready tasks are queued."
   (loop for ring across (runner-rings runner)
         do (fill (ring-items ring) nil)
            (setf (ring-start ring) 0
@@ -91,7 +94,8 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     (when (eq :ready (task-state task)) (make-ready task))))
 
 (defun repair-timers (runner tasks)
-  "Rebuild the timers of RUNNER from its own and those of TASKS, for tasks that are not over."
+  "Rebuild the timers of RUNNER from its old timers and those of TASKS. Leave out timers of tasks
+that are over."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
                                             (remove nil (mapcar #'task-timer tasks)))
@@ -110,7 +114,8 @@ counts as the steps that take as long, so that a plan that only fails uses up it
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-hearing (runner tasks)
-  "Register the waits of TASKS of RUNNER with their fluents again. Wake those that missed events."
+  "Register the waits of TASKS of RUNNER with their fluents again. Wake the tasks that have missed
+events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
                   (lambda (watcher)
                     (let ((client (watcher-client watcher)))
@@ -123,13 +128,14 @@ counts as the steps that take as long, so that a plan that only fails uses up it
           (:no-error (value) (when value (funcall (watcher-wake watcher) watcher value nil))))))))
 
 (defun finish-ending (task)
-  "Let TASK, which was about to evaporate or to end otherwise when its parts have, do so."
+  "Finish the end of TASK, if TASK was about to evaporate or otherwise end after its parts, and has
+no more parts."
   (when (and (eq :waiting (task-state task)) (null (task-newest-child task)))
     (cond ((eq :evaporate (task-signal task)) (evaporate-now task))
           ((task-signal task) (make-ready task)))))
 
 (defun repair (runner)
-  "Make the state of RUNNER consistent, wherever it was interrupted."
+  "Make the state of RUNNER consistent, wherever RUNNER was interrupted."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
   (let ((tasks (mapcan #'live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
@@ -154,7 +160,7 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     (failure-of condition task (task-frame task))))
 
 (defun fail-current (runner trouble)
-  "Let the running task of RUNNER fail by TROUBLE, a failure or the lack of memory."
+  "Let the running task of RUNNER fail with TROUBLE, a failure or a lack of memory."
   (let ((task (runner-current runner)))
     (when (typep trouble 'storage-condition) (regain-room trouble))
     (let ((failure (current-failure runner trouble)))
@@ -165,13 +171,15 @@ counts as the steps that take as long, so that a plan that only fails uses up it
                (make-ready-first task))))))
 
 (defun end-plan-of (task)
-  "Evaporate the plan of TASK, which is ready. If the plan was cleaning up, abandon the cleanup."
+  "Evaporate the whole plan of TASK, which is ready. If the plan was cleaning up, abandon the
+cleanup."
   (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
 
 (defun end-current-plan (runner)
-  "Evaporate the plan of the running task of RUNNER. If it was cleaning up, abandon the cleanup."
+  "Evaporate the plan of the running task of RUNNER. If the plan was cleaning up, abandon the
+cleanup."
   (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
     (make-ready-first task)
@@ -182,7 +190,7 @@ counts as the steps that take as long, so that a plan that only fails uses up it
     (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task)))))
 
 (defun repair-after-exit (runner)
-  "Repair RUNNER after a step was left by a non-local exit: the plan that took it ends."
+  "Repair RUNNER after a non-local exit from a step. The plan that took the step ends."
   (let ((task (running-task runner)))
     (when task
       (setf (task-state task) :ready
@@ -198,13 +206,14 @@ after any failure."
  'leave-plan "End the plan without a message.")
 
 (defun leave-plan ()
-  "In a plan's Lisp code: end the plan, and report nothing. Elsewhere return."
+  "End the plan and report nothing. Must be called by Lisp code of a plan; elsewhere just return."
   (let ((restart (find-restart 'leave-plan)))
     (when restart (invoke-restart restart))))
 
 (defun call-offering-ends (runner function fail end leave)
   "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
-LEAVE and END. A step that is left by another ends its plan, and so cannot be tried again."
+LEAVE and END. Any other non-local exit from a step also ends its plan, so the step cannot be tried
+again."
   (declare (type function function fail end leave))
   (labels ((in-step-p (&optional condition)
              (declare (ignore condition))
@@ -213,9 +222,9 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
            (offer-failing (stream)
              (format stream "Let the task ~A fail." (task-label (current))))
            (plan () (task-label (task-top (current))))
-           (offer-ending (stream) (format stream "End the plan ~A; a message says so." (plan)))
+           (offer-ending (stream) (format stream "End the plan ~A, with a message." (plan)))
            (offer-leaving (stream)
-             (format stream "End the plan ~A; no message says so." (plan))))
+             (format stream "End the plan ~A, without a message." (plan))))
     (declare (dynamic-extent #'in-step-p #'offer-failing #'offer-ending #'offer-leaving))
     (restart-bind ((fail-task fail :report-function #'offer-failing
                                    :test-function #'in-step-p)
@@ -234,8 +243,8 @@ LEAVE and END. A step that is left by another ends its plan, and so cannot be tr
 ;;; There is none if the step is left by another non-local exit, such as THROW.
 
 (defun call-to-outcome (runner function)
-  "Call FUNCTION with RUNNER. Return the outcome of the step, the value of FUNCTION or what trouble
-it met, and whether it may have been stopped in the middle of our own code."
+  "Call FUNCTION with RUNNER. Return the outcome of the step; the value of FUNCTION or the trouble
+that it met; and whether the step may have been stopped in the middle of the simulator's own code."
   (let ((trouble nil) (anywhere-p nil))
     (block call
       (labels ((meet (outcome) (return-from call (values outcome trouble anywhere-p)))
@@ -274,8 +283,8 @@ it met, and whether it may have been stopped in the middle of our own code."
                 anywhere-p)))))
 
 (defun call-with-care (runner function)
-  "Call FUNCTION with RUNNER and return its value; NIL if the step of a task met trouble, which ends
-or fails that task."
+  "Call FUNCTION with RUNNER and return its value. If the step of a task met trouble, end or fail
+that task and return NIL."
   (let ((outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
          (setf (values outcome result anywhere-p) (call-to-outcome runner function))

@@ -12,8 +12,8 @@
 ;;; those of a task that runs away.
 
 (defun set-charges (runner charged-p budget)
-  "Charge RUNNER for thoughts from now on if CHARGED-P is true, and give it BUDGET steps a tick, or
-as many as it needs if that is NIL."
+  "Charge the tasks of RUNNER for thinking from now on if CHARGED-P is true. Give RUNNER BUDGET
+steps a tick, or any number of steps if BUDGET is NIL."
   (unless (and (eq charged-p (runner-charged-p runner))
                (eql budget (runner-budget runner)))
     (setf (runner-charged-p runner) charged-p
@@ -25,7 +25,7 @@ as many as it needs if that is NIL."
 
 (declaim (inline standing-still-p))
 (defun standing-still-p (runner)
-  "True if no task of RUNNER goes on in this tick."
+  "True if STAND-STILL has stopped all tasks of RUNNER for this tick."
   (let ((tick (runner-still-until runner)))
     (and tick (< (runner-tick runner) tick))))
 
@@ -37,7 +37,7 @@ as many as it needs if that is NIL."
         (runner-limit runner) (+ (runner-steps runner) steps)))
 
 (defun give-budget (runner)
-  "Allow the reaction of RUNNER that begins what is left of this tick's budget of steps."
+  "Allow the reaction of RUNNER that now begins the rest of this tick's budget of steps."
   (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
     (setf (runner-slice runner)
           (max 1 (min +slice+ (floor (or budget *runaway-limit*) 10))))
@@ -50,7 +50,8 @@ as many as it needs if that is NIL."
              (allow-steps runner (- budget paid)))))))
 
 (defun uncount-steps (runner steps)
-  "Do not count STEPS that a task of RUNNER has taken, unless there are too many in one tick."
+  "Do not count STEPS that a task of RUNNER has taken, unless too many uncounted steps were taken in
+this tick."
   (decf (runner-uncovered runner) steps)
   (when (runner-budget runner)
     (incf (runner-uncounted runner) steps)
@@ -61,27 +62,27 @@ as many as it needs if that is NIL."
 
 (addition exhaust-reaction)
 (defun exhaust-reaction (&optional (runner *runner*))
-  "End the current reaction of RUNNER after this step: ready tasks wait for the tick."
+  "End the current reaction of RUNNER after this step. Ready tasks then wait for the next tick."
   (note-from-outside #'exhaust-reaction runner)
   (setf (runner-exhausted runner) t
         (runner-limit runner) 0
         (runner-pause runner) 0))
 
 (defun stand-still (runner ticks)
-  "Stop all tasks of RUNNER for TICKS more once the current step has ended."
+  "Stop all tasks of RUNNER for TICKS more ticks, once the current step has ended."
   (setf (runner-still-until runner)
         (+ ticks (max (runner-tick runner) (or (runner-still-until runner) 0)))
         (runner-pause runner) 0))
 
 (defun stand-no-longer (runner)
-  "Let tasks of RUNNER run again."
+  "Let the tasks of RUNNER run again after STAND-STILL."
   (setf (runner-still-until runner) nil))
 
 (addition charge-ticks)
 (defun charge-ticks (ticks &optional (runner *runner*))
-  "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended; for Lisp code
-of a plan that learns its cost as it runs. Commands go on; the plans react afterwards to what
-happened meanwhile. Does nothing where thinking is not charged. Returns nothing. Signals
+  "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended. For Lisp code
+in a plan that knows its cost only when it runs. Commands go on; afterwards the plans react to the
+events of the meantime. If thinking is not charged, do nothing. Returns nothing. Signals
 WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks runner ticks)
@@ -90,7 +91,8 @@ WRONG-ARGUMENT."
   (values))
 
 (defun count-steps (steps runner task)
-  "Count STEPS for TASK, or for no task if it is NIL, of RUNNER, if its steps are counted."
+  "Count STEPS more steps of RUNNER for TASK, or for no task if TASK is NIL. Do nothing if the steps
+are not counted."
   (when (and (runner-charged-p runner)
              (runner-budget runner)
              (not (and task (task-uncounted-p task))))
@@ -103,10 +105,10 @@ WRONG-ARGUMENT."
 
 (addition charge-steps)
 (defun charge-steps (steps &optional (runner *runner*))
-  "Count STEPS, a whole number, as if the plans of the robot had taken them; for Lisp code of a plan
-that learns its cost as it runs. What exceeds this tick's budget uses that of the next ticks. Does
-nothing where the steps of plans have no budget, and in a WITH-CHARGE, which has a fixed price.
-Returns nothing. Signals WRONG-ARGUMENT."
+  "Count STEPS, a whole number, as if the plans of the robot had taken these steps. For Lisp code in
+a plan that knows its cost only when it runs. Steps beyond the budget of this tick use the budget of
+the next ticks. Does nothing if the steps of plans have no budget, and inside a WITH-CHARGE, which
+has a fixed price. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
   (note-from-outside #'charge-steps runner steps)
   (when runner (count-steps steps runner (running-task runner)))

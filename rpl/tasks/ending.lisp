@@ -21,7 +21,7 @@
     (set-value (task-status-fluent task) (status-word task state))))
 
 (defun finish (task state result &optional (how state))
-  "End TASK in STATE with RESULT. HOW is what the construct around TASK is told."
+  "End TASK in STATE with RESULT. The construct around TASK receives the word HOW."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
               (and (eq state :failed) result)
               (and (eq how :succeeded) result))
@@ -45,7 +45,8 @@
                (funcall (runner-on-end runner) task))))))
 
 (defun child-over (parent child how result)
-  "Notify PARENT that its CHILD has ended. Once PARENT has a signal, only the last child matters."
+  "Notify PARENT that CHILD has ended. If PARENT has a signal, only the end of the last child
+matters."
   (cond ((null (task-signal parent))
          (let* ((frame (task-frame parent))
                 (node (frame-node frame)))
@@ -55,7 +56,8 @@
         (t (make-ready parent))))
 
 (defun decide (parent signal)
-  "Evaporate the children of PARENT, which waits for them, and send it SIGNAL when all are gone."
+  "Evaporate the children of PARENT, which waits for them. When all children are gone, send PARENT
+the signal SIGNAL."
   (setf (task-signal parent) signal
         (task-awaiting parent) nil)
   (if (task-newest-child parent)
@@ -63,26 +65,28 @@
       (make-ready parent)))
 
 (defun complete (parent value)
-  "End with VALUE the construct in which PARENT waits for its children."
+  "End the construct in which PARENT waits for its children, with VALUE."
   (if (task-newest-child parent)
       (decide parent (make-completion value))
       (wake parent value)))
 
 (defun fail-or-escape (task how result)
-  "Let TASK do as its child if that has failed or escaped, by HOW and RESULT. True if so."
+  "If a child of TASK has failed or escaped, as HOW says, let TASK do the same with RESULT, and
+return true."
   (when (member how '(:failed :escaped))
     (decide task result)
     t))
 
 (defun complete-when-alone (task value)
-  "End with VALUE the construct in which TASK waits for its children, unless some are left."
+  "End the construct in which TASK waits for its children, with VALUE, if TASK has no more
+children."
   (unless (task-newest-child task) (complete task value)))
 
 ;;; Unwinding.
 
 (defun unwind (task frame signal)
-  "Send SIGNAL up from FRAME. Return what a step returns: the frame that handles it, or, when
-none does and TASK has ended, +PARKED+."
+  "Send SIGNAL outwards from FRAME. Return what a step returns. This is the frame that handles
+SIGNAL, or +PARKED+ if no frame does and TASK has ended."
   (loop while frame
         do (let* ((node (frame-node frame))
                   (handler (node-unwind node)))
@@ -97,7 +101,7 @@ none does and TASK has ended, +PARKED+."
   +parked+)
 
 (defun receive (task frame signal)
-  "Let SIGNAL happen to TASK at FRAME. Return what a step returns."
+  "Handle SIGNAL in TASK at FRAME. Return what a step returns."
   (if (completion-p signal)
       (values (frame-up frame) (completion-value signal))
       (unwind task frame signal)))
@@ -105,11 +109,11 @@ none does and TASK has ended, +PARKED+."
 ;;; Evaporating.
 
 (defgeneric withdraw (task awaited)
-  (:documentation "Take TASK out of the list of those that wait for AWAITED.")
+  (:documentation "Remove TASK from the tasks that wait for AWAITED.")
   (:method (task awaited) (declare (ignore task awaited))))
 
 (defun stop-waiting (task)
-  "Remove TASK from what it waits for: a fluent, a timer or another object."
+  "Remove TASK from the object that it waits for: a fluent, a timer or another object."
   (let ((awaited (shiftf (task-awaiting task) nil))
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
@@ -118,12 +122,12 @@ none does and TASK has ended, +PARKED+."
     (when timer (cancel-timer timer (runner-timers (task-runner task))))))
 
 (defun release-held (runner)
-  "Queue again the tasks that were put aside because they were blocked."
+  "Queue the ready tasks of RUNNER again that were put aside because they were blocked."
   (dolist (task (nreverse (shiftf (runner-held runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
 
 (defun evaporate-now (task)
-  "Let TASK, which does not run and has no children, evaporate at once, or start to clean up."
+  "Let TASK evaporate at once, or start its cleanup. TASK must not be running or have children."
   (let ((queued (eq (task-state task) :ready)))
     (setf (task-signal task) nil)
     (multiple-value-bind (frame value) (unwind task (task-frame task) :evaporate)
@@ -149,8 +153,8 @@ none does and TASK has ended, +PARKED+."
 (addition evaporate)
 (defun evaporate (task)
   "End TASK and its parts, the newest first. Cleanups of EVAP-PROTECT run first and may take time.
-Does nothing if TASK has not started, is over or evaporates already. From outside of its plan it
-takes effect before that goes on. Signals WRONG-ARGUMENT."
+Does nothing if TASK has not started, is over or evaporates already. If code outside of the plan
+calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
   (let ((task (task-meant task)))
     (cond ((cannot-evaporate-p task))
@@ -175,7 +179,7 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
   (when (runner-held (task-runner task)) (release-held (task-runner task))))
 
 (defun end-parts (task)
-  "Let TASK, which does not run, evaporate when its children have."
+  "Evaporate the children of TASK, and then TASK. TASK must not be running."
   (cond ((task-newest-child task)
          (setf (task-signal task) :evaporate)
          (evaporate-children task))
@@ -184,25 +188,25 @@ takes effect before that goes on. Signals WRONG-ARGUMENT."
 ;;; Kills from outside, and cleanups that are given up.
 
 (defun request-end (task)
-  "Evaporate TASK as soon as its runner can."
+  "Evaporate TASK as soon as its plan runner can."
   (let ((runner (task-runner task)))
     (atomic-push (cons task *asker*) (runner-ends-requested runner))
     (funcall (runner-on-post runner))))
 
 (defun end-requested-tasks (runner)
-  "Evaporate the tasks that other threads, or code outside of plans, have asked to end."
+  "Evaporate the tasks that other threads, or code outside of plans, have asked RUNNER to end."
   (loop for requests = (runner-ends-requested runner)
         until (swap-if (runner-ends-requested runner) requests '())
         finally (loop for (task . asker) in (reverse requests)
                       do (let ((*asker* asker)) (evaporate task)))))
 
 (defun cleaning-part (task)
-  "Return an innermost part of TASK, or itself, that is cleaning up; or NIL."
+  "Return an innermost part of TASK, or TASK itself, that is cleaning up; or NIL."
   (or (some #'cleaning-part (task-children task))
       (and (task-cleaning task) task)))
 
 (defun give-up-cleanup (task)
-  "Abandon the cleanup that TASK is in. Queue a warning."
+  "Abandon the cleanup of TASK that is in progress. Queue a warning."
   (warn-notably "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
   (setf (task-ending-p task) t)

@@ -17,15 +17,16 @@
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
                            (attended-p (constantly nil))
                            (on-end #'report-end))
-  "Return a plan runner, whose time is TICK.
+  "Return a new plan runner whose time is TICK.
   TRACE: true to keep a trace.
-  BUDGET: how many steps a reaction may take before time passes; NIL: as many as it needs.
-  CHARGED: if true, thoughts with a stated cost take ticks, and all reactions of a tick share
+  BUDGET: how many steps a reaction may take before time passes; NIL for no limit.
+  CHARGED: if true, thinking with a stated cost takes ticks, and all reactions of a tick share
 BUDGET.
-  CLOCK: a function that returns seconds, or NIL for no timing; with it there are warnings of
-Lisp code that runs for more than SLOW seconds.
-  DICE: what TRY-ONE chooses by.
-  BUSY-P: a function that says whether others, such as a command in progress, may still post.
+  CLOCK: a function that returns seconds, or NIL for no timing. With a clock, Lisp code that runs
+for more than SLOW seconds causes a warning.
+  DICE: the dice from which TRY-ONE draws.
+  BUSY-P: a function that says whether something outside of the plans, such as a command in
+progress, may still post.
   ON-POST: a function called after each post, in the posting thread.
   ATTENDED-P: a function that says whether a thread applies posts anyway.
   ON-END: a function called with each top-level task that ends; by default it reports failures.
@@ -46,12 +47,12 @@ Lisp code that runs for more than SLOW seconds.
     (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
 (defconstant +start+ 100
-  "As how many steps of a reaction the start of a plan counts, so that endless starts use up the
-reaction before the heap. Where steps have a budget it counts as one.")
+  "How many steps of a reaction the start of a plan counts as. So endless starts use up the reaction
+before the heap. With a budget of steps, the start of a plan counts as one step.")
 
 (defun start-plan (runner plan &rest arguments)
-  "Start PLAN, a plan procedure or the name of one, with ARGUMENTS as a top-level task of RUNNER.
-Return the task, which runs at the next reaction."
+  "Start PLAN, a plan procedure or its name, with ARGUMENTS as a top-level task of RUNNER. Return
+the task, which runs at the next reaction."
   (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
@@ -68,8 +69,8 @@ Return the task, which runs at the next reaction."
 ;;; there another limit than slices decides when posts are applied.
 
 (defun run-ready (runner)
-  "Run the ready tasks of RUNNER. Return :idle when none is ready that has not used its slice,
-:budget when the steps of the reaction are spent, or all stand still while one thinks."
+  "Run the ready tasks of RUNNER. Return :idle when no ready task has steps left in its slice.
+Return :budget when the steps of the reaction are used up, or when all tasks stop while one thinks."
   (loop
     (when (runner-ends-requested runner) (end-requested-tasks runner))
     (when (or (>= (runner-steps runner) (runner-limit runner))
@@ -82,8 +83,9 @@ Return the task, which runs at the next reaction."
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER, whatever becomes of one. Return as RUN-READY does. A round that
-the end of a tick's budget has broken off goes on in the next tick: each task gets its turn in it."
+  "Run the ready tasks of RUNNER for one round, even if some of them meet trouble. Return as
+RUN-READY does. If the budget of a tick ends during a round, the round goes on in the next tick, so
+that each task gets its turn in it."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
   (let ((outcome (loop thereis (call-with-care runner #'run-ready))))
@@ -92,7 +94,8 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
     outcome))
 
 (defun apply-due-batch (runner)
-  "Apply the next batch if it is due at the end of a round of RUNNER. True if there was one."
+  "Apply the next posted batch if it is due at the end of a round of RUNNER. Return true if a batch
+was applied."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
@@ -101,7 +104,8 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
     (apply-next-batch runner)))
 
 (defun run-rounds (runner)
-  "Run the ready tasks of RUNNER until none is ready and nothing posted. Return :idle or :budget."
+  "Run the ready tasks of RUNNER and apply posts, until no task is ready and nothing is posted.
+Return :idle or :budget."
   (loop
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
@@ -120,13 +124,13 @@ the end of a tick's budget has broken off goes on in the next tick: each task ge
          (loop-p (operator-called-p form "LOOP"))
          (wait (and loop-p (use-in "WAIT-FOR" form))))
     (cond (wait
-           (format nil "~A does not wait while that is true already. Wait until it is false too, ~
-                        or write (wait-time 1)." (form-text wait)))
+           (format nil "~A does not wait if its condition is true already. Also wait until it ~
+                        is false, or write (wait-time 1)." (form-text wait)))
           ((and form (not loop-p) (use-in "RETRY" form))
            (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
 often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
-          (t (format nil "If it is to wait, write (wait-time 1) there~:[~;; if it is to end, ~
-                          (return) leaves the loop~]. Ctrl-C interrupts RUN-PLAN." loop-p)))))
+          (t (format nil "If the plan is to wait, write (wait-time 1) there~:[~;; if the loop is ~
+                          to end, write (return)~]. Ctrl-C interrupts RUN-PLAN." loop-p)))))
 
 (defun warn-of-runaway (runner)
   (let* ((task (find :ready (append (runner-spent runner)
@@ -140,9 +144,9 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
                     (runaway-remedy task)))))
 
 (defun react-to-all (runner)
-  "Let RUNNER react to what is ready and, one after the other, to all that has been posted, and
-return :idle. Return :budget instead when the budget of steps is spent before, and what is left
-waits for the next reaction; without a budget that is after *RUNAWAY-LIMIT* steps, with a warning."
+  "Let RUNNER run its ready tasks and apply all posts, one after the other, and return :idle. If the
+budget of steps is used up first, return :budget; the rest waits for the next reaction. Without a
+budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
   (at-home (runner)
     (give-budget runner)
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
@@ -158,7 +162,8 @@ waits for the next reaction; without a budget that is after *RUNAWAY-LIMIT* step
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
-  "Apply the batch or call posted to RUNNER first. True if there was one. Errors become messages."
+  "Apply the oldest batch or call posted to RUNNER. Return true if there was one. Errors become
+messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
       (at-home (runner)
@@ -170,12 +175,13 @@ waits for the next reaction; without a budget that is after *RUNAWAY-LIMIT* step
 ;;; Ending.
 
 (defun stop-plan (runner &optional task)
-  "Evaporate TASK, or else all tasks of RUNNER, before it takes another step. For any thread."
+  "Evaporate TASK, or all tasks of RUNNER if TASK is NIL, before the next step. Any thread may call
+STOP-PLAN."
   (mapc #'request-end (if task (list task) (plan-runner-tasks runner))))
 
 (defun close-runner (runner)
-  "Evaporate all tasks of RUNNER. Cleanups run as far as they take no time; the rest is abandoned,
-with a warning for each. No task is left. Charges end, and posts are ignored."
+  "Evaporate all tasks of RUNNER. Cleanups run as far as they take no time; the other cleanups are
+abandoned, with a warning for each. No task is left. Charges end, and posts are ignored."
   (set-charges runner nil nil)
   (stop-plan runner)
   (react-to-all runner)
@@ -188,29 +194,33 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
 ;;; Time.
 
 (defun note-tick (runner tick)
-  "Set the time of RUNNER to TICK, outside of reactions. The next one wakes tasks that wait for it."
+  "Set the time of RUNNER to TICK, outside of reactions. The next reaction wakes the tasks that wait
+for this time."
   (setf (runner-tick runner) tick))
 
 (defun advance-timers (runner tick)
-  "Set the time of RUNNER to TICK, and wake the tasks that waited for it."
+  "Set the time of RUNNER to TICK, and wake the tasks that wait for this time."
   (setf (runner-tick runner) tick)
   (at-home (runner) (run-timers (runner-timers runner) tick)))
 
 (defun next-wake-time (runner)
-  "Return the tick at which the next task of RUNNER that waits for time wakes, or NIL."
+  "Return the tick of the earliest timer of RUNNER, or NIL."
   (let ((timer (next-timer (runner-timers runner))))
     (and timer (timer-due timer))))
 
 (defun outside-request-p (runner)
-  "True if something was posted to RUNNER, or tasks of it are to end. For any thread."
+  "True if something is posted to RUNNER, or the end of some of its tasks is requested. Any thread
+may call OUTSIDE-REQUEST-P."
   (and (or (runner-ends-requested runner) (posted-p runner)) t))
 
 (defun runner-idle-p (runner)
-  "True if no task of RUNNER is ready and nothing is posted: only time or a post can change that."
+  "True if no task of RUNNER is ready and nothing is posted. Then only time or a post can change the
+state of RUNNER."
   (not (or (any-ready-p runner) (outside-request-p runner))))
 
 (defun rest-in-tick (runner tick)
-  "Set the time of RUNNER to TICK, without a reaction, if no task would run in it. True if so."
+  "Set the time of RUNNER to TICK, without a reaction, if no task would run at TICK. Return true if
+so."
   (let ((wake (next-wake-time runner)))
     (unless (or (and wake (<= wake tick))
                 (not (runner-idle-p runner))
@@ -222,7 +232,8 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
       t)))
 
 (defun plan-deadlocked-p (runner)
-  "True if tasks of RUNNER wait and nothing can wake them: no timer, and no possible post."
+  "True if tasks of RUNNER wait and nothing can wake them: RUNNER has no timer, and no post is
+possible."
   (and (runner-roots runner)
        (runner-idle-p runner)
        (null (next-wake-time runner))
@@ -231,12 +242,13 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
 ;;; Chance, and the state of it all.
 
 (defun reseed-runner (runner seed)
-  "Draw the choices of plans in RUNNER from the integer SEED from now on."
+  "From now on, draw the random choices of plans in RUNNER from the integer SEED."
   (setf (runner-dice runner) (make-dice seed :plans)
         (runner-lisps-dice runner) nil))
 
 (defun digest-runner (runner digest)
-  "Add to DIGEST the tasks of RUNNER, when the next one wakes, and the states of dice and charges."
+  "Add the state of RUNNER to DIGEST: its tasks, the tick of its next timer, its dice and its
+charges."
   (digest-add digest (list (runner-tick runner) (next-wake-time runner)
                            (and (runner-dice runner) (dice-state (runner-dice runner)))
                            (runner-debt runner) (runner-still-until runner)))
@@ -247,7 +259,8 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
 ;;;; Plans without a robot, in virtual time
 
 (defun run-until-over (runner task limit)
-  "Run the plans of RUNNER until TASK is over. Return its state, :deadlock, or :limit past LIMIT."
+  "Run the plans of RUNNER until TASK is over. Return the state of TASK; or :deadlock; or :limit if
+the tick LIMIT is passed."
   (loop
     (react-to-all runner)
     (let ((wake (next-wake-time runner))
@@ -261,8 +274,8 @@ with a warning for each. No task is left. Charges end, and posts are ignored."
             (t (advance-timers runner (if idle-p wake (1+ tick))))))))
 
 (defun end-alone (runner task limit)
-  "Evaporate TASK of RUNNER, if it is not over. Its cleanups may run until tick LIMIT, if that is a
-number, or until nothing runs; the rest is abandoned, with a warning for each cleanup."
+  "Evaporate TASK of RUNNER, if TASK is not over. Cleanups of TASK may run until tick LIMIT, or, if
+LIMIT is NIL, until nothing can run. The other cleanups are abandoned, with a warning for each."
   (stop-plan runner task)
   (loop (run-until-over runner task limit)
         (let ((part (cleaning-part task)))
@@ -271,11 +284,12 @@ number, or until nothing runs; the rest is abandoned, with a warning for each cl
 
 (addition run-plan-alone)
 (defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
-  "Run PLAN, a plan procedure or its name, with the list ARGUMENTS by RUNNER in virtual time: time
-jumps to the next tick at which a task wakes. Return the plan's value, or its failure, and as a
-second value :succeeded, :failed, :evaporated, :deadlock (reported as an error message) or :limit
-(tick LIMIT came first). A plan that is not over then, or when this is left, as by an abort, is
-ended; its cleanups run until tick LIMIT at most. Signals WRONG-ARGUMENT."
+  "Run PLAN, a plan procedure or its name, with the list ARGUMENTS by RUNNER in virtual time. Time
+jumps to the next tick at which a task wakes. Return the plan's value, or its failure. The second
+value is :succeeded, :failed, :evaporated, :deadlock (reported as an error message) or :limit (if
+the tick LIMIT came first). If the plan is not over then, or at a non-local exit from
+RUN-PLAN-ALONE, the plan is ended; its cleanups run until tick LIMIT at most. Signals
+WRONG-ARGUMENT."
   (check-argument run-plan-alone arguments (proper-list-p arguments) "a list of arguments")
   (check-argument run-plan-alone limit (or (null limit) (quantity-p limit))
                   "a tick, a number up to 1e15, or NIL")

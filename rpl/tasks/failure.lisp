@@ -22,15 +22,16 @@
    (passed-on-by :initform nil :accessor failure-passed-on-by)
    (expressions :initform '() :accessor failure-plan-backtrace))
   (:report (lambda (failure stream) (write-string (report-of failure) stream)))
-  (:documentation "A failure of a plan. Your own conditions may inherit from it; (fail :class name
-...) makes one of them, or a plain one of class NAME."))
+  (:documentation "A failure of a plan. Your own condition types may inherit from PLAN-FAILURE. If
+NAME is such a type, (fail :class name ...) makes a condition of this type; otherwise it makes a
+PLAN-FAILURE of class NAME."))
 
 (addition composite-failure)
 (define-condition composite-failure (plan-failure)
   ((failures :initarg :failures :initform '() :reader composite-failures)
    ;; How many attempts were made, if not as many as there are failures.
    (attempts :initarg :attempts :initform nil :reader composite-attempts))
-  (:documentation "Everything that could have been tried has failed."))
+  (:documentation "All attempts or branches of a construct have failed."))
 
 (addition lisp-failure)
 (define-condition lisp-failure (plan-failure)
@@ -42,24 +43,27 @@
           failure-suppressed failure-plan-backtrace composite-failures lisp-failure-condition
           lisp-failure-backtrace)
 (loop for (reader text) in
-      '((failure-class "Return the class that FAIL was given, NIL if none.")
-        (failure-data "Return what else FAIL was given, a property list.")
+      '((failure-class "Return the class given to FAIL, or NIL.")
+        (failure-data "Return the further arguments of FAIL, a property list.")
         (failure-form "Return the plan's expression that failed.")
-        (failure-task-path "Return the names of the tasks from the plan's top to the failed one.")
+        (failure-task-path "Return the names of the tasks from the top of the plan to the failed
+task.")
         (failure-tick "Return the tick at which the failure happened.")
-        (failure-cause "Return the failure that was being handled when this one happened, or NIL.")
-        (failure-passed-on-by "Return what the clause is for that handled the failure last, and let
-it go on; or NIL.")
-        (failure-suppressed "Return failures that happened while cleaning up after this one.")
-        (failure-plan-backtrace "Return the expressions under way when the failure happened,
+        (failure-cause "Return the failure that was being handled when the failure happened, or
+NIL.")
+        (failure-passed-on-by "Return the type in the last clause that handled the failure and let
+it propagate; or NIL.")
+        (failure-suppressed "Return the failures that happened while plans cleaned up after the
+failure.")
+        (failure-plan-backtrace "Return the expressions in progress when the failure happened,
 innermost first.")
-        (composite-failures "Return the failures that make up a composite one, in order.")
+        (composite-failures "Return the failures that make up a composite failure, in order.")
         (lisp-failure-condition "Return the Lisp condition behind the failure.")
         (lisp-failure-backtrace "Return the Lisp backtrace of the error, a string."))
       do (setf (documentation reader 'function) text))
 
 (defgeneric write-failure (failure stream)
-  (:documentation "Write on one line to STREAM what FAILURE is.")
+  (:documentation "Write a description of FAILURE to STREAM, on one line.")
   (:method ((failure plan-failure) stream)
     (format stream "Plan failure~@[ ~A~]~{ ~A~}"
             (and (failure-class failure) (safe-text (failure-class failure)))
@@ -73,10 +77,11 @@ innermost first.")
   (:method ((failure lisp-failure) stream)
     (format stream "Lisp error in a plan: ~A" (failure-text (lisp-failure-condition failure)))))
 
-(defconstant +longest-failure+ 2000 "How many characters the text of a failure has at most.")
+(defconstant +longest-failure+ 2000 "The largest number of characters in the text of a failure.")
 
 (defmacro reporting ((condition) form)
-  "Return the beginning of the text of FORM; if it fails, what can be printed of CONDITION."
+  "Return the beginning of the text that FORM returns. If FORM signals an error, return a text of
+the parts of CONDITION that can be printed."
   `(cut (handler-case (printing-words () ,form)
           ((or error storage-condition) () (report-anyhow ,condition)))
         +longest-failure+))
@@ -86,12 +91,12 @@ innermost first.")
     (with-output-to-string (stream) (write-failure failure stream))))
 
 (defun failure-text (failure)
-  "Return the report of FAILURE, or another condition, cut if it is deep, long or circular; its type
-if that signals an error."
+  "Return the report of FAILURE, or of another condition, cut if it is deep, long or circular. If
+the report signals an error, return the type of FAILURE."
   (reporting (failure) (or (our-text failure) (report-briefly failure))))
 
 (defun make-failure (arguments)
-  "Return the failure that (fail ARGUMENTS...) means."
+  "Return the failure that (fail ARGUMENTS...) makes."
   (destructuring-bind (&optional (head nil) &rest more) arguments
     (cond ((null arguments) (make-condition 'plan-failure))
           ((typep head 'plan-failure) head)
@@ -103,14 +108,15 @@ if that signals an error."
 
 (public fail)
 (defun fail (&rest arguments)
-  "Make the task fail. ARGUMENTS are nothing; a condition; or a class and a property list of data or
-initargs, with or without the word :class before. A class is a name, or a condition class inheriting
-from PLAN-FAILURE (manual D.2). The failure propagates to the nearest construct that handles it."
+  "Make the task fail. ARGUMENTS are nothing; or a condition; or a class and a property list of data
+or initargs. The word :class may stand before the class. A class is a name, or a condition class
+that inherits from PLAN-FAILURE (manual D.2). The failure propagates to the innermost construct that
+handles it."
   (error (make-failure arguments)))
 
 (defun failure-matches-p (failure type)
-  "True if a clause for TYPE is for FAILURE: T; a class that FAIL was given; a condition type of
-the failure or of the Lisp error behind it; or (or TYPE...)."
+  "True if TYPE, the type of a clause, matches FAILURE. TYPE is T, a class given to FAIL, a
+condition type of the failure or of its Lisp error, or (or TYPE...)."
   (cond ((eq type t) t)
         ((consp type) (some (lambda (type) (failure-matches-p failure type)) (rest type)))
         ((and (failure-class failure) (symbolp (failure-class failure))
@@ -120,7 +126,8 @@ the failure or of the Lisp error behind it; or (or TYPE...)."
         ((typep failure 'lisp-failure) (typep (lisp-failure-condition failure) type))))
 
 (defun failure-subject (failure type)
-  "Return what a clause for TYPE receives: FAILURE, or its Lisp condition if TYPE is for that."
+  "Return the object that the variable of a clause for TYPE is bound to. This is FAILURE, or the
+Lisp condition of FAILURE if TYPE is a type of Lisp conditions."
   (if (and (typep failure 'lisp-failure)
            (symbolp type) (not (eq type t)) (find-class type nil)
            (not (typep failure type)))

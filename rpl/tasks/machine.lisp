@@ -10,58 +10,59 @@
 ;;; waits in succeeds. A task with children receives a signal only when the last child is gone.
 
 (define-record (escape (:constructor make-escape (target value)))
-  "A signal that unwinds to the node TARGET, which uses VALUE."
-  (target nil node "the node that the escape leaves for" :export)
+  "A signal that unwinds to the node TARGET. TARGET receives VALUE."
+  (target nil node "the node at which the escape arrives" :export)
   (value nil t "the value that the escape brings" :export))
 
 (define-record (completion (:constructor make-completion (value)))
-  "The signal by which a construct succeeds with VALUE."
+  "A signal by which a construct succeeds with VALUE."
   (value nil t))
 
 (define-record (bundle (:constructor make-bundle (values)))
-  "Several values that a leaf returns, as one object."
+  "Several values of a leaf as one object."
   (values '() list "the list of values in the bundle" :export))
 (declaim-final escape completion bundle)
 
 (declaim (inline single-value))
 (defun single-value (value)
-  "Return VALUE, or the first one of a bundle."
+  "Return VALUE, or the first value if VALUE is a bundle."
   (if (bundle-p value) (first (bundle-values value)) value))
 
 ;;; Leaves.
 
 (defun required-slot (slot)
-  "Signal MISUSE: a node was made without its SLOT."
-  (reject-use "A plan's node was made without its ~(~A~)." slot))
+  "Signal MISUSE, because a node was made without its slot SLOT."
+  (reject-use "A node of a plan was made without its ~(~A~)." slot))
 
 (define-record (leaf (:include node (step #'step-leaf))
                      (:constructor make-leaf "Return a leaf for a source form and a function of the
 environment."))
   "An expression that cannot wait."
   (function (required-slot 'function) function
-            "the function of the environment that does what the leaf does" :writable :export))
+            "the function that runs the leaf, with the environment as argument" :writable :export))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
-  "True while plans may enter the debugger: leaves offer to be done again, and to return a value.")
+  "True while plans may enter the debugger. Then leaves offer restarts that run them again or return
+a value for them.")
 
 (declaim (inline call-leaf))
 (defun call-leaf (leaf environment)
-  "Return what LEAF returns in ENVIRONMENT."
+  "Return the value of LEAF in ENVIRONMENT."
   (if *leaves-offer-restarts*
       (call-leaf-offering leaf environment)
       (funcall (leaf-function leaf) environment)))
 
 (defun read-leaf-value ()
-  (format *query-io* "~&The value to return, a form: ")
+  (format *query-io* "~&A form for the value to return:")
   (finish-output *query-io*)
   (list (evaluate-form (read *query-io*))))
 
 (defvar *in-leaf-p* nil
-  "True while a leaf offers restarts: the step around it then offers none.")
+  "True while a leaf offers restarts. Then the step around the leaf offers no restarts.")
 
 (defun call-leaf-offering (leaf environment)
-  "Return what LEAF returns in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
+  "Return the value of LEAF in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
   (let ((text (form-text (node-form leaf))) (*in-leaf-p* t))
     (loop
       (restart-case (return (funcall (leaf-function leaf) environment))
@@ -77,28 +78,28 @@ environment."))
   (values (frame-up frame) (call-leaf node (frame-environment frame))))
 
 (define-global +parked+ (make-frame (make-leaf :function #'identity) (vector) nil)
-  "What a step returns instead of a frame when its task does not go on now.")
+  "The value that a step returns instead of a frame when its task pauses or has ended.")
 
 (define-global +nothing+ (make-leaf :form nil :function (constantly nil))
   "The expression NIL.")
 
 (declaim (inline enter))
 (defun enter (node environment frame)
-  "Begin NODE in ENVIRONMENT for FRAME: return what a step returns. The next step of FRAME gets
-the value. A leaf has no separate frame."
+  "Begin NODE in ENVIRONMENT for FRAME. Return what a step returns. The next step of FRAME gets the
+value of NODE. A leaf has no separate frame."
   (if (leaf-p node)
       (values frame (call-leaf node environment))
       (values (make-frame node environment frame) nil)))
 
 (defun park (task awaiting)
-  "Note that TASK, at a step that will return +PARKED+, waits for AWAITING."
+  "Note that TASK waits for AWAITING. The current step of TASK must then return +PARKED+."
   (setf (task-state task) :waiting
         (task-awaiting task) awaiting
         (task-since task) (runner-tick (the plan-runner (task-runner task))))
   (note-event task :wait (traced-subject awaiting)))
 
 (defun wake (task value &optional (reason (task-awaiting task)))
-  "Wake TASK, which waits, with VALUE. REASON is the event."
+  "Wake TASK, which waits, with VALUE. REASON is the event that TASK waited for."
   (note-event task :wake (traced-subject reason))
   (setf (task-awaiting task) nil
         (task-value task) value)

@@ -13,19 +13,21 @@
 
 (addition procedure-p)
 (define-record (procedure (:constructor make-procedure (name)
-                          "Return a procedure by name that is yet to be defined."))
-  "A plan with parameters."
-  (name nil symbol "the name of a plan procedure, NIL for one made by INTERP-LAMBDA" :addition)
+                          "Return a procedure with the given name that is not yet defined."))
+  "A plan procedure: a plan with parameters."
+  (name nil symbol "the name of a plan procedure; NIL if INTERP-LAMBDA made the
+procedure" :addition)
   (lambda-list '() list "the lambda list of a plan procedure" :writable :addition)
-  (least 0 fixnum "how many arguments it takes at least" :writable)
-  (most most-positive-fixnum fixnum "how many arguments it takes at most" :writable)
-  (keys-p nil boolean "there are keywords among them" :writable)
+  (least 0 fixnum "the smallest number of arguments" :writable)
+  (most most-positive-fixnum fixnum "the largest number of arguments" :writable)
+  (keys-p nil boolean "the procedure takes keyword arguments" :writable)
   (entry nil (or null function)
-         "the function of the arguments that returns an environment, or NIL" :writable :export)
+         "the function that returns an environment for the arguments, or NIL" :writable :export)
   (source nil list "the text of a plan procedure as data: (def-interp-proc name parameters form...),
 or (interp-lambda parameters form...)" :writable :addition)
   (body nil (or null node) "the node that the procedure runs, or NIL" :writable :export)
-  (stub nil (or null function) "the Lisp function of the name, which signals MISUSE" :writable))
+  (stub nil (or null function) "the Lisp function with the name of the procedure, which signals
+MISUSE" :writable))
 
 (define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
   :finder registered-procedure :lister registered-procedures :internal t)
@@ -34,12 +36,12 @@ or (interp-lambda parameters form...)" :writable :addition)
   "The cells of all names that plans define or call.")
 
 (defun ensure-procedure (name)
-  "Return the cell of the procedure called NAME."
+  "Return the cell of the procedure with the name NAME. If there is no such cell, make one."
   (or (gethash name *cells*)
       (setf (gethash name *cells*) (make-procedure name))))
 
 (defun defined-p (procedure)
-  "True if PROCEDURE is defined and its name has not been defined as a Lisp function since."
+  "True if PROCEDURE is defined and its name has not been redefined as a Lisp function."
   (and (procedure-entry procedure)
        (or (null (procedure-stub procedure))
            (let ((name (procedure-name procedure)))
@@ -52,12 +54,13 @@ or (interp-lambda parameters form...)" :writable :addition)
   (remove-if-not #'defined-p (registered-procedures)))
 
 (defun procedures-to-offer ()
-  "Return the names of all plan procedures that are defined, the newest of users first."
+  "Return the names of all defined plan procedures. Procedures of users come first, the newest
+first."
   (remove-if-not (lambda (name) (defined-p (registered-procedure name)))
                  (names-to-offer *procedures*)))
 
 (defun live-namesake (name)
-  "Return the live procedure defined last of those called NAME in any package, or NIL."
+  "Return the newest defined procedure whose name is the same as NAME, in any package; or NIL."
   (find-if (lambda (procedure)
              (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
            (registered-procedures) :from-end t))
@@ -69,24 +72,26 @@ or (interp-lambda parameters form...)" :writable :addition)
              (or (live-namesake name) (not (fboundp name))))
         (format nil "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
                 name (abridged (rest list)))
-        (format nil "A form is no plan; make one of it: (run-plan (interp-lambda () ~{~A~^ ~}))."
+        (format nil "A form is not a plan. Make a plan of it: (run-plan (interp-lambda () ~{~A~^
+~}))."
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)
-  "Return in sentences what to do instead of giving NAME, which is no plan's, for a plan; or NIL."
+  "Return sentences about what to write instead of NAME, which is given as a plan and is no plan; or
+NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
            (let ((*print-case* :downcase) (*print-pretty* nil)) (list-remedy name)))
           ((functionp name)
            (let ((plan (find name (registered-procedures) :key #'procedure-stub)))
-             (say "~:[A function is no plan; DEF-INTERP-PROC defines one~;Give the plan's name ~
-                   instead: '~:*~A~]." (and plan (procedure-name plan)))))
+             (say "~:[A function is not a plan; DEF-INTERP-PROC defines a plan~;Give the plan's ~
+                   name instead: '~:*~A~]." (and plan (procedure-name plan)))))
           ((not (and (symbolp name) (fboundp name))) nil)
           ((registered-procedure name nil)
-           (say "It was one until ~A was defined as a ~:[function~;macro~]. Define the plan anew, ~
-                 and give one of the two another name." name (macro-function name)))
-          (t (say "~A is a ~:[function~;macro~], no plan. Define a plan that calls it: ~
+           (say "It was a plan until ~A was defined as a ~:[function~;macro~]. Define the plan ~
+                 again, and give one of the two another name." name (macro-function name)))
+          (t (say "~A is a ~:[function~;macro~], not a plan. Define a plan that calls it: ~
                    (def-interp-proc my-plan () ~A)." name (macro-function name)
                   (if (has-plan-function-p name)
                       (plan-call-text name)
@@ -99,9 +104,9 @@ or (interp-lambda parameters form...)" :writable :addition)
         (reject-name "plan procedure" name (procedures-to-offer)))))
 
 (defun find-procedure (name &optional (errorp t))
-  "Return the plan procedure called NAME, a symbol or string: that of the symbol itself, or else the
-one defined last of that name in other packages. If there is none, signal UNKNOWN-NAME,
-or return NIL if ERRORP is NIL."
+  "Return the plan procedure with the name NAME, a symbol or string. This is the procedure of the
+symbol itself, or else the newest procedure of that name in other packages. If there is no such
+procedure, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
     (cond ((and known (defined-p known)) known)
           ((and (typep name '(or symbol string)) (live-namesake name)))
@@ -115,35 +120,37 @@ or return NIL if ERRORP is NIL."
 ;;; Which names are plans' is also known while the file that defines them is compiled.
 
 (defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
-  "Lists of a lambda list, by the names for which a DEF-INTERP-PROC was compiled or loaded.")
+  "A table from the names of plan procedures to lists of their lambda list. It has the procedures
+whose DEF-INTERP-PROC was compiled or loaded.")
 
 (defun declare-procedure (name lambda-list)
-  "Declare NAME, to plans compiled from now on, as a plan procedure with LAMBDA-LIST."
+  "Declare NAME as a plan procedure with LAMBDA-LIST, for plans that are compiled from now on."
   (setf (gethash name *declared-procedures*) (list lambda-list)))
 
 (defun procedure-name-p (name)
-  "True if NAME is known to name a plan procedure."
+  "True if NAME is known to be the name of a plan procedure."
   (and (gethash name *declared-procedures*)
        (let ((procedure (gethash name *cells*)))
          (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
 
 (defun known-lambda-list (name)
-  "Return the lambda list of the plan procedure that NAME is known to name."
+  "Return the lambda list of the plan procedure with the name NAME, if such a procedure is known; or
+NIL."
   (first (gethash name *declared-procedures*)))
 
 (defun declared-names ()
-  "Return the names that are known to name plan procedures."
+  "Return a list of the names that are known to be names of plan procedures."
   (loop for name being the hash-keys of *declared-procedures*
         when (procedure-name-p name) collect name))
 
 (defun reject-lisp-call (name arguments)
-  "Signal MISUSE: Lisp code has called NAME with the list ARGUMENTS."
+  "Signal MISUSE, because Lisp code has called the plan NAME with the list ARGUMENTS."
   (let ((more (if arguments " ..." "")))
     (reject-use "~S is a plan, and Lisp code called it as a function. Run it on a robot by ~
                  (run-plan '~S~A), or without one by (run-plan-alone '~S~@[ :arguments ~
                  (list ...)~]). ~
-                 A plan calls it as it is here, but outside of lambda and other forms that only ~
-                 Lisp runs."
+                 Plans can call it in this way, but only outside of lambda and of other forms ~
+                 that only Lisp runs."
                 name name more name arguments)))
 
 (defun set-lambda-list (procedure lambda-list)
@@ -156,13 +163,14 @@ or return NIL if ERRORP is NIL."
 (defun warn-if-function (procedure)
   (let ((name (procedure-name procedure)))
     (when (and (fboundp name) (not (eq (fdefinition name) (procedure-stub procedure))))
-      (warn-of-definition "~(~A~) was ~:[a function~;a macro~] of Lisp's, which the plan procedure ~
-                           replaces; call one of the two otherwise."
+      (warn-of-definition "~(~A~) was ~:[a Lisp function~;a Lisp macro~], which the plan procedure ~
+                           replaces; give one of the two another name."
                           name (macro-function name)))))
 
 (defun install-procedure (name lambda-list documentation entry body stub
                           &optional source text)
-  "Make NAME a plan procedure, as TEXT, from SOURCE, defines it, for all calls from now on."
+  "Make NAME a plan procedure for all calls from now on. TEXT is the definition, from the file
+SOURCE."
   (let ((procedure (ensure-procedure name)))
     (warn-if-function procedure)
     (declare-procedure name lambda-list)
@@ -189,7 +197,7 @@ or return NIL if ERRORP is NIL."
   (setf (procedure-entry procedure) nil))
 
 (defun anonymous-procedure (lambda-list entry body text)
-  "Return a procedure without a name, of LAMBDA-LIST, ENTRY and BODY, which TEXT defines."
+  "Return a procedure without a name, with LAMBDA-LIST, ENTRY and BODY. TEXT is the definition."
   (let ((procedure (make-procedure nil)))
     (set-lambda-list procedure lambda-list)
     (setf (procedure-entry procedure) entry
@@ -201,21 +209,21 @@ or return NIL if ERRORP is NIL."
 
 (define-condition wrong-arguments (wrong-argument program-error)
   ()
-  (:documentation "A plan was called with arguments that it does not take."))
+  (:documentation "A plan was called with arguments that do not fit its lambda list."))
 
 (defun reject-arguments (procedure arguments trouble)
   (error 'wrong-arguments
          :operator (or (procedure-name procedure) "interp-lambda") :name "argument list"
          :value arguments
-         :expected (format nil "~:[no argument~;~:*~A~], not ~A~:[~;: the arguments one by one, in ~
-                                no list~]"
+         :expected (format nil "~:[no argument~;~:*~A~], not ~A~:[~;: give the arguments one ~
+                                by one, not as a list~]"
                            (and (procedure-lambda-list procedure)
                                 (shape-text (procedure-lambda-list procedure)))
                            trouble
                            (listed-p procedure arguments))))
 
 (defun listed-p (procedure arguments)
-  "True if ARGUMENTS has one element, a list of arguments that PROCEDURE takes."
+  "True if ARGUMENTS has a single element, which is a list of arguments that PROCEDURE takes."
   (and (typep arguments '(cons cons null))
        (proper-list-p (first arguments))
        (null (misfit (shape-of (procedure-lambda-list procedure)) (first arguments)
@@ -229,7 +237,7 @@ or return NIL if ERRORP is NIL."
 
 (declaim (inline entry-for))
 (defun entry-for (procedure count)
-  "Return the function of COUNT arguments that returns the environment for the body of PROCEDURE."
+  "Return a function of COUNT arguments that returns the environment for the body of PROCEDURE."
   (declare (type procedure procedure) (type fixnum count))
   (if (and (<= (procedure-least procedure) count (procedure-most procedure))
            (not (procedure-keys-p procedure)))
@@ -242,7 +250,7 @@ or return NIL if ERRORP is NIL."
     (apply (procedure-entry procedure) arguments)))
 
 (defun enter-plan (plan &rest arguments)
-  "Return the body of PLAN, a procedure or the name of one, and its environment for ARGUMENTS."
+  "Return the body of PLAN, a procedure or its name, and the environment of the body for ARGUMENTS."
   (let ((procedure (if (procedure-p plan) plan (find-procedure plan))))
     (check-arguments procedure arguments)
     (values (procedure-body procedure)
@@ -254,12 +262,14 @@ or return NIL if ERRORP is NIL."
 ;;; fork copies both.
 
 (defun defined-procedure-p (procedure)
-  "True if PROCEDURE is the one of its name, and none that is local or has no name."
+  "True if PROCEDURE is the current definition of its name. False for local procedures and
+procedures without a name."
   (and (procedure-name procedure)
        (eq procedure (gethash (procedure-name procedure) *cells*))))
 
 (defun parts-of-code (object)
-  "Return a list of what OBJECT, a node, procedure, function or environment of one, refers to."
+  "Return a list of the objects that OBJECT refers to. OBJECT is a node, procedure, function or
+environment."
   (etypecase object
     (function (and (closure-p object) (closure-values object)))
     (node (node-parts object))
@@ -278,8 +288,8 @@ or return NIL if ERRORP is NIL."
             append (code-in (instance-slot node index)))))
 
 (defun shared-code (code)
-  "Return a list of the nodes that CODE, a node or procedure, leads to if forks share them, and
-true; or NIL and false if one of them has closed over something."
+  "Return a list of the nodes that can be reached from CODE, a node or procedure, and true, if forks
+can share these nodes. Return NIL and false if one of them has closed over something."
   (let ((seen (make-hash-table :test 'eq)) (nodes '()) (work (list code)))
     (loop while work
           do (let ((object (pop work)))
@@ -296,7 +306,7 @@ true; or NIL and false if one of them has closed over something."
     (values nodes t)))
 
 (defun determine-sharing (node)
-  "Determine whether forks share NODE, and record it."
+  "Find out whether forks share NODE, and record the result in NODE."
   (multiple-value-bind (nodes shared-p) (shared-code node)
     (dolist (each nodes) (setf (node-sharing each) :shared))
     (setf (node-sharing node) (if shared-p :shared :per-run))))

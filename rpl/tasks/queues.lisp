@@ -7,7 +7,7 @@
 ;;; The length of ITEMS is a power of two; the queue starts at START and wraps around.
 
 (defstruct (ring (:constructor make-ring ()) (:copier nil))
-  "A first-in first-out queue that can also be pushed to at its front."
+  "A first-in first-out queue, to which items can also be added at the front."
   (items (make-array 16 :initial-element nil) :type simple-vector)
   (start 0 :type fixnum)
   (count 0 :type fixnum))
@@ -51,15 +51,15 @@
 ;;; in the heap, so that it can be removed at once.
 
 (define-record (timer (:constructor make-timer (due serial wake client)))
-  "At tick DUE, WAKE is to be called with this timer."
+  "A timer: at tick DUE, WAKE is called with the timer."
   (due 0 real)
   (serial 0 fixnum)
   (wake #'list function)
-  (client nil t "on whose behalf the timer was set, such as a task" :export)
+  (client nil t "the object for which the timer was set, such as a task" :export)
   (place nil (or null fixnum) :writable))
 
 (defstruct (timers (:constructor make-timers ()) (:copier nil))
-  "A heap of timers, the earliest at 0."
+  "A heap of timers, with the earliest timer at index 0."
   (heap (make-array 16 :adjustable t :fill-pointer 0) :type (and vector (not simple-array)))
   (count 0 :type fixnum))
 (declaim-final timer timers)
@@ -74,7 +74,7 @@
         (timer-place timer) place))
 
 (defun sift-up (timer place heap)
-  "Put TIMER at PLACE of HEAP or as far above as it belongs."
+  "Put TIMER into HEAP at the index PLACE, or as far up from there as it belongs."
   (loop while (plusp place)
         for above = (ash (1- place) -1)
         while (earlier-p timer (aref heap above))
@@ -83,7 +83,7 @@
   (put-timer timer place heap))
 
 (defun sift-down (timer place heap)
-  "Put TIMER at PLACE of HEAP or as far below as it belongs."
+  "Put TIMER into HEAP at the index PLACE, or as far down from there as it belongs."
   (loop with count = (fill-pointer heap)
         for left = (1+ (* 2 place))
         while (< left count)
@@ -97,7 +97,7 @@
   (put-timer timer place heap))
 
 (defun set-timer (timers due wake client)
-  "Return a new timer in TIMERS that will call WAKE at tick DUE on behalf of CLIENT."
+  "Return a new timer in TIMERS that calls WAKE at tick DUE, on behalf of CLIENT."
   (let ((timer (make-timer due (incf (timers-count timers)) wake client))
         (heap (timers-heap timers)))
     (vector-push-extend timer heap)
@@ -105,7 +105,7 @@
     timer))
 
 (defun cancel-timer (timer timers)
-  "Take TIMER out of TIMERS if it is still there."
+  "Remove TIMER from TIMERS, if it is in TIMERS."
   (let ((place (timer-place timer))
         (heap (timers-heap timers)))
     (when place

@@ -6,7 +6,7 @@
           task-state-text write-task-line write-task-tree))
 
 (defun task-state-text (task)
-  "Return in words how TASK is: its state, and whether it evaporates, cleans up or is blocked."
+  "Return a text of the state of TASK, with whether TASK evaporates, cleans up or is blocked."
   (let ((blocker (and (not (task-ending-p task))
                       (find-if #'plusp (lineage task) :key #'task-blocked))))
     (format nil "~(~A~)~:[~;, evaporating~]~:[~;, cleaning up~]~@[, blocked~A~]" (task-state task)
@@ -17,15 +17,15 @@
                   (t (format nil " with ~D" (task-serial blocker)))))))
 
 (defun write-task-line (task depth stream)
-  "Write on a line to STREAM which task TASK is, how it is, and what it waits for and since when."
+  "Write a line about TASK to STREAM: its number, its state, what TASK waits for, and since when."
   (format stream "~V@T~D ~A: ~:[~;~:*~(~A~) ~]~A~@[ waits for ~A~]~@[ since tick ~D~]~%"
           (* 2 depth) (task-serial task) (task-state-text task)
           (and (task-name task) (task-label task)) (form-text (task-form task)) (task-awaits task)
           (and (task-awaits task) (task-since task))))
 
 (defun write-task-tree (task depth stream &optional write-more)
-  "Write TASK and its parts to STREAM, on a line each. WRITE-MORE, if given, is called with each of
-them, a column and STREAM."
+  "Write TASK and its parts to STREAM, each on a line. If WRITE-MORE is given, call it for each task
+with the task, a column and STREAM."
   (write-task-line task depth stream)
   (when write-more (funcall write-more task (+ 4 (* 2 depth)) stream))
   (dolist (child (task-children task))
@@ -37,15 +37,16 @@ them, a column and STREAM."
   (cut (failure-text failure) 500))
 
 (defun write-some (control items stream)
-  "Write the first 30 of ITEMS by CONTROL, one at a time, and how many more there are."
+  "Write the first 30 of ITEMS to STREAM by the format string CONTROL, one at a time, and the number
+of the remaining items."
   (let ((more (nthcdr 30 items)))
     (dolist (item (ldiff items more)) (format stream control item))
     (when more (format stream "    ... and ~D more~%" (length more)))))
 
 (defun passed-on-text (failure)
   (and (failure-passed-on-by failure)
-       (format nil "the handler for ~A ended without (return ...) or (retry), so the failure went ~
-                    on"
+       (format nil "the handler for ~A ended without (return ...) or (retry), so the failure ~
+                    propagated"
                (form-text (failure-passed-on-by failure)))))
 
 (defun clause-types (form)
@@ -54,8 +55,9 @@ them, a column and STREAM."
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun slip-for-p (type class)
-  "True if TYPE, a symbol that does not stand for CLASS, may be meant for it: they differ in more
-than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keyword."
+  "True if TYPE, a symbol that does not match CLASS, may be a slip for CLASS. Their names are then
+similar and differ not only in digits, or only in an ending, as STUCK and STUCKED, or only one of
+them is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
@@ -69,7 +71,8 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
                (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
 
 (defun missed-clause (failure)
-  "Return the type of a clause around FAILURE that was meant for its class, and that class; or NIL."
+  "Return the type of a handler clause around FAILURE that was probably meant for the class of
+FAILURE, and this class; or NIL."
   (let* ((own (failure-class failure))
          (class (if (and own (symbolp own)) own (type-of failure))))
     (loop for form in (failure-plan-backtrace failure)
@@ -77,7 +80,8 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
           when type return (values type class))))
 
 (defun clause-for-errors (failure)
-  "Return the type of a clause around FAILURE that is for Lisp errors, if FAILURE is none; or NIL."
+  "Return the type of a handler clause around FAILURE that matches Lisp errors, if FAILURE is not
+from a Lisp error; otherwise NIL."
   (unless (typep failure 'lisp-failure)
     (loop for form in (failure-plan-backtrace failure)
           thereis (find-if (lambda (type)
@@ -85,13 +89,15 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
                            (clause-types form)))))
 
 (defun missed-text (failure)
-  "Return in words that a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
+  "Return a text that a handler clause around FAILURE is for a similar class, or for Lisp errors; or
+NIL."
   (multiple-value-bind (type class) (missed-clause failure)
     (let ((error-type (clause-for-errors failure)))
-      (cond (type (format nil "a clause is for ~(~S~), but the class is ~(~S~)" type class))
+      (cond (type (format nil "a clause is for ~(~S~), but the class of the failure is
+~(~S~)" type class))
             (error-type
-             (format nil "a clause is for ~(~S~), which is for errors of Lisp, and no FAIL; write ~
-                          ~(~S~) or T" error-type (or (failure-class failure) t)))))))
+             (format nil "a clause is for ~(~S~), which matches errors of Lisp but not failures of ~
+                          FAIL; write ~(~S~) or T" error-type (or (failure-class failure) t)))))))
 
 (defun write-failure-report (failure stream)
   (format stream "~A~%  at tick ~D in ~A~%  task: ~A~%"
@@ -108,7 +114,7 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
     (format stream "  Lisp:~%~A" (cut (lisp-failure-backtrace failure) 4000))))
 
 (defun failure-story (failure)
-  "Return FAILURE on a line: what it is, when and where it happened, and its cause."
+  "Return a description of FAILURE in one line: the failure, its tick, its place and its cause."
   (format nil "~A~@[ at tick ~D~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
                ~@[; ~A~]~@[; ~A~]"
           (one-line (brief-failure-text failure))
@@ -128,9 +134,9 @@ than in digits, perhaps by an ending as in STUCK and STUCKED, or one is a keywor
       (call-next-method)))
 
 (defun report-failure (failure &optional awaited-p)
-  "Queue an error message about FAILURE, of a plan: where it happened, in which task, the
-expressions in progress, and the Lisp backtrace of an error. AWAITED-P: the caller learns of the
-failure, too."
+  "Queue an error message about FAILURE, the failure of a plan. The message has the place and task
+of the failure, the expressions in progress, and the Lisp backtrace of an error. If AWAITED-P is
+true, the caller also learns of the failure."
   (let ((text (with-output-to-string (stream) (write-failure-report failure stream))))
     (if awaited-p
         (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))
@@ -141,14 +147,16 @@ failure, too."
                      text))))
 
 (define-event *plan-start-hooks*
-  "Functions, or their names, called with each top-level task before it runs.")
+  "Functions, or their names, to call with each top-level task before it runs.")
 
 (define-event *plan-end-hooks*
-  "Functions, or their names, called with each top-level task that has ended; the report of its
-failure is left to the first that returns true. In any thread that lets plans react.")
+  "Functions, or their names, to call with each top-level task that has ended. The first function
+that returns true is responsible for reporting a failure of the task. The functions are called in
+any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "Report the failure of TASK, a top-level task, if it has just failed. AWAITED-P: a caller waits."
+  "Report the failure of TASK, a top-level task that has just ended, if TASK has failed. AWAITED-P
+is as for REPORT-FAILURE."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))
@@ -172,10 +180,11 @@ failure is left to the first that returns true. In any thread that lets plans re
 
 (addition task-place)
 (defun task-place (task)
-  "Return where TASK is in its plan, a list that can be printed, read, and given to FIND-TASK: the
-name or number of the plan, and for each step inwards (:tag name), or the number of the branch,
-from 0. Where tasks have the same name, their number comes after it. A task that has not started is
-nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names)."
+  "Return the place of TASK in its plan, a list that can be printed, read, and given to FIND-TASK.
+The first element is the name or number of the plan. An element for each step inwards follows: (:tag
+name), or the number of the branch, from 0. Among tasks of the same name, the number of the task
+comes after the name. A task that has not started has no place: the value is NIL. (CRAM's paths go
+from the inside to the outside, and have the names of operators.)"
   (check-argument task-place task (task-p task) "a task, as begin-plan returns")
   (unless (eq (task-state task) :created)
     (destructuring-bind (top . parts) (reverse (lineage task))
@@ -193,8 +202,9 @@ nowhere: NIL (CRAM's paths go from the inside out, and have the operators' names
 
 (addition find-task)
 (defun find-task (place &optional (within *runner*))
-  "Return the task under way at PLACE, as TASK-PLACE returns, or whose number PLACE is; NIL if there
-is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with."
+  "Return the running or waiting task at PLACE, a value of TASK-PLACE or the number of a task; NIL
+if there is no such task. WITHIN is a plan runner, or a task. If WITHIN is a task, PLACE starts at
+the parts of this task."
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)
@@ -210,9 +220,9 @@ is none. WITHIN is a plan runner, or a task, whose parts PLACE then starts with.
 
 (addition task-source)
 (defun task-source (task)
-  "Return the source of all that TASK runs, as data: the form of a branch; of a top-level task the
-text of its plan, as PROCEDURE-SOURCE does, or, if it has no name or has been defined anew since, of
-that plan's body."
+  "Return the source of all code that TASK runs, as data. For a branch, this is its form. For a
+top-level task, this is the text of its plan, as PROCEDURE-SOURCE returns it. If the plan has no
+name or has been redefined meanwhile, return only the plan's body."
   (check-argument task-source task (task-p task) "a task, as begin-plan returns")
   (let ((procedure (and (null (task-parent task))
                         (find (task-node task) (all-procedures) :key #'procedure-body))))

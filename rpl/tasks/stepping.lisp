@@ -9,13 +9,14 @@
 ;;; slice.
 
 (defstruct (notice (:constructor make-notice (receiver sender function)) (:copier nil))
-  "FUNCTION, to be called when the task RECEIVER has come to rest. The task SENDER waits for that."
+  "A call of FUNCTION that must happen when the task RECEIVER is at rest. The task SENDER waits for
+this call."
   (receiver nil :type task :read-only t)
   (sender nil :type task :read-only t)
   (function nil :type function :read-only t))
 
 (defmethod awaited-text ((notice notice))
-  (format nil "task ~D to come to rest" (task-serial (notice-receiver notice))))
+  (format nil "task ~D to be at rest" (task-serial (notice-receiver notice))))
 
 (defun at-rest-p (task runner)
   (case (task-state task)
@@ -24,8 +25,9 @@
     (t (not (notice-p (task-awaiting task))))))
 
 (defun notify-at-rest (receiver function)
-  "Call FUNCTION, which notifies the task RECEIVER, now if that is at rest or NIL. Otherwise call it
-as soon as the task is at rest, and let the task at work wait until then."
+  "Call FUNCTION, which notifies the task RECEIVER, when RECEIVER is at rest. If RECEIVER is at rest
+now, or is NIL, call FUNCTION now. Otherwise call it as soon as RECEIVER is at rest, and let the
+running task wait until then."
   (let* ((runner *runner*)
          (sender (running-task runner)))
     (cond ((or (null receiver) (null sender) (eq receiver sender)
@@ -43,7 +45,8 @@ as soon as the task is at rest, and let the task at work wait until then."
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
 (defun wait-for-delivery (task frame value)
-  "Make TASK wait, to continue with FRAME and VALUE, if it must report something first. True if so."
+  "If TASK must deliver a notice first, make TASK wait, to continue with FRAME and VALUE, and return
+true."
   (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
     (when notice
       (park task notice)
@@ -75,10 +78,10 @@ as soon as the task is at rest, and let the task at work wait until then."
   (let ((form (current-form (frame-node frame) frame)))
     (when (first-warning-p form (task-runner task))
       (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
-                   " s without a pause: " (form-text form) " in " (task-label task)))))
+                   " s without a pause:" (form-text form) " in " (task-label task)))))
 
 (defun time-now (runner)
-  "Return the seconds by the clock of RUNNER, or NIL without one."
+  "Return the seconds by the clock of RUNNER, or NIL if RUNNER has no clock."
   (let ((clock (runner-clock runner)))
     (and clock (funcall clock))))
 
@@ -91,7 +94,7 @@ as soon as the task is at rest, and let the task at work wait until then."
           (warn-of-slow-step task frame seconds))))))
 
 (defun call-offering-again (frame function)
-  "Call FUNCTION, which takes a step at FRAME, with the restart RETRY, which takes it again."
+  "Call FUNCTION, which takes a step at FRAME, with the restart RETRY, which takes the step again."
   (let ((counter (frame-counter frame))
         (data (frame-data frame)))
     (loop
@@ -107,7 +110,7 @@ as soon as the task is at rest, and let the task at work wait until then."
                 (frame-data frame) data))))))
 
 (defun watched-step (node task frame value)
-  "Do the step of NODE as RUN-STEPS would, but timed, stepped through or with restarts."
+  "Take the step of NODE as RUN-STEPS does, but with timing, the stepper or restarts."
   (let* ((runner (task-runner task))
          (stepper (runner-stepper runner)))
     (flet ((take ()
@@ -123,7 +126,7 @@ as soon as the task is at rest, and let the task at work wait until then."
           (take)))))
 
 (defun evaporate-self (task frame)
-  "Let TASK, which has asked for its own end in the step that returned FRAME, evaporate."
+  "Evaporate TASK, which requested its own end in the step that returned FRAME."
   (cond ((not (eq frame +parked+))
          (setf (task-signal task) nil)
          (unwind task frame :evaporate))
@@ -134,8 +137,9 @@ as soon as the task is at rest, and let the task at work wait until then."
            +parked+)))
 
 (defun interrupt (task frame value)
-  "Evaporate as asked, or give way to a higher level or because TASK has taken its steps. FRAME and
-VALUE are what the last step returned; return what it should have."
+  "Evaporate TASK if this was requested, or let TASK yield to a higher level or because it has used
+its steps. FRAME and VALUE are what the last step returned. Return the values that RUN-STEPS
+continues with."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
@@ -175,7 +179,8 @@ VALUE are what the last step returned; return what it should have."
               (funcall (node-step node) node task frame value)))))))
 
 (defun begin-turn (task runner)
-  "Give TASK what is left of its slice in this round of RUNNER, a new one if it has had none."
+  "Give TASK the rest of its slice in this round of RUNNER, or a new slice if it has had none in
+this round."
   (declare #.*hot* (type task task) (type plan-runner runner))
   (unless (= (task-round task) (runner-round runner))
     (setf (task-round task) (runner-round runner)
@@ -185,7 +190,7 @@ VALUE are what the last step returned; return what it should have."
           (if (task-uncounted-p task) slice (min (runner-limit runner) slice)))))
 
 (defun run-task (task)
-  "Run TASK, just taken from the ready ones, or deliver its signal."
+  "Run TASK, which was just taken from a ready queue, or deliver its signal."
   (let* ((frame (task-frame task))
          (value (shiftf (task-value task) nil))
          (signal (task-signal task))
@@ -207,11 +212,12 @@ VALUE are what the last step returned; return what it should have."
   (unless (< (runner-alive runner) *plan-task-limit*)
     (if (running-task runner)
         (fail :class :too-many-tasks :limit *plan-task-limit*)
-        (reject-use "There are ~D tasks of plans under way; see *PLAN-TASK-LIMIT*."
+        (reject-use "There are ~D unfinished tasks of plans, as many as *PLAN-TASK-LIMIT* allows."
                     (runner-alive runner)))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
-  "Start and return TASK, part INDEX of PARENT (NIL: at top level), to run NODE in ENVIRONMENT."
+  "Start TASK to run NODE in ENVIRONMENT, and return TASK. TASK is part number INDEX of PARENT, or a
+top-level task if PARENT is NIL."
   (let ((runner (if parent (task-runner parent) *runner*)))
     (check-room runner)
     (incf (runner-alive runner))

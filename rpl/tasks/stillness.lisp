@@ -12,38 +12,42 @@
 ;;; runs any more.
 
 (defgeneric tasks-awaited (awaited)
-  (:documentation "Return the tasks without which AWAITED cannot come; NIL if that is unknown.")
+  (:documentation "Return the tasks that must go on before AWAITED can happen; NIL if they are
+unknown.")
   (:method (awaited)
     (declare (ignore awaited))
     '()))
 
 (defgeneric preemptors (task data)
-  (:documentation "Return the tasks that keep TASK from running by having what DATA, of one of its
-frames, is about.")
+  (:documentation "Return the tasks that keep TASK from running, because they own a resource that
+TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (:method (task data)
     (declare (ignore task data))
     '()))
 
 (defun all-preemptors (task)
-  "Return the tasks that keep TASK, or what it is part of, from running by having what it needs."
+  "Return the tasks that keep TASK, or a task around TASK, from running, because they own a resource
+that TASK needs."
   (loop for each in (lineage task)
         append (loop for frame in (frame-chain (task-frame each))
                      append (preemptors each (frame-data frame)))))
 
 (defun working-parts (task)
-  "Return the innermost parts of TASK that are at its own level."
+  "Return the innermost parts of TASK at the level of TASK, which leaves out policies."
   (let ((children (remove (task-level task) (task-children task) :key #'task-level :test #'<)))
     (if children
         (loop for child in children append (working-parts child))
         (list task))))
 
 (defun obstacles (task)
-  "Return the tasks without which TASK, without its parts, cannot go on; NIL if that is unknown."
+  "Return the tasks that must go on before TASK itself can go on, without regard to its parts; NIL
+if they are unknown."
   (or (and (task-awaiting task) (tasks-awaited (task-awaiting task)))
       (all-preemptors task)))
 
 (defun stuck-tasks (task)
-  "Return TASK and the tasks that wait for each other with it, or NIL if some of them can go on."
+  "Return a list of TASK and the tasks in a cycle of waits with TASK; or NIL if some of them can go
+on."
   (let ((stuck '()) (open (list task)))
     (loop while open
           do (let* ((next (pop open)) (others (obstacles next)))
@@ -55,11 +59,12 @@ frames, is about.")
     (reverse stuck)))
 
 (defgeneric stuck-wait-text (awaited)
-  (:documentation "Return in words what a task that is stuck waits for.")
+  (:documentation "Return a text of AWAITED, which a stuck task waits for.")
   (:method (awaited) (awaited-text awaited)))
 
 (defun wait-text (task)
-  "Return in words what TASK waits for, as TASK-AWAITS does, and its owner if that is known."
+  "Return a text of what TASK waits for, as TASK-AWAITS does, with the tasks that own it if they are
+known."
   (and (task-awaits task)
        (if (tasks-awaited (task-awaiting task))
            (stuck-wait-text (task-awaiting task))
@@ -70,17 +75,17 @@ frames, is about.")
     (if (and awaiting (tasks-awaited awaiting))
         (format nil "~A waits for ~A" (task-label task) (stuck-wait-text awaiting))
         (let ((names (mapcar #'task-label (all-preemptors task))))
-          (format nil "~A waits until ~{~A~^ and ~} ~:[gives~;give~] back what was taken from it"
+          (format nil "~A waits until ~{~A~^ and ~} ~:[gives~;give~] back a valve taken from it"
                   (task-label task) names (rest names))))))
 
 (defun warn-of-circle (tasks)
-  "Queue a warning: TASKS wait for each other. What they are parts of may still end one of them."
+  "Queue a warning that TASKS wait for each other. The tasks around them may still end one of them."
   (warn-notably "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
                 (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
-                ". None can go on until one of them is ended, as by a deadline."))
+                ". These tasks can go on only if one of them is ended, for example by a deadline."))
 
 (defun report-circle (task)
-  "Queue a warning if TASK, which has begun to wait, waits in a circle."
+  "Queue a warning if TASK, which has begun to wait, is in a cycle of waits."
   (let ((tasks (stuck-tasks task)))
     (when tasks (warn-of-circle tasks))))
 
@@ -93,13 +98,14 @@ frames, is about.")
     (if child (first-working-part child) task)))
 
 (defun obstacle-p (task others)
-  "True if TASK, or one that it is part of, is an obstacle to one of OTHERS."
+  "True if TASK, or a task around TASK, is an obstacle to one of OTHERS."
   (some (lambda (other)
           (some (lambda (obstacle) (part-of-p task obstacle)) (obstacles other)))
         others))
 
 (defun warn-of-remaining-cycle (task)
-  "Queue a warning if the parts left to TASK, as one has ended, wait in a circle through it."
+  "Queue a warning if the remaining parts of TASK wait in a cycle through TASK. One part has just
+ended."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
@@ -109,22 +115,23 @@ frames, is about.")
 ;;;; Stillness
 
 (define-global +no-fluent+ "a value that is no fluent"
-  "What a task waits for that was given no fluent where it was to wait for one.")
+  "The object that a task waits for if it got something other than a fluent to wait for.")
 
 (defun waiting-parts (task)
-  "Return TASK, or else those of its parts, that wait for something but the end of parts."
+  "Return a list of those among TASK and its parts that wait for something other than the end of
+their own parts."
   (remove-if-not (lambda (part) (and (eq :waiting (task-state part)) (task-awaiting part)))
                  (all-tasks task)))
 
 (defun fluents-awaited (tasks)
-  "Return the base fluents that TASKS wait for, each once."
+  "Return a list of the base fluents that TASKS wait for, without repetition."
   (remove-duplicates (loop for task in tasks
                            for subject = (traced-subject (task-awaiting task))
                            when (fluent-p subject) append (base-fluents subject))
                      :from-end t))
 
 (defun text-of-waits (tasks)
-  "Return in words what TASKS wait for, or NIL if that is nothing by itself."
+  "Return a text of what TASKS wait for, or NIL if they wait for nothing but their parts."
   (let ((texts (remove-duplicates (remove nil (mapcar #'wait-text tasks))
                                   :test #'string= :from-end t)))
     (and texts (cut (format nil "~{~A~^, ~}" texts) 300))))
@@ -132,17 +139,18 @@ frames, is about.")
 ;;; What to do.
 
 (defun no-fluent-advice (task)
-  (format nil "~A waits for a value that is no fluent and never changes. Give it the fluent ~
+  (format nil "~A waits for a value that is not a fluent and never changes. Wait for the fluent ~
                itself, as in (wait-for robot-stopped*) or (wait-for (> level 3)); wait-until tests ~
                other forms in each tick."
           (form-text (task-form task))))
 
 (defun status-fluent-p (fluent)
-  "True if FLUENT is called as TASK-STATUS calls those that it returns."
+  "True if FLUENT has a name as the fluents of TASK-STATUS have."
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun end-elsewhere (name part tasks)
-  "Return in words how to wait for the end of the command NAME on PART, unless TASKS do that."
+  "Return the text of the form that waits for the end of the command NAME on PART, or NIL if TASKS
+wait for that."
   (let ((text (end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
@@ -154,15 +162,15 @@ frames, is about.")
     (multiple-value-bind (name part) (and client (last-command client task))
       (cond
         ((null client)
-         (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, in which ~
-                      commands could end. Run it on the robot: (with-simulation (ROBOT) ~
+         (format nil "RUN-PLAN-ALONE runs ~A without a robot: no ticks of a run pass, so no ~
+                      command can end. Run the plan on a robot: (with-simulation (ROBOT) ~
                       (run-plan '~:*~A)), or live (simulator 'ROBOT) and (run-plan '~:*~A)."
                  plan))
         (name
-         (format nil "The last one of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
+         (format nil "The last command of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
                       end~]." plan name (end-elsewhere name part tasks)))
-        (t (format nil "~A has issued none by a function such as rpl-robot-turn; only those ~
-                        change fluents." plan))))))
+        (t (format nil "~A has issued no command by a function such as rpl-robot-turn; only such ~
+                        functions change the fluents of a robot." plan))))))
 
 ;; Whatever has pulsed a fluent that is waited for itself came before the wait.
 (defun missed-pulses-text (tasks)
@@ -173,8 +181,8 @@ frames, is about.")
                                 (plusp (fluent-pulses subject))))
                          (mapcar (lambda (task) (traced-subject (task-awaiting task))) tasks))))
     (and fluent
-         (format nil "~A has been pulsed ~D time~:P so far, before this wait began; a wait ends ~
-                      only by later pulses." (fluent-text fluent) (fluent-pulses fluent)))))
+         (format nil "~A has been pulsed ~D time~:P so far, before this wait began; only a later ~
+                      pulse can end the wait." (fluent-text fluent) (fluent-pulses fluent)))))
 
 (defun missed-end-text (tasks)
   (loop for task in tasks
@@ -182,15 +190,15 @@ frames, is about.")
         for tick = (and (fluent-p subject)
                         (last-pulse (runner-client (task-runner task)) task subject))
         when tick
-          return (format nil "~A was pulsed at tick ~D, before this wait began; a wait ends only ~
-                              by later pulses. To wait for several, write (par (wait-for fluent) ~
-                              (wait-for fluent))."
+          return (format nil "~A was pulsed at tick ~D, before this wait began; only a later ~
+                              pulse can end the wait. To wait for several fluents, write (par ~
+                              (wait-for fluent) (wait-for fluent))."
                          (fluent-text subject) tick)))
 
 ;;; What does not end.
 
 (defun exit-in-p (form)
-  "True if FORM mentions RETURN, or the like."
+  "True if FORM contains RETURN, or another symbol with RETURN in its name."
   (typecase form
     (cons (or (exit-in-p (car form)) (exit-in-p (cdr form))))
     (symbol (search "RETURN" (symbol-name form)))))
@@ -203,25 +211,25 @@ frames, is about.")
        (not (exit-in-p form))))
 
 (defun endless-advice (tasks)
-  "Return in sentences that a form that TASKS are inside of does not end by itself, or NIL."
+  "Return a sentence that a form around TASKS does not end by itself, or NIL."
   (let ((form (loop for task in tasks
                     thereis (find-if #'endless-form-p
                                      (plan-backtrace task (task-frame task))))))
     (and form
-         (format nil "~A does not end by itself: let it (return), or begin the plan by BEGIN-PLAN, ~
-                      which does not wait for its end." (form-text form)))))
+         (format nil "~A does not end by itself. End it by (return), or start the plan by ~
+                      BEGIN-PLAN, which does not wait for the end of a plan." (form-text form)))))
 
 (defun advice-on-stillness (tasks)
-  "Return in sentences what could be done about it that TASKS wait and nothing will wake them."
+  "Return sentences with advice about TASKS, which wait and which nothing will wake."
   (let* ((valueless (find +no-fluent+ tasks :key #'task-awaiting))
          (fluents (fluents-awaited tasks))
          (robots (remove-if-not #'robots-fluent-p fluents))
          (states (remove-if-not #'status-fluent-p fluents))
          (others (remove-if #'status-fluent-p (remove-if #'robots-fluent-p fluents))))
-    (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is under way: ~
-                 give one before you wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
+    (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is in progress: ~
+                 issue a command before the wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
                  ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~(~S~)~:^, ~}~
-                 , and stays so: no task goes on.~]~@[ ~A~]~@[ ~A~]"
+                 , and stays so, because no task goes on.~]~@[ ~A~]~@[ ~A~]"
             (and valueless (no-fluent-advice valueless))
             (and robots
                  (format nil "~{~A~^, ~} change~:[s~;~]"
@@ -235,24 +243,28 @@ frames, is about.")
 ;;; Reports.
 
 (defun warn-of-wait (task text)
-  "Queue a warning TEXT, once for each form, of a wait of TASK that does not do what was meant."
+  "Queue a warning with TEXT about a wait of TASK, once for each form. The wait does not do what was
+probably meant."
   (when (first-warning-p (task-form task) (task-runner task))
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
 (defun wait-for-no-fluent (task)
-  "Let TASK wait forever, as it was given no fluent. Queue a warning, once for each form."
+  "Let TASK wait forever, because it got something other than a fluent to wait for. Queue a warning,
+once for each form."
   (park task +no-fluent+)
   (warn-of-wait task (no-fluent-advice task)))
 
 (defun doubt-awaited (task value)
-  "Queue a warning, once for each form, if VALUE, awaited by TASK, is hardly a condition."
+  "Queue a warning, once for each form, if TASK waits for VALUE and VALUE is probably not meant as a
+condition."
   (multiple-value-bind (kind remedy)
       (typecase value
-        (number (values "number" (format nil "(wait-time ~A) waits for so many ticks" value)))
-        (task (values "task" "(join-task task) waits for its end"))
-        (function (values "function" "(wait-until (funcall function)) calls it in each tick")))
+        (number (values "number" (format nil "(wait-time ~A) waits for that many ticks" value)))
+        (task (values "task" "(join-task task) waits for the end of a task"))
+        (function (values "function" "(wait-until (funcall function)) calls the function in each
+tick")))
     (when kind
-      (warn-of-wait task (format nil "~A does not wait: it was given a ~A, ~A, which counts as ~
+      (warn-of-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which counts as ~
                                       true. ~A."
                                  (form-text (task-form task)) kind (form-text value 40) remedy)))))
 
@@ -263,35 +275,38 @@ frames, is about.")
        4000))
 
 (defun text-of-plans (tasks)
-  "Return in words which plans TASKS are, as the subject of a sentence, and what they wait for."
+  "Return a text that names the plans TASKS, as the subject of a sentence, and says what they wait
+for."
   (format nil "the plan~P ~{~A~^, ~} wait~:[s~;~] for ~A"
           (length tasks) (mapcar #'task-label tasks) (rest tasks)
           (or (text-of-waits (mapcan #'waiting-parts tasks))
               (text-of-blocks tasks)
-              "what cannot come")))
+              "something that cannot happen")))
 
 (defun text-of-blocks (tasks)
-  "Return in words that blocked parts of TASKS must be woken; NIL if none is blocked."
+  "Return a text that blocked parts of TASKS must be woken; NIL if no part is blocked."
   (let ((blocked (remove-if-not #'plusp (mapcan #'all-tasks tasks) :key #'task-blocked)))
     (and blocked
-         (format nil "somebody to let ~{~A~^ and ~} go on, as by WAKE-UP"
+         (format nil "a call, such as of WAKE-UP, that lets ~{~A~^ and ~} go on"
                  (mapcar #'task-label blocked)))))
 
 (defun report-stillness (runner)
-  "Queue a warning that the tasks of RUNNER wait for events that only calls from outside of them
-and of the simulator can cause, with advice. A thread waits for one of them."
+  "Queue a warning, with advice, that the tasks of RUNNER wait for events that neither these tasks
+nor the simulator can cause. Only calls from outside can cause them. A thread waits for the end of
+one of these tasks."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
     (warn-notably "At tick " (runner-tick runner) " all plans wait for events that neither the "
                   "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "
                   "Control-C ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
 
 (defun report-deadlock (runner)
-  "Queue an error message that no task of RUNNER can go on, with plans, waits, advice and tasks."
+  "Queue an error message that no task of RUNNER can go on. The message has the plans, their waits,
+advice and the tree of tasks."
   (let ((tasks (plan-runner-tasks runner)))
     (queue-message
      (make-message :error
                    (list "Deadlock at tick " (runner-tick runner) ": " (text-of-plans tasks)
-                         ", which nothing will bring about."
+                         ", which nothing will cause."
                          (advice-on-stillness (mapcan #'waiting-parts tasks)) t
                          (tree-text runner))
                    :notable-p t)

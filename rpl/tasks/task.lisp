@@ -14,34 +14,39 @@
 ;;; An environment is a vector: element 0 is the environment around it, the others are variables.
 
 (define-record (node (:constructor nil))
-  "An expression of a plan."
+  "A compiled expression of a plan."
   (form nil t "the source of the expression that the node stands for" :writable :export)
-  (names '() list "the names of the variables that the node sees: a list for each level, innermost
-first" :writable :export)
-  (states #() simple-vector "the names of what a frame may be in" :writable)
-  (step #'list function "the function of the node, task, frame and the value of the inner expression
-that has ended, which returns the frame to go on with and a value for it" :writable)
-  (unwind nil (or null function) "the function of the same arguments, but a signal, that is called
-when a signal passes the frame, or NIL. It returns a frame that handles it, or NIL and, if
-another signal is to go on instead, that" :writable)
-  (child-ended nil (or null function) "the function of node, task, frame, child, the child's state
-and its result, or NIL" :writable)
+  (names '() list "the names of the variables that are visible at the node: a list for each level,
+innermost first" :writable :export)
+  (states #() simple-vector "the names of the states that a frame of the node may be in" :writable)
+  (step #'list function "the function that takes a step. Its arguments are the node, the task, the
+frame, and the value of the inner expression that has ended. It returns the next frame and a value
+for this frame" :writable)
+  (unwind nil (or null function) "the function to call when a signal passes the frame, or NIL. Its
+arguments are the node, the task, the frame and the signal. If a frame handles the signal, the
+function returns true, this frame and a value. Otherwise it returns NIL and, if another signal
+replaces the signal, that other signal" :writable)
+  (child-ended nil (or null function) "the function to call when a child task of the frame has
+ended, or NIL. Its arguments are the node, the task, the frame, the child, and the child's state and
+result" :writable)
   (sharing :unknown (member :unknown :shared :per-run)
-         "whether forks of a run share it, once that is known" :writable))
+         "whether forks of a run share the node, once that is known" :writable))
 
 (declaim (inline make-frame))
 (define-record (frame (:constructor make-frame (node environment up)))
-  "One run of NODE, in ENVIRONMENT, on behalf of the frame UP or of none."
+  "One run of NODE in ENVIRONMENT. The frame UP, if any, gets the value."
   (node nil node "the node that the frame runs" :writable :export)
-  (environment #() simple-vector "the vector of the variables that the node sees, and of those
-around it" :writable :export)
-  (up nil (or null frame) "the frame that gets the value, or NIL" :writable :export)
+  (environment #() simple-vector "a vector of the variables visible at the node; element 0 is the
+environment around it" :writable :export)
+  (up nil (or null frame) "the frame that gets the value of this frame, or NIL" :writable :export)
   (counter 0 fixnum
-           "the number of the state that the frame is in: see FRAME-STATE" :writable :export)
-  (data nil t "what the frame has to remember: in DEFINE-EXPRESSION, its MEMORY" :writable :export))
+           "the number of the state of the frame: see FRAME-STATE" :writable :export)
+  (data nil t "the data that the frame remembers; in DEFINE-EXPRESSION, the
+MEMORY" :writable :export))
 
 (defun frame-state (frame)
-  "Return the state of FRAME, a keyword; if its node has no states, the number of parts begun."
+  "Return the state of FRAME, a keyword. If the node of FRAME has no states, return the number of
+parts begun."
   (let ((states (node-states (frame-node frame))))
     (if (plusp (length states))
         (svref states (frame-counter frame))
@@ -49,47 +54,52 @@ around it" :writable :export)
 
 (addition task task-p)
 (define-record (task (:constructor make-task (name node)
-                     "Return a task by name and node that has not started: see SPAWN."))
-  "One incarnation of a plan's expression."
-  (name nil t "what the task is called: its tag, its procedure, or NIL" :writable :addition)
-  (node nil node "the expression that it runs" :writable)
+                     "Return a new task with the given name and node that has not started: see
+SPAWN."))
+  "A task: one run of an expression of a plan."
+  (name nil t "the name of the task: its tag, the name of its procedure, or
+NIL" :writable :addition)
+  (node nil node "the expression that the task runs" :writable)
   (runner nil t "the plan runner that the task belongs to" :writable :export)
   (serial 0 fixnum "the number of the task within its plan runner" :writable :addition)
-  (state :created keyword "the task's state: :created, :ready, :running, :waiting, and when it is
-over :succeeded, :failed or :evaporated" :writable :addition)
-  (ending-p nil boolean "true if the task is to evaporate" :writable :export)
-  (level 0 (integer 0 7) "the level of the task: 0 for the plan proper, for a policy one above what
-it guards" :writable :export)
+  (state :created keyword "the task's state: :created, :ready, :running, :waiting, or at the end
+:succeeded, :failed or :evaporated" :writable :addition)
+  (ending-p nil boolean "the task must evaporate" :writable :export)
+  (level 0 (integer 0 7) "the level of the task: 0 for the plan itself; for a policy, one above the
+level of its body" :writable :export)
   (index 0 fixnum
-         "which of the parts of the task around it the task is, from 0 on" :writable :export)
-  (frame nil (or null frame) "the innermost frame of the task, NIL if it is over" :writable :export)
-  (value nil t "the value with which its innermost frame goes on" :writable)
-  (signal nil t "what will happen to the task instead of going on, or NIL" :writable :export)
-  (awaiting nil t "what the task waits for: a watcher, a timer, a valve, a text; or
+         "the number of the task among the parts of the task around it, from 0
+on" :writable :export)
+  (frame nil (or null frame) "the innermost frame of the task, NIL if the task is
+over" :writable :export)
+  (value nil t "the value with which the task's innermost frame goes on" :writable)
+  (signal nil t "the signal that the task will receive instead of going on, or
 NIL" :writable :export)
-  (since 0 real "the tick at which the task began to wait, or did so last" :writable :addition)
+  (awaiting nil t "the object that the task waits for: a watcher, a timer, a claim to a valve, a
+text; or NIL" :writable :export)
+  (since 0 real "the tick at which the current or last wait of the task began" :writable :addition)
   (timer nil (or null timer)
-         "the timer that ends the task's wait at the latest, or NIL" :writable :export)
+         "the timer that ends the task's wait at its time limit, or NIL" :writable :export)
   (cleaning '() list "the frames of the task that clean up, innermost first" :writable :export)
-  (blocked 0 fixnum "how many blocks keep it from running" :writable)
-  (round 0 fixnum "in which round of its plan runner it used its slice last" :writable)
-  (slice 0 fixnum "how many steps it may still take in that round" :writable)
+  (blocked 0 fixnum "the number of blocks that keep the task from running" :writable)
+  (round 0 fixnum "the round of its plan runner in which the task last ran" :writable)
+  (slice 0 fixnum "the number of steps that the task may still take in that round" :writable)
   (result nil t
-          "the value of a task that succeeded, the failure of one that failed" :writable :addition)
-  (status-fluent nil (or null fluent) "the fluent that follows the task's status, or NIL: see
+          "the value of the task if it succeeded, or its failure if it failed" :writable :addition)
+  (status-fluent nil (or null fluent) "the fluent whose value is the task's status, or NIL: see
 TASK-STATUS" :writable :export)
   (parent nil (or null task)
-          "the task that the task is part of, or NIL" :writable :addition)
-  (suspensions 0 fixnum "how many of its blocks are suspensions" :writable)
-  (suspended nil boolean "true if SUSPEND is one of them" :writable)
-  (uncounted-p nil boolean "the task's steps are not charged for, as what it does has a
+          "the task around the task, or NIL" :writable :addition)
+  (suspensions 0 fixnum "the number of the task's blocks that are suspensions" :writable)
+  (suspended nil boolean "true if SUSPEND has suspended the task" :writable)
+  (uncounted-p nil boolean "the task's steps are not charged, because WITH-CHARGE has a fixed
 price" :writable :export)
-  (gate nil t "what it waits for before it starts, or NIL" :writable)
-  (variables '() list "the task variables that it has set, an alist" :writable)
-  (newest-child nil (or null task) "that part of the task which started last of those not over, or
+  (gate nil t "the gate that keeps the task from starting, or NIL" :writable)
+  (variables '() list "the task variables that the task has set, an alist" :writable)
+  (newest-child nil (or null task) "the newest part of the task that is not over, or
 NIL" :writable :export)
   (older nil (or null task)
-         "the part of the same task that started before the task, or NIL" :writable :export)
+         "the next older part of the same parent task, or NIL" :writable :export)
   (newer nil (or null task) :writable))
 (declaim-final frame task)
 
@@ -109,7 +119,7 @@ NIL" :writable :export)
 
 (addition task-children)
 (defun task-children (task)
-  "Return the tasks that TASK consists of now, oldest first."
+  "Return a list of the parts of TASK that are not over, oldest first."
   (check-argument task-children task (task-p task) "a task, as begin-plan returns")
   (loop with children = '()
         for child = (task-newest-child task) then (task-older child)
@@ -118,24 +128,25 @@ NIL" :writable :export)
 
 (addition task-top)
 (defun task-top (task)
-  "Return the top-level task that TASK is part of, perhaps itself."
+  "Return the top-level task around TASK, or TASK if it is a top-level task itself."
   (check-argument task-top task (task-p task) "a task, as begin-plan returns")
   (loop while (task-parent task)
         do (setf task (task-parent task)))
   task)
 
 (defun lineage (task)
-  "Return TASK and the tasks that it is part of, innermost first."
+  "Return a list of TASK and the tasks around it, innermost first."
   (loop for each = task then (task-parent each)
         while each collect each))
 
 (defun frame-chain (frame)
-  "Return FRAME and those that it is run on behalf of, innermost first."
+  "Return a list of FRAME and the frames around it in the same task, innermost first."
   (loop for each = frame then (frame-up each)
         while each collect each))
 
 (defun frames-around (task &optional (frame (task-frame task)))
-  "Return the frames of TASK from FRAME on, and those of the tasks around it, innermost first."
+  "Return a list of the frames of TASK from FRAME on, and the frames of the tasks around TASK,
+innermost first."
   (nconc (frame-chain frame)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 
@@ -145,7 +156,7 @@ NIL" :writable :export)
         while each thereis (eq each whole)))
 
 (defun evaporating-p (task)
-  "True if TASK, or what it is part of, is evaporating."
+  "True if TASK, or a task around it, is evaporating."
   (loop for each = task then (task-parent each)
         while each thereis (task-ending-p each)))
 
@@ -154,7 +165,7 @@ NIL" :writable :export)
   (not (or (task-over-p task) (eq (task-state task) :created))))
 
 (defgeneric current-form (node frame)
-  (:documentation "Return the source of the expression of NODE that FRAME is at.")
+  (:documentation "Return the source of the expression that FRAME, a frame of NODE, is running.")
   (:method (node frame)
     (declare (ignore frame))
     (node-form node)))
@@ -162,8 +173,8 @@ NIL" :writable :export)
 ;; A body is at the expression that one of its steps runs; a call that the body of another is at
 ;; runs that body anew.
 (defun frame-runs (frame)
-  "Return FRAME and those that it is run on behalf of, innermost first, as a list of lists: the
-frames of one list run one expression."
+  "Return FRAME and the frames around it in the same task, innermost first, as a list of lists. The
+frames in one list run the same expression."
   (let ((runs '()) (last-form nil))
     (loop for each = frame then (frame-up each)
           while each
@@ -177,13 +188,14 @@ frames of one list run one expression."
     (nreverse (mapcar #'nreverse runs))))
 
 (defun forms-under-way (frame)
-  "Return the expressions that FRAME, and the frames up from it, are at, innermost first."
+  "Return a list of the expressions that FRAME and the frames around it are running, innermost
+first."
   (loop for (each) in (frame-runs frame)
         collect (current-form (frame-node each) each)))
 
 (addition task-form)
 (defun task-form (task)
-  "Return the source of the expression that TASK is at."
+  "Return the source of the expression that TASK is running."
   (check-argument task-form task (task-p task) "a task, as begin-plan returns")
   (let ((frame (task-frame task)))
     (if frame
@@ -191,14 +203,16 @@ frames of one list run one expression."
         (node-form (task-node task)))))
 
 (defun object-text (object)
-  "Return how OBJECT is written; in part, if it is data that takes long to print."
+  "Return the printed text of OBJECT. If OBJECT is data that takes long to print, return a part of
+the text."
   (if (typep object '(or cons string bit-vector number symbol))
       (unqualified-text object)
       (prin1-to-string object)))
 
 (defun form-text (form &optional (width 60) (length 8) (level 4))
-  "Return FORM, or any other object, on one line of at most WIDTH characters, with at most LENGTH
-elements of each list in it, to the depth LEVEL, and symbols without their packages."
+  "Return the text of FORM, or any other object, on one line of at most WIDTH characters. The text
+has at most LENGTH elements of each list, lists to the depth LEVEL, and symbols without their
+packages."
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
         (*print-length* length) (*print-level* level) (*print-base* 10) (*print-radix* nil))
     (cut (substitute #\Space #\Newline
@@ -211,11 +225,11 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
     (write-string (form-text (node-form node) 40) stream)))
 
 (defun whole-form-text (form)
-  "Return FORM on one line as it is, unless it is longer than a page."
+  "Return the complete text of FORM on one line, unless it is longer than a page."
   (form-text form 3000 200 20))
 
 (defun task-label (task &optional (text (lambda (form) (form-text form 40))))
-  "Return a short text for TASK: its name, or what the function TEXT returns for its expression."
+  "Return a short text for TASK: its name, or the value of the function TEXT for its expression."
   (let ((name (task-name task)))
     (cond ((null name) (funcall text (node-form (task-node task))))
           ((and (symbolp name) (< (length (symbol-name name)) 100)) (string-downcase name))
@@ -223,7 +237,7 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
 
 (addition task-path)
 (defun task-path (task)
-  "Return the labels of the tasks from the top of the plan to TASK."
+  "Return a list of the labels of the tasks from the top of the plan to TASK."
   (reverse (mapcar #'task-label (lineage task))))
 
 ;; A request of any task counts as one of the whole plan.
@@ -242,7 +256,7 @@ elements of each list in it, to the depth LEVEL, and symbols without their packa
     (when sibling (setf (task-newer sibling) child))))
 
 (defun unlink-child (child)
-  "Take CHILD out of its parent's children. It still knows its parent."
+  "Remove CHILD from its parent's children. CHILD keeps the reference to its parent."
   (let ((older (task-older child))
         (newer (task-newer child)))
     (if newer

@@ -5,7 +5,7 @@
 (export '(awaited-text agent-text answer-p trace-so-far))
 
 (defgeneric awaited-text (awaited)
-  (:documentation "Return in words what a task that waits for AWAITED waits for.")
+  (:documentation "Return a text of AWAITED, an object that a task waits for.")
   (:method (awaited) (safe-text awaited :escape nil))
   (:method ((fluent fluent)) (fluent-text fluent))
   (:method ((watcher watcher)) (fluent-text (watcher-fluent watcher)))
@@ -13,15 +13,16 @@
     (format nil "tick ~D" (timer-due timer))))
 
 (defgeneric traced-subject (awaited)
-  (:documentation "Return what a trace keeps of AWAITED, that a task waits for: no task.")
+  (:documentation "Return the object that a trace stores for AWAITED, an object that a task waits
+for. It does not refer to tasks.")
   (:method (awaited) awaited)
   (:method ((watcher watcher)) (watcher-fluent watcher))
   (:method ((timer timer)) (timer-due timer)))
 
 (addition task-awaits)
 (defun task-awaits (task)
-  "Return in words what TASK waits for: a fluent or network, a tick, a valve; NIL if it does not, or
-waits for its own parts."
+  "Return a text of what TASK waits for, such as a fluent or network, a tick or a valve. Return NIL
+if TASK does not wait, or waits for its own parts."
   (and (eq (task-state task) :waiting)
        (task-awaiting task)
        (awaited-text (task-awaiting task))))
@@ -31,34 +32,38 @@ waits for its own parts."
 
 (define-record (trace-entry (:constructor make-trace-entry
                                 (tick event task form subject value agent)))
-  "At TICK, EVENT happened to the task number TASK (0: to none) at the expression FORM, caused by
-AGENT: a task's number, an ANSWER, or another asker (see *ASKER*). What SUBJECT and VALUE are:
-:start: name and parent's number; :wait and :wake: what the task waits for; :succeed: NIL and the
-value; :failure (where it happens) and :fail (it ends the task): the failure; :set and :pulse:
-fluent and value; :command: an ISSUE and, for the task
-and each that it is part of, the expressions under way; :answer: the ISSUE and the error code;
-:evaporate, :clean, :cleaned, :block and :unblock: nothing."
+  "An entry of a trace: at TICK, EVENT happened to the task with the number TASK (or to no task if
+TASK is 0) at the expression FORM. AGENT has caused the event. It is the number of a task, an
+ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT and VALUE are:
+  :start: the name, and the number of the parent
+  :wait and :wake: the object that the task waits for
+  :succeed: NIL and the value
+  :failure (where it happens) and :fail (it ends the task): the failure
+  :set and :pulse: the fluent and its value
+  :command: an ISSUE and, for the task and each task around it, the expressions in progress
+  :answer: the ISSUE and the error code
+  :evaporate, :clean, :cleaned, :block and :unblock: nothing"
   (tick 0 real "the tick of a trace entry" :addition)
-  (event :start keyword "what happened: :start, :wait, :wake, :succeed, :fail, :evaporate, :failure
-(whatever becomes of it), :clean (a cleanup begins), :cleaned (no cleanup is under way any more),
-:block or :unblock; :set or :pulse (a fluent), :command or :answer" :addition)
-  (task 0 fixnum "the number of the task that it happened to, or that did it; 0: none" :addition)
-  (form nil t "the plan's expression that the task was at" :addition)
-  (subject nil t "what it is about, an object that depends on the event" :export)
-  (value nil t "what a task succeeded with; the value that a fluent was given; the error code of an
-answer; for a command the expressions under way, a list for the task and each that it is part of;
-the number of the task that a task is part of when it starts" :addition)
-  (agent nil t "what caused it: a task's number, an answer, or an asker" :export))
+  (event :start keyword "the event: :start, :wait, :wake, :succeed, :fail, :evaporate, :failure
+(handled or not), :clean (a cleanup begins), :cleaned (the last cleanup has ended), :block or
+:unblock; :set or :pulse (of a fluent), :command or :answer" :addition)
+  (task 0 fixnum "the number of the task of the event; 0 if no task is involved" :addition)
+  (form nil t "the expression of the plan that the task was running" :addition)
+  (subject nil t "the object that the event is about; its type depends on the event" :export)
+  (value nil t "a value that depends on the event: the value of a task that succeeded; the new value
+of a fluent; the error code of an answer; for a command, the expressions in progress, a list for the
+task and each task around it; at the start of a task, the number of its parent" :addition)
+  (agent nil t "the cause of the event: a task's number, an answer, or an asker" :export))
 (declaim-final trace-entry)
 
 (define-record (issue (:constructor make-issue (name arguments task)))
   "A command that a task has issued."
   (name nil symbol "the plan function by which a command was issued" :export)
-  (arguments '() list "the list of what it was called with" :export)
+  (arguments '() list "the list of the arguments of the plan function" :export)
   (task 0 fixnum "the number of the task that issued the command" :export))
 
 (define-record (answer (:constructor make-answer (issue error)))
-  "How a command ended."
+  "The end of a command."
   (issue nil issue "the record of the command that an answer is for" :export)
   (error nil t "the error code of an answer, or NIL" :export))
 
@@ -78,7 +83,7 @@ the number of the task that a task is part of when it starts" :addition)
   (list "the answer to " (issue-text (answer-issue answer))))
 
 (defun agent-text (agent)
-  "Return in words what AGENT, of a trace entry, is."
+  "Return a text of AGENT, the agent of a trace entry."
   (if (integerp agent)
       (format nil "task ~D" agent)
       (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
@@ -90,8 +95,8 @@ the number of the task that a task is part of when it starts" :addition)
 
 (addition trace-entry-detail)
 (defun trace-entry-detail (entry)
-  "Return what a trace entry is about as text, or NIL: what the task waits for, why it failed, what
-value a fluent was given and by whom, which command was issued or answered, and how."
+  "Return the details of ENTRY as text, or NIL: what the task waits for, why it failed, which value
+a fluent got and from whom, or which command was issued or answered, and how."
   (let ((subject (trace-entry-subject entry))
         (value (trace-entry-value entry)))
     (case (trace-entry-event entry)
@@ -114,7 +119,8 @@ value a fluent was given and by whom, which command was issued or answered, and 
   (make-array count :initial-element 0))
 
 (defstruct (chronicle (:constructor make-trace ()) (:copier nil))
-  "A trace as it is kept: CHUNK, filled up to FILL, and lists (chunk fill) before, newest first."
+  "A trace in its internal form. CHUNK is filled up to FILL. FULL is a list of the earlier chunks,
+each (chunk fill), newest first."
   (chunk (make-chunk 512) :type simple-vector)
   (fill 0 :type (unsigned-byte 32))
   (full '() :type list))
@@ -134,7 +140,8 @@ value a fluent was given and by whom, which command was issued or answered, and 
         (chronicle-fill trace) 0))
 
 (defun add-trace-entry (trace tick event task form subject value)
-  "Add to TRACE, a chronicle, that EVENT happened to TASK, a number: *ASKER* is the agent."
+  "Add to TRACE, a chronicle, that EVENT happened to TASK, the number of a task. The agent is
+*ASKER*."
   (declare #.*hot* (type chronicle trace))
   (when (> (+ 7 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (asker *asker*))
@@ -152,8 +159,9 @@ value a fluent was given and by whom, which command was issued or answered, and 
         collect (apply #'make-trace-entry (coerce (subseq chunk place (+ place 7)) 'list))))
 
 (defun trace-so-far (trace)
-  "Return a function of no arguments that returns the entries that TRACE, a chronicle, has now, as a
-vector; for any thread and time: what has been noted stays. Return as well how many these are."
+  "Return a function of no arguments that returns a vector of the current entries of TRACE, a
+chronicle. The second value is the number of these entries. Any thread may call the function at any
+time, because recorded entries never change."
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (full (chronicle-full trace)))
     (values (lambda ()
               (coerce (append (loop for (chunk fill) in (reverse full)
@@ -169,8 +177,8 @@ vector; for any thread and time: what has been noted stays. Return as well how m
 
 (addition write-trace)
 (defun write-trace (trace destination)
-  "Write TRACE, a vector of trace entries, to DESTINATION, a stream or the path of a file that is
-written anew: a line with tick, event, task number and expression for each."
+  "Write TRACE, a vector of trace entries, to DESTINATION, a stream or the path of a file. An
+existing file is replaced. Each line has the tick, event, task number and expression of an entry."
   (etypecase destination
     (stream (printing-plainly ()
               (loop for entry across trace do (write-trace-entry entry destination))))

@@ -7,8 +7,8 @@
 ;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
-  "Add to the trace, if one is kept, that EVENT happened to TASK. SUBJECT and VALUE, see
-TRACE-ENTRY, are evaluated only then."
+  "Add to the trace, if there is one, that EVENT happened to TASK. SUBJECT and VALUE are as in
+TRACE-ENTRY; they are evaluated only if there is a trace."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))
        (trace-task ,task ,event ,subject ,value))))
@@ -29,7 +29,7 @@ TRACE-ENTRY, are evaluated only then."
                      (form-now task) subject value)))
 
 (defun trace-doing (runner event subject value)
-  "Add to the trace of RUNNER that the task at work, if any, did something: EVENT."
+  "Add to the trace of RUNNER that the running task, if any, caused EVENT."
   (let* ((asker *asker*)
          (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
     (add-trace-entry (runner-trace runner) (runner-tick runner) event
@@ -43,7 +43,8 @@ TRACE-ENTRY, are evaluated only then."
         (lambda (kind fluent value) (trace-doing runner kind fluent value))))
 
 (defun start-trace (runner)
-  "Start a trace of RUNNER, in which running tasks seem to start now. Does nothing if it keeps one."
+  "Start a trace of RUNNER. Tasks that already run appear to start now. Does nothing if RUNNER keeps
+a trace already."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)
@@ -53,7 +54,7 @@ TRACE-ENTRY, are evaluated only then."
                   (and (task-parent task) (task-serial (task-parent task)))))))
 
 (defun stop-trace (runner)
-  "Let RUNNER keep no trace from now on, and forget the one that it kept."
+  "Stop the trace of RUNNER, and discard it."
   (setf (runner-trace runner) nil
         (runner-wrapper runner) nil
         (runner-on-change runner) nil))
@@ -61,7 +62,7 @@ TRACE-ENTRY, are evaluated only then."
 ;;; What is posted.
 
 (defun keep-asker (entry)
-  "Return a function that applies ENTRY, which is posted, on behalf of the current asker."
+  "Return a function that applies the posted ENTRY on behalf of the current asker."
   (let ((asker *asker*))
     (lambda ()
       (let ((*asker* asker))
@@ -72,8 +73,8 @@ TRACE-ENTRY, are evaluated only then."
 ;;; Commands: what tasks ask of others than plans.
 
 (defun note-command (name arguments)
-  "Note in the trace that the task at work calls the plan function NAME with ARGUMENTS. Return a
-record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
+  "Record in the trace that the running task calls the plan function NAME with ARGUMENTS. Return a
+record of the call for WITH-ANSWER; NIL if no task is running or no trace is kept."
   (let ((task *asker*))
     (when (and (task-p task) *runner* (runner-trace *runner*))
       (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task))))
@@ -82,12 +83,13 @@ record of that for WITH-ANSWER; NIL if no task is at work or no trace is kept."
         issue))))
 
 (defun call-with-answer (issue error function)
-  "Call FUNCTION, which applies the answer ERROR to ISSUE, see NOTE-COMMAND; trace that."
+  "Call FUNCTION, which applies the answer to ISSUE with the error code ERROR, and record the answer
+in the trace. ISSUE is a value of NOTE-COMMAND."
   (let ((*asker* (if issue (make-answer issue error) *asker*)))
     (when (and issue *runner* (runner-trace *runner*))
       (trace-doing *runner* :answer issue error))
     (funcall function)))
 
 (defmacro with-answer ((issue error) &body body)
-  "Run BODY as CALL-WITH-ANSWER would a function."
+  "Run BODY as CALL-WITH-ANSWER calls its function."
   `(call-with-answer ,issue ,error (lambda () ,@body)))

@@ -10,18 +10,18 @@
 ;;; gone with its frame.
 
 (define-record (task-bindings (:constructor make-task-bindings (cells)))
-  "What a frame that binds task variables has as its data: CELLS, conses (name . value)."
+  "The data of a frame that binds task variables. CELLS is a list of conses (name . value)."
   (cells '() list))
 (declaim-final task-bindings)
 
 (defvar *defaults* (make-hash-table :test 'eq :synchronized t)
-  "The values of task variables where no task says otherwise.")
+  "The default values of task variables, by name.")
 
 (defvar *calling-task* nil
-  "The task on whose behalf Lisp code runs, if it is not the running one.")
+  "The task for which Lisp code runs, if it is not the running task.")
 
 (defun calling-task ()
-  "Return the task on whose behalf the caller runs, or NIL outside of plans."
+  "Return the task for which the calling Lisp code runs, or NIL outside of plans."
   (or *calling-task*
       (and *runner* (running-task *runner*))))
 
@@ -33,7 +33,7 @@
       (assoc name (task-variables task) :test #'eq)))
 
 (defun task-variable (name)
-  "Return the value that the task variable NAME has for the task that asks."
+  "Return the value of the task variable NAME for the calling task."
   (let ((cell (loop for task = (calling-task) then (task-parent task)
                     while task thereis (own-cell name task))))
     (if cell (cdr cell) (values (gethash name *defaults*)))))
@@ -47,14 +47,14 @@
     value))
 
 (defun task-variable-p (name &optional environment)
-  "True if the symbol NAME stands for a task variable in ENVIRONMENT."
+  "True if the symbol NAME names a task variable in ENVIRONMENT."
   (and (symbolp name)
        (eq :symbol-macro (variable-kind name environment))
        (let ((expansion (macroexpand-1 name environment)))
          (and (consp expansion) (eq 'task-variable (first expansion))))))
 
 (defun install-task-variable (name value documentation)
-  "Let VALUE be the default of the task variable NAME."
+  "Define VALUE as the default of the task variable NAME."
   (setf (gethash name *defaults*) value
         (documentation name 'variable) documentation)
   name)
