@@ -9,7 +9,7 @@
 (require "asdf")
 
 (defpackage :ars-magna.build
-  (:documentation "Compiling, saving the prompt's core, running the tests.")
+  (:documentation "Compiles the project, saves the prompt's core and runs the tests.")
   (:use :cl)
   (:export #:configure #:print-missing-libraries #:print-window-libraries #:get-window-libraries
            #:load-project #:load-strictly
@@ -23,12 +23,12 @@
   "The project's directory.")
 
 (defun path-in-environment (name)
-  "Return the path that the environment's variable NAME has as the system writes it, or NIL."
+  "Return the native path in the environment variable NAME; NIL if it is unset or empty."
   (let ((value (uiop:getenvp name)))
     (and value (uiop:parse-native-namestring value))))
 
 (defvar *cache* (path-in-environment "ARS_MAGNA_CACHE")
-  "The directory of all compiled files; NIL means ASDF's own.")
+  "The directory for all compiled files; NIL means ASDF's default cache.")
 
 (defun project-fasls ()
   (uiop:subpathname *cache* "project/"))
@@ -37,7 +37,7 @@
   (uiop:subpathname *cache* "libraries/"))
 
 (defun configure ()
-  "Make ASDF find the project here and put compiled files into the cache."
+  "Make ASDF find this project and write compiled files into *CACHE*."
   (mapc #'asdf:register-immutable-system '("asdf" "uiop"))
   (asdf:initialize-source-registry
    `(:source-registry (:directory ,*root*) :inherit-configuration))
@@ -50,12 +50,13 @@
        :ignore-inherited-configuration))))
 
 (defun one-line (condition)
-  "Return the text of CONDITION, or a text itself, on one line."
+  "Return CONDITION, a condition or a string, as text on one line."
   (let ((words (uiop:split-string (princ-to-string condition) :separator '(#\Space #\Newline))))
     (format nil "~{~A~^ ~}" (remove "" words :test #'string=))))
 
 (defun call-telling (function &optional (where ""))
-  "Call FUNCTION. If an error ends it, print WHERE and the error on one line, and end this Lisp."
+  "Call FUNCTION. If FUNCTION signals an error, print WHERE and the error on one line, and exit with
+status 2."
   (handler-case (funcall function)
     (error (condition)
       (format t "~&~A~%" (one-line (format nil "~A~A" where condition)))
@@ -69,7 +70,7 @@
 ;;; Libraries.
 
 (defun missing-p (library)
-  "True if ASDF cannot find LIBRARY. A file that should define it, and does not, is an error."
+  "True if ASDF cannot find LIBRARY. Signals an error if its system file does not define LIBRARY."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
     (not (or (asdf:find-system library nil)
              (let ((file (nth-value 2 (asdf:locate-system library))))
@@ -78,7 +79,7 @@
                         (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
-  "Print on a line which of the libraries named in the environment ASDF cannot find."
+  "Print, on one line, the libraries from the environment variable LIBRARIES that ASDF cannot find."
   (call-telling
    (lambda ()
      (format t "~&missing: ~{~A ~}~%"
@@ -88,7 +89,7 @@
   (string= (asdf:primary-system-name name) "ars-magna"))
 
 (defun libraries (system)
-  "Return the names of the libraries that SYSTEM stands on, through the project's systems."
+  "Return the names of the libraries that SYSTEM or the project's systems below it depend on."
   (remove-duplicates
    (loop for name in (asdf:system-depends-on (asdf:find-system system))
          if (project-system-p name) append (libraries name) else collect name)
@@ -111,7 +112,7 @@
 ;;; The libraries that were loaded: library_state in setup.sh checks them at each start.
 
 (defun loaded-libraries ()
-  "Return the systems that are loaded, but for the project's and those that SBCL comes with."
+  "Return the loaded systems, except the project's and those that come with SBCL."
   (remove-if (lambda (system)
                (or (null (asdf:system-source-file system))
                    (project-system-p (asdf:component-name system))))
@@ -123,7 +124,7 @@
       (list (asdf:component-pathname component))))
 
 (defun library-files ()
-  "Return the files of SBCL and of the loaded libraries, and those that say Quicklisp's versions."
+  "Return the files of SBCL, of the loaded libraries, and of Quicklisp's installed versions."
   (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
           (loop for system in (loaded-libraries)
                 collect (asdf:system-source-file system)
@@ -131,7 +132,7 @@
           (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
 
 (defun library-names ()
-  "Return how the paths of files end that decide which libraries ASDF finds."
+  "Return the endings of the paths of files that determine which libraries ASDF finds."
   (remove-duplicates
    (cons "/source-registry.conf"
          (loop for system in (loaded-libraries)
@@ -139,8 +140,8 @@
    :test #'string=))
 
 (defun library-places ()
-  "Return lists (directory . options), as ASDF has them, that say where it looks for libraries and
-for what it is told about that, and where Quicklisp does."
+  "Return lists (directory . options) of directories where ASDF and Quicklisp look for libraries,
+and of ASDF's configuration directories. The options are ASDF's."
   (flet ((tree (directory) (list directory :recurse t)))
     (append (remove *root* (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
                     :key #'first :test #'equal)
@@ -149,7 +150,7 @@ for what it is told about that, and where Quicklisp does."
             (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
 
 (defun write-libraries (out)
-  "Write to OUT what this Lisp depends on besides the project, as setup.sh says."
+  "Write to OUT the files and directories of libraries that this Lisp depends on, for setup.sh."
   (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
     (dolist (path (library-files)) (note "file" path))
     (format out "~{name ~A~%~}" (library-names))
@@ -157,7 +158,7 @@ for what it is told about that, and where Quicklisp does."
           do (note (if (getf options :recurse) "tree" "directory") directory))))
 
 (defun list-libraries ()
-  "Write the list of libraries into the file that the environment names, if it names one."
+  "Write the list of libraries to the file named in ARS_MAGNA_LIBRARIES, if that variable is set."
   (let ((file (path-in-environment "ARS_MAGNA_LIBRARIES")))
     (when file
       (ensure-directories-exist file)
@@ -167,7 +168,7 @@ for what it is told about that, and where Quicklisp does."
 ;;; Compiling.
 
 (defun forget (fasls)
-  "Delete the directory FASLS, of compiled files, if they are ours."
+  "Delete FASLS, a directory of compiled files, if *CACHE* is set."
   (when *cache*
     (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
 
@@ -175,18 +176,19 @@ for what it is told about that, and where Quicklisp does."
   (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
           (or *compile-file-truename* *load-truename*) condition))
 
-(defvar *began* (get-universal-time) "When this Lisp has begun.")
+(defvar *began* (get-universal-time) "The universal time when this Lisp started.")
 
 (defvar *damaged-p* nil "True if compiled files cannot be loaded.")
 
 (defun loading-old-p ()
-  "True while a file is loaded that was compiled before this Lisp began."
+  "True while a compiled file is loaded that is older than this Lisp process."
   (and *load-truename*
        (equal "fasl" (pathname-type *load-truename*))
        (< (file-write-date *load-truename*) *began*)))
 
 (defun warned-file ()
-  "Return the file that is there while compiled files are there whose sources were warned of."
+  "Return the path of a marker file. The file exists while the cache has compiled files of sources
+that caused warnings."
   (merge-pathnames "warned" (project-fasls)))
 
 (defun note-warned ()
@@ -197,7 +199,8 @@ for what it is told about that, and where Quicklisp does."
       (declare (ignorable out)))))
 
 (defun count-troubles (function)
-  "Call FUNCTION. Return how many warnings it signalled, and true if an error has ended it."
+  "Call FUNCTION. Return the number of warnings that FUNCTION signalled, and true if it signalled an
+error."
   (let ((count 0))
     (handler-bind ((sb-ext:compiler-note #'muffle-warning)
                    (warning (lambda (warning)
@@ -215,13 +218,14 @@ for what it is told about that, and where Quicklisp does."
     (values count nil)))
 
 (defun give-up ()
-  "End this Lisp, with status 2 if sources are at fault; else it may be that compiling helps."
+  "Delete the project's compiled files and exit. The status is 1 if these files were damaged, so
+that compiling again may help, else 2."
   (forget (project-fasls))
   (uiop:quit (if *damaged-p* 1 2)))
 
 (defun load-libraries (names)
-  "Compile and load the libraries called NAMES; anew, if what was compiled of them is damaged. If
-that fails, too, end this Lisp with status 2: one of them does not compile, or is missing."
+  "Compile and load the libraries NAMES. After an error, delete the compiled files of all libraries
+and try again. If the second try fails, too, exit with status 2."
   (flet ((load-them () (mapc #'asdf:load-system names)))
     (handler-case (load-them)
       (error (condition)
@@ -233,14 +237,14 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
             (uiop:quit 2)))))))
 
 (defun load-project (system)
-  "Compile and load SYSTEM, one of the project's. If that fails, end this Lisp."
+  "Compile and load SYSTEM, a system of the project. Exit if that fails."
   (load-libraries (libraries system))
   (when (nth-value 1 (count-troubles (lambda () (asdf:load-system system))))
     (give-up))
   (list-libraries))
 
 (defun load-strictly (system)
-  "Compile and load SYSTEM as LOAD-PROJECT does; a warning in any file of the project is an error."
+  "Compile and load SYSTEM like LOAD-PROJECT, but exit also after a warning in the project's files."
   (when (and *cache* (probe-file (warned-file)))
     (forget (project-fasls)))
   (load-libraries (libraries system))
@@ -253,7 +257,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
   (list-libraries))
 
 (defun load-tests ()
-  "Compile and load the tests, and those of the window where there is what it needs."
+  "Compile and load the tests. If the window's libraries are installed, load its tests, too."
   (load-strictly "ars-magna/tests")
   (unless (some #'missing-p (libraries "ars-magna/clim-tests"))
     (load-strictly "ars-magna/clim-tests")))
@@ -261,7 +265,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 ;;; McCLIM, which only the window needs, is found by ASDF or by an installed Quicklisp.
 
 (defun print-window-libraries ()
-  "Print where McCLIM can be found: asdf, quicklisp or nothing; or why CLX does not work."
+  "Print where McCLIM was found: asdf, quicklisp or nothing. If CLX does not work, print why."
   (call-telling
    (lambda ()
      (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
@@ -270,7 +274,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
                        (t "nothing"))))))
 
 (defun get-window-libraries ()
-  "Load McCLIM; Quicklisp fetches it if needed. If that fails, print why and end this Lisp."
+  "Load McCLIM through Quicklisp. If that fails, print the reason and exit with status 1."
   (handler-case (uiop:symbol-call :ars-magna.clx :get-by-quicklisp)
     (error (condition)
       (format t "~&*** ~A~%" (one-line condition))
@@ -279,7 +283,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
-  "Save a core that runs the prompt, with SYSTEM, in the file named in the environment."
+  "Save a core with SYSTEM loaded that runs the prompt, in the file named in ARS_MAGNA_CORE."
   (load-project system)
   ;; Files in the core must not be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
@@ -289,7 +293,7 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 
 (defun save-window-prompt ()
-  "Save a core of the prompt that can open windows in the file named in the environment."
+  "Save a core of the prompt with McCLIM loaded, in the file named in ARS_MAGNA_CORE."
   (when (missing-p "mcclim/looks")
     (get-window-libraries))
   (save-prompt "ars-magna/clim"))
@@ -297,19 +301,20 @@ that fails, too, end this Lisp with status 2: one of them does not compile, or i
 ;;; The manual.
 
 (defun write-manual ()
-  "Write the manual into the directory named in the environment; exit with status 1 if that fails."
+  "Write the manual into the directory named in ARS_MAGNA_MANUAL. Exit with status 1 after an
+error."
   (load-project "ars-magna/manual")
   (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 
 ;;; The tests.
 
 (defun run-tests (suites &optional seed)
-  "Run SUITES, or all, shuffled if there is a SEED; exit with status 1 if a check fails."
+  "Run SUITES, or all suites, shuffled if there is a SEED. Exit with status 1 if a check fails."
   (load-tests)
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
 
 (defun record-sessions (names)
-  "Write the screens of the newcomer's sessions NAMES, or of all, into their files; exit with status
-1 if one does not get what it waits for."
+  "Record the screens of the newcomer's sessions NAMES, or of all sessions, in their files. Exit
+with status 1 if a session does not get the text that it waits for."
   (load-strictly "ars-magna/tests")
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :record-sessions names) 0 1)))

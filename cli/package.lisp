@@ -1,8 +1,8 @@
 ;;;; package.lisp -- the command-line face: the prompt Robot> and its commands.
 
 (ars-magna.host:define-package :ars-magna.cli
-  (:documentation "Arguments of ./cli/ars-magna, the prompt, the line commands. The only code that
-ends the Lisp that it runs in. Manual 3.7, A and E.")
+  (:documentation "The arguments of ./cli/ars-magna, the prompt and its lines. No other package
+ends the Lisp process. See the manual, 3.7, A and E.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.world :ars-magna.time :ars-magna.robot :ars-magna.run :ars-magna.command
         :ars-magna.display)

@@ -141,7 +141,7 @@
                       '("fork" "(+ 1 2)" "quit" "(+ 2 2)"))))
 
 (test fork.says-what-it-takes
-  (is-true (has-words-p (complaint "fork off") "in no fork"))
+  (is-true (has-words-p (complaint "fork off") "not in a fork"))
   (is-true (has-words-p (complaint "fork soon") "integer")))
 
 ;;; Worlds.

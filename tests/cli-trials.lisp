@@ -23,7 +23,7 @@
                           (format nil "The trial is over at tick ~D: success. angle " ticks)
                           (format nil "Tick ~D, over." ticks)
                           "*ERROR* -> The trial is over." "started at tick 0"
-                          "Out of the trial, in parlour."))
+                          "You have left the trial for parlour."))
     (is (string= "0" (first (last lines))) "the prompt's own run has not moved")))
 
 (test trial.is-the-very-run
@@ -35,7 +35,7 @@
            (type-lines (list (format nil "trial trying ~A 2 ~A" way path) "plans" "step" "map 3"
                              "plan-tree" "status" "things" "resume")
                        :batch t)
-         (is-true (find "It is as in its row." lines :test #'string=) "~A: ~S" way lines)
+         (is-true (find "The result is as in its row." lines :test #'string=) "~A: ~S" way lines)
          (is (>= 1 errors) "none but that there is no plan in ~A" way))))))
 
 (test trial.says-when-it-is-changed
@@ -56,7 +56,7 @@
                                    "step" "trial off" "trial"))))
     (is-true (has-words-p text "Trial 1 of trying, way=badly: seed 1, at most 50 ticks"
                           "over at tick 7: failure (no-luck)"
-                          "Trial 2 of trying, way=well: seed 2" "Tick 1." "Out of the trial"
+                          "Trial 2 of trying, way=well: seed 2" "Tick 1." "You have left the trial"
                           "  trying")))
   (is (string= "5" (first (last (trial-lines "step" "trial off" "(+ 2 3)")))))
   (is (null (trial-lines "quit" "(+ 2 3)"))))
@@ -79,7 +79,7 @@
   (is-true (has-words-p (complaint "trial tryingg 1 1") "no experiment" "trying"))
   (is-true (has-words-p (complaint "trial trying by- 1") "way=by-plan" "way=by-failing-plan"))
   (is-true (has-words-p (complaint "trial trying nonsense 1") "nonsense" "1: way=well"))
-  (is-true (has-words-p (complaint "trial off") "in no trial")))
+  (is-true (has-words-p (complaint "trial off") "not in a trial")))
 
 (test trial.is-interrupted-by-control-c
   (let ((text (joined (type-at-terminal "trial interrupting all 1" "step 6" "(+ 40 2)" "resume"))))
@@ -87,7 +87,7 @@
                           "over at tick 7: success")))
   (let ((text (joined (type-at-terminal "trial interrupting-twice all 1" "step 6" "(+ 40 2)"
                                         "trial off"))))
-    (is-true (has-words-p text "The trial has been left." "Interrupted." "42" "in no trial")))
+    (is-true (has-words-p text "The trial has been left." "Interrupted." "42" "not in a trial")))
   (let ((text (joined (type-lines '("trial interrupting all 1" "step 6" "(+ 40 2)")))))
     (is-true (has-words-p text "The trial has been left." "Interrupted." "42")))
   (is (= 130 (catch 'cli::leave

@@ -7,10 +7,11 @@
 ;;; those of Emacs and of shells. A pasted text may have several lines.
 
 (defvar *changes* (make-hash-table)
-  "Table from keys to functions of a text and point, which return others, and what was killed.")
+  "Table from keys to functions that change a line. Such a function takes the text and the position
+of the cursor. It returns the new text, the new position and the killed text, if any.")
 
 (defmacro define-key (table keys lambda-list documentation &body body)
-  "Define what each of KEYS does: TABLE has for it a function of LAMBDA-LIST that runs BODY."
+  "Define each of KEYS: its entry in TABLE is a function of LAMBDA-LIST that runs BODY."
   `(dolist (key ',keys)
      (setf (gethash key ,table)
            (lambda ,lambda-list ,documentation (declare (ignorable ,@lambda-list)) ,@body))))
@@ -25,13 +26,14 @@
   (or (position #\Newline text :start point) (length text)))
 
 (defun before-word (text point &optional (in-word-p #'alphanumericp))
-  "Return where the word in TEXT begins that ends at POINT or before."
+  "Return the start of the word in TEXT at or before POINT. IN-WORD-P tells which characters are in
+words."
   (let* ((end (position-if in-word-p text :end point :from-end t))
          (gap (and end (position-if-not in-word-p text :end end :from-end t))))
     (if gap (1+ gap) 0)))
 
 (defun after-word (text point)
-  "Return where the word in TEXT ends that begins at POINT or after."
+  "Return the end of the word in TEXT at or after POINT."
   (let ((start (position-if #'alphanumericp text :start point)))
     (or (and start (position-if-not #'alphanumericp text :start start))
         (length text))))
@@ -51,15 +53,15 @@
   (values text (max 0 (1- point))))
 
 (define-key *changes* (:control-f :right) (text point)
-  "Go one character on."
+  "Go one character forward."
   (values text (min (length text) (1+ point))))
 
 (define-key *changes* (:meta-b) (text point)
-  "Go to the beginning of the word, or of the one before."
+  "Go back to the beginning of a word."
   (values text (before-word text point)))
 
 (define-key *changes* (:meta-f) (text point)
-  "Go to the end of the word, or of the next."
+  "Go forward to the end of a word."
   (values text (after-word text point)))
 
 ;;; Changing.
@@ -69,11 +71,11 @@
           (+ point (length string))))
 
 (defun deleted (text start end)
-  "Return TEXT without its part from START to END, and START."
+  "Return TEXT without the characters from START to END, and START, the new cursor position."
   (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
 
 (defun killed (text start end)
-  "Return what DELETED returns, and the deleted text as a third value."
+  "Return the values of DELETED, and the deleted text as a third value."
   (multiple-value-call #'values (deleted text start end) (subseq text start end)))
 
 (define-key *changes* (:rubout) (text point)
@@ -85,15 +87,15 @@
   (deleted text point (min (length text) (1+ point))))
 
 (define-key *changes* (:control-k) (text point)
-  "Kill what follows, up to the end of the line."
+  "Kill the text from the cursor to the end of the line."
   (killed text point (line-end text point)))
 
 (define-key *changes* (:control-u) (text point)
-  "Kill the text before the cursor, from the beginning of the line on."
+  "Kill the text from the beginning of the line to the cursor."
   (killed text (line-start text point) point))
 
 (define-key *changes* (:control-w) (text point)
-  "Kill what comes before, back to a blank."
+  "Kill the text before the cursor, back to a blank."
   (killed text (before-word text point (lambda (char) (not (blank-p char)))) point))
 
 (define-key *changes* (:meta-rubout) (text point)

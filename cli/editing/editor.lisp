@@ -23,14 +23,14 @@
    (older :initform '() :accessor edited-older)
    (newer :initform '() :accessor edited-newer))
   (:documentation "The text typed at this process's terminal, with line editing and history. The
-line is shown on CONSOLE."))
+line being typed is shown on CONSOLE."))
 
 (defmethod initialize-instance :after ((stream edited-text) &key)
   (setf (console-edited-p (edited-console stream)) t))
 
 (defgeneric take-keys (stream &key interrupts)
-  (:documentation "Pass each key on to STREAM at once; if INTERRUPTS is true, except Control-C and
-the like, which are signals.")
+  (:documentation "Make the terminal pass each key to STREAM at once. If INTERRUPTS is true,
+Control-C and similar keys are signals instead.")
   (:method ((stream edited-text) &key interrupts)
     (hand-over-keys :interrupts interrupts)))
 
@@ -40,7 +40,7 @@ the like, which are signals.")
   (change-line (edited-console stream) (constantly nil)))
 
 (defgeneric suspend-prompt (stream)
-  (:documentation "Suspend this process until its user, at STREAM, resumes it.")
+  (:documentation "Suspend this process until the user at STREAM resumes it.")
   (:method ((stream edited-text))
     (hide-line (edited-console stream))
     (mark-pastes (edited-console stream) nil)
@@ -64,7 +64,8 @@ the like, which are signals.")
              (stream-error () nil)))))
 
 (defun octet-reader (stream)
-  "Return a function that returns the next octet of STREAM; with an octet, it puts that back."
+  "Return a function that returns the next octet of STREAM. Called with an octet, the function puts
+the octet back into STREAM."
   (lambda (&optional octet)
     (if octet
         (progn (put-back-octet (edited-ahead stream) octet) nil)
@@ -81,11 +82,12 @@ the like, which are signals.")
     (not (empty-queue-p ahead))))
 
 (defgeneric keep-ahead (stream)
-  (:documentation "Save type-ahead of STREAM where other readers find it.")
+  (:documentation "Save the type-ahead of STREAM for its next reader.")
   (:method ((stream edited-text))))
 
 (defun mark-pastes (console on)
-  "Make the terminal mark pasted text, or no longer if ON is NIL."
+  "Switch bracketed paste mode of the terminal of CONSOLE on, or off if ON is NIL. In this mode the
+terminal marks pasted text."
   (with-console (stream console)
     (write-string (paste-in-brackets on) stream)
     (finish-output stream)))
@@ -121,26 +123,26 @@ the like, which are signals.")
 ;;; Keys that do other things.
 
 (defvar *actions* (make-hash-table)
-  "Table from keys to functions of the stream. If one returns a text, or :EOF, the line has ended;
-other values do not matter.")
+  "Table from keys to functions of the input stream. If a function returns a text or :EOF, its key
+ends the line; other values are ignored.")
 
 (define-key *actions* (:return) (stream)
   "End the line."
   (typed-text-of stream))
 
 (define-key *actions* (:control-c) (stream)
-  "Clear the line; if there is nothing typed, or a program has asked for it, end what waits for it."
+  "Clear the line. If the line is empty, or a program reads it, interrupt that program instead."
   (if (or (string= "" (typed-text-of stream)) (console-asked-p (edited-console stream)))
       (handle-interrupt)
       (change-to stream "" 0)))
 
 (define-key *actions* (:control-d) (stream)
-  "Delete the character under the cursor; if there is nothing typed, end the input."
+  "Delete the character under the cursor; if the line is empty, end the input."
   (cond ((string= "" (typed-text-of stream)) :eof)
         (t (do-change stream (gethash :delete *changes*)))))
 
 (define-key *actions* (:control-y) (stream)
-  "Insert what was killed last."
+  "Insert the text that was killed last."
   (insert-typed stream (edited-killed stream)))
 
 (define-key *actions* (:control-l) (stream)
@@ -148,7 +150,7 @@ other values do not matter.")
   (clear-window (edited-console stream)))
 
 (define-key *actions* (:control-z) (stream)
-  "Stop this process until its user wants it back."
+  "Suspend this process until the user resumes it."
   (suspend-prompt stream))
 
 (define-key *actions* (:control-\\) (stream)
@@ -160,7 +162,8 @@ other values do not matter.")
 ;;; The history.
 
 (defun show-entry (stream from to)
-  "Show the first entry of the place FROM of STREAM; what is shown now goes to the place TO."
+  "Show the first history entry in the slot FROM of STREAM. Push the text shown until now onto the
+slot TO."
   (let ((entry (first (slot-value stream from))))
     (when entry
       (pop (slot-value stream from))
@@ -168,7 +171,7 @@ other values do not matter.")
       (change-to stream entry (length entry)))))
 
 (define-key *actions* (:up :control-p) (stream)
-  "Go back in the history."
+  "Go to the line above, or to the previous history entry."
   (let* ((line (line-of stream))
          (start (line-start (drawn-line-text line) (drawn-line-point line))))
     (if (zerop start)
@@ -176,7 +179,7 @@ other values do not matter.")
         (change-to stream (drawn-line-text line) (1- start)))))
 
 (define-key *actions* (:down :control-n) (stream)
-  "Go on in the history."
+  "Go to the line below, or to the next history entry."
   (let* ((line (line-of stream))
          (text (drawn-line-text line))
          (end (line-end text (drawn-line-point line))))
@@ -187,16 +190,16 @@ other values do not matter.")
 ;;; Reading a line.
 
 (defun insert-pasted (stream text)
-  "Insert TEXT, as pasted; tell if lines at its end are left out as answers."
+  "Insert TEXT, which was pasted. Report if lines at its end are taken for output and left out."
   (let ((count (answers-at-end text)))
     (when (plusp count)
-      (write-fresh (format nil "~D line~:P after the last prompt that was pasted ~:*~[~;is~:;are~] ~
-                                left out, as answers.~%" count)
+      (write-fresh (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken ~
+                                for output and left out.~%" count)
                    (edited-console stream))))
   (insert-typed stream (without-answers text)))
 
 (defun enter-chosen (stream text)
-  "Make TEXT the line; what was being typed comes again after it. Return TEXT."
+  "Make TEXT the line, and return TEXT. The text being typed is kept for the next line."
   (let ((line (line-of stream)))
     (setf (edited-put-off stream)
           (and (string/= "" (drawn-line-text line))
@@ -205,7 +208,7 @@ other values do not matter.")
   text)
 
 (defun do-key (stream key)
-  "Handle KEY. Return a text, or :EOF, if the line has ended."
+  "Handle KEY. If KEY ends the line, return the text of the line, or :EOF; else return NIL."
   (cond ((stringp key) (insert-typed stream key) nil)
         ((consp key) (ecase (first key)
                        (:paste (insert-pasted stream (second key)) nil)
@@ -229,8 +232,9 @@ other values do not matter.")
       (take-keys stream :interrupts t))))
 
 (defun insert-typed-text (stream text)
-  "Insert TEXT, and what else has been typed by now: so a text that a terminal pastes without
-marking it is drawn once. Return a text, or :EOF, if the line has ended by that."
+  "Insert TEXT and all characters that are available after it, and draw the line once. So unmarked
+pasted text is drawn fast. If the key after the text ends the line, return the text of the line, or
+:EOF."
   (let ((texts (list text)) (next :none))
     (loop while (and (eq next :none) (octets-at-hand-p stream))
           do (let ((key (read-key (octet-reader stream))))
@@ -239,7 +243,7 @@ marking it is drawn once. Return a text, or :EOF, if the line has ended by that.
     (unless (eq next :none) (do-key stream next))))
 
 (defun do-keys (stream)
-  "Handle keys until the line has ended. Return what EDIT-LINE does."
+  "Handle keys until one ends the line. Return the text of the line, or :EOF."
   (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
   (loop for key = (read-key (octet-reader stream))
         for end = (if (stringp key) (insert-typed-text stream key) (do-key stream key))
@@ -287,8 +291,8 @@ marking it is drawn once. Return a text, or :EOF, if the line has ended by that.
 ;;; cancels; any other key takes the found line and acts on it.
 
 (defun found-entry (stream sought skipped)
-  "Return the entry of the history with SOUGHT in it that comes before SKIPPED others, and where in
-it SOUGHT begins; NIL if there is none."
+  "Search the history for SOUGHT, from the newest entry back, and skip SKIPPED matches. Return the
+entry found and the position of SOUGHT in the entry; NIL if there is none."
   (let* ((entries (remove-if-not (lambda (entry) (search sought entry :test #'char-equal))
                                  (remove-duplicates (history-entries (edited-history stream))
                                                     :test #'string= :from-end t)))
@@ -296,7 +300,7 @@ it SOUGHT begins; NIL if there is none."
     (values entry (and entry (search sought entry :test #'char-equal)))))
 
 (defun show-search (stream sought skipped)
-  "Show the entry found for SOUGHT. Return NIL if there is none."
+  "Show and return the history entry that FOUND-ENTRY returns for SOUGHT and SKIPPED, or NIL."
   (multiple-value-bind (entry place) (found-entry stream sought skipped)
     (change-line (edited-console stream)
                  (lambda (line)
@@ -309,7 +313,8 @@ it SOUGHT begins; NIL if there is none."
     entry))
 
 (defun search-keys (stream)
-  "Read keys of the search text. Return the first key that is not part of it."
+  "Read a search text key by key, and show the entry found. Return the first key that does not
+belong to the search."
   (loop with sought = "" and skipped = 0
         for key = (read-key (octet-reader stream))
         do (cond ((stringp key) (setf sought (uiop:strcat sought key)
@@ -322,7 +327,7 @@ it SOUGHT begins; NIL if there is none."
            (show-search stream sought skipped)))
 
 (define-key *actions* (:control-r) (stream)
-  "Look for a line in the history."
+  "Search the history for a line."
   (let* ((line (line-of stream))
          (prompt (drawn-line-label line))
          (text (drawn-line-text line))

@@ -8,12 +8,12 @@
   ((text :initarg :text :reader grown-text)
    (position :initarg :position :accessor grown-position)
    (more :initarg :more :reader text-grower))
-  (:documentation "The characters of TEXT, which has a fill pointer, from POSITION on. At its end,
-the function MORE returns the next line for the text so far, which follows after a newline; NIL is
-the end."))
+  (:documentation "A stream of the characters of TEXT from POSITION on. TEXT has a fill pointer. At
+the end of TEXT, the function MORE is called with TEXT. MORE returns the next line, which is
+appended after a newline, or NIL at the end of the stream."))
 
 (defun extensible-text (text)
-  "Return TEXT if lines can be appended to it, or else a copy to which they can."
+  "Return TEXT if it has a fill pointer, so that lines can be appended; else a copy that has one."
   (if (array-has-fill-pointer-p text)
       text
       (make-array (length text) :element-type 'character :adjustable t :fill-pointer t
@@ -24,7 +24,8 @@ the end."))
   (loop for char across line do (vector-push-extend char text)))
 
 (defun text-stream (text start more)
-  "Return a growing text of TEXT from START on; see MORE there."
+  "Return a stream of TEXT from START on. The function MORE returns further lines, as in
+GROWING-TEXT."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
 (defmethod stream-read-char ((stream growing-text))
@@ -48,13 +49,14 @@ the end."))
 ;;; and \\ for a backslash. Several sessions may add to it at once. A file that cannot be read or
 ;;; written is ignored.
 
-(defparameter *history-limit* 1000 "How many entries a history has.")
+(defparameter *history-limit* 1000 "The largest number of entries in the history.")
 
 (defstruct (line-history (:conc-name history-) (:copier nil)
                          (:constructor %make-history))
-  "Typed lines, newest first. FILE is the pathname of the history file, or NIL; UNSAVED-P is true if
-the newest entry is not in it. GROWING is the text that the last line continues, or NIL: the newest
-entry then has a fill pointer."
+  "The history: ENTRIES are typed lines, newest first. FILE is the pathname of the history file, or
+NIL. UNSAVED-P is true if the newest entry is not in the file. If the last line was appended to the
+newest entry, GROWING is the text before that line, and the entry has a fill pointer; else GROWING
+is NIL."
   (entries '() :type list)
   (growing nil :type (or null string))
   (file nil :type (or null pathname) :read-only t)
@@ -83,7 +85,7 @@ entry then has a fill pointer."
     (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
 
 (defun shorten-file (file entries)
-  "Cut FILE down to ENTRIES, newest first, if it has grown long."
+  "Rewrite FILE with only ENTRIES, newest first, if FILE has more than twice *HISTORY-LIMIT* lines."
   (when (< (* 2 *history-limit*) (count #\Newline (file-text file)))
     (call-replacing-file (lambda (out)
                            (format out "~{~A~%~}" (mapcar #'entry-on-a-line (reverse entries))))
@@ -111,7 +113,7 @@ entry then has a fill pointer."
 ;;; Entries.
 
 (defun add-entry (history text)
-  "Make TEXT, a typed line, the newest entry, unless it is blank or equals the newest."
+  "Add TEXT, a typed line, to HISTORY, unless TEXT is blank or equals the newest entry."
   (save-entry history)
   (setf (history-growing history) nil)
   (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
@@ -125,7 +127,8 @@ entry then has a fill pointer."
 
 ;; The same text need not be compared for each line to see that it continues.
 (defun amend-entry (history line before)
-  "Append LINE, which continues the text BEFORE, to the newest entry, if BEFORE begins with that."
+  "Append LINE to the newest entry of HISTORY, if BEFORE, the text that LINE continues, begins with
+that entry."
   (let ((newest (first (history-entries history)))
         (same-p (eq before (history-growing history))))
     (when (and newest (or same-p (begins-with-p before newest)))

@@ -13,10 +13,10 @@
     ("1~" :home) ("7~" :home) ("4~" :end) ("8~" :end) ("3~" :delete)
     ("1;5C" :meta-f) ("1;5D" :meta-b) ("1;3C" :meta-f) ("1;3D" :meta-b)
     ("200~" :paste) ("202~" :entry))
-  "Lists (code key): what terminals send after Escape and [, or Escape and O.")
+  "Lists (code key): a terminal sends the code after Escape [ or Escape O when the key is pressed.")
 
 (defun read-code (next)
-  "Return the code that NEXT returns: everything up to the first letter or ~."
+  "Read a code from NEXT, up to the first letter or tilde, and return it."
   (with-output-to-string (out)
     (loop for char = (funcall next)
           while char
@@ -24,7 +24,8 @@
           until (or (alpha-char-p char) (char= char #\~)))))
 
 (defun read-text (lead next)
-  "Return the character in UTF-8 that begins with the octet LEAD, as a string."
+  "Read from NEXT the rest of the UTF-8 character that begins with the octet LEAD. Return the
+character as a string."
   (decoded (with-output-to-string (out)
              (write-char lead out)
              (loop repeat (let ((code (char-code lead)))
@@ -42,7 +43,7 @@
                       (write-char char out)))))
 
 (defun with-newlines (text)
-  "Return TEXT, as pasted, with newlines between its lines, but none at its end."
+  "Return TEXT, which was pasted, with line ends as newlines, but without newlines at its end."
   (string-right-trim
    '(#\Newline)
    (with-output-to-string (out)
@@ -52,7 +53,7 @@
              do (write-char (if (char= char #\Return) #\Newline char) out)))))
 
 (defun read-paste (next)
-  "Return the text from NEXT up to the code that ends pasted text."
+  "Read pasted text from NEXT, up to the code that ends such text, and return the text."
   (loop with end = (paste-ended)
         with octets = (make-array 100 :element-type 'character :adjustable t :fill-pointer 0)
         for char = (funcall next)
@@ -78,7 +79,7 @@
       (t (if (graphic-char-p char) (key-called "meta-~A" char) :unknown)))))
 
 (defun read-key (next)
-  "Return the next key, or NIL at the end."
+  "Read the next key from NEXT and return it; NIL at the end of the input."
   (let ((char (funcall next)))
     (cond ((null char) nil)
           ((find char '(#\Return #\Newline)) :return)
@@ -91,14 +92,15 @@
 ;;; The reverse, for keys that are pressed elsewhere than at a terminal.
 
 (defun escaped-key (key)
-  "Return what a terminal hands over for KEY, a keyword, if that begins with escape; else NIL."
+  "Return the escape sequence that a terminal sends for KEY, a keyword; NIL if there is none."
   (let ((code (find key *keys-of-codes* :key #'second)) (name (string-downcase key)))
     (cond (code (escape "~A" (first code)))
           ((eq key :meta-rubout) (format nil "~C~C" +escape+ #\Rubout))
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
 
 (defun octets-of-key (key)
-  "Return what a terminal sends for KEY, one character for each octet; \"\" if it has no such key."
+  "Return the octets that a terminal sends for KEY, as a string with one character for each. The
+string is empty if no terminal has KEY."
   (cond ((stringp key) (encoded key))
         ((consp key) (format nil "~A~A~A" (escaped-key (first key)) (encoded (second key))
                              (paste-ended)))
@@ -118,8 +120,8 @@
 (defparameter *control-c* (code-char 3))
 
 (defstruct (octet-queue (:copier nil) (:constructor make-octet-queue ()))
-  "OCTETS, a list of characters, whose last cons is LAST. INTERRUPTS is the number of Control-C
-among them."
+  "A queue of octets. OCTETS is a list of characters, LAST is its last cons, INTERRUPTS the number
+of Control-C in OCTETS."
   (octets '() :type list)
   (last '() :type list)
   (interrupts 0 :type (integer 0)))
@@ -136,7 +138,7 @@ among them."
     octet))
 
 (defun add-octets (queue octets)
-  "Append OCTETS, a fresh list, to those of QUEUE."
+  "Append OCTETS, a fresh list, to QUEUE."
   (when octets
     (if (empty-queue-p queue)
         (setf (octet-queue-octets queue) octets)
@@ -155,7 +157,7 @@ among them."
   (shiftf (octet-queue-octets queue) '()))
 
 (defun forget-until-interrupt (queue)
-  "Take all up to the last control C out of QUEUE. True if there is one."
+  "Remove all octets up to the last Control-C from QUEUE. Return true if there was a Control-C."
   (when (plusp (octet-queue-interrupts queue))
     (loop until (zerop (octet-queue-interrupts queue)) do (take-octet queue))
     t))

@@ -12,13 +12,13 @@
       (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
 
 (defun comment-p (text)
-  "True if TEXT has nothing to run: it is blank, or a comment after ; or a # that stands alone."
+  "True if TEXT has nothing to run: it is blank, or a comment that begins with ; or a separate #."
   (let ((start (position-if-not #'blank-p text)))
     (or (null start) (comment-at-p text start))))
 
 ;; Comments #| ... |#, which may end in the line, are handled elsewhere; #FOO is a word like others.
 (defun sharp-form-p (text start)
-  "True if a form of Lisp begins in TEXT at START with #, such as #'car, #(1 2), #xFF or #p\"f\"."
+  "True if TEXT has, at START, a Lisp form that begins with #: #'car, #(1 2), #xFF, #p\"f\" ..."
   (flet ((char-at (position) (and (< position (length text)) (char text position))))
     (let ((first (char-at (1+ start))) (second (char-at (+ 2 start))))
       (and (eql #\# (char-at start))
@@ -34,7 +34,7 @@
 
 ;; As reading 205 says.
 (defun lisp-p (text)
-  "True if TEXT is Lisp: it begins with a parenthesis, a form with #, or Nisp's mark of a slot."
+  "True if TEXT is Lisp: it begins with a parenthesis, a form such as #'car, or Nisp's !>."
   (let ((start (position-if-not #'blank-p text)))
     (or (find (char text start) "()")
         (sharp-form-p text start)
@@ -43,27 +43,28 @@
 ;;; The words of a line.
 
 (defun skip-blanks (text start)
-  "Return where, from START, TEXT continues after blanks; its length if only a comment follows."
+  "Return the position of the first word in TEXT from START on; the length of TEXT if only blanks or
+a comment follow."
   (let ((position (position-if-not #'blank-p text :start start)))
     (if (and position (not (comment-at-p text position)))
         position
         (length text))))
 
 (defun word-end (text start)
-  "Return where the word ends that begins in TEXT at START: at a blank, or a comment after ;."
+  "Return the end of the word in TEXT that begins at START: the next blank or semicolon."
   (or (position-if (lambda (char) (or (blank-p char) (char= #\; char))) text :start start)
       (length text)))
 
 (defun token-end (text start)
-  "Return where the token that begins in TEXT at START ends. A token in double quotes may have
-blanks, and extends to the end of TEXT if there is no second quote."
+  "Return the end of the token in TEXT that begins at START. A token in double quotes may contain
+blanks; without a second quote it extends to the end of TEXT."
   (if (char= (char text start) #\")
       (let ((quote (position #\" text :start (1+ start))))
         (if quote (1+ quote) (length text)))
       (word-end text start)))
 
 (defun split-line (text)
-  "Return the first word of TEXT and what follows it."
+  "Return the first word of TEXT, and the rest of TEXT."
   (let* ((start (position-if-not #'blank-p text))
          (end (token-end text start)))
     (values (subseq text start end) (subseq text end))))
@@ -75,7 +76,7 @@ blanks, and extends to the end of TEXT if there is no second quote."
 ;;; first word ends with a colon. A warning or an error is known by its beginning. Other answers are
 ;;; lines without a prompt among lines with prompts.
 
-(defparameter *labels* '("Robot>" "Break>") "What prompts look like.")
+(defparameter *labels* '("Robot>" "Break>") "The prompts that pasted lines may begin with.")
 
 (defun message-p (text)
   (let* ((start (position-if-not #'blank-p text))
@@ -88,13 +89,14 @@ blanks, and extends to the end of TEXT if there is no second quote."
         '("*WARNING* -> " "*ERROR* -> " "*BREAK* -> ")))
 
 (defun after-label (text)
-  "Return the text after the prompt at the beginning of TEXT, a line, or NIL if it has none."
+  "Return the rest of TEXT, a line, after its prompt; NIL if TEXT does not begin with a prompt."
   (let* ((text (subseq text (or (position-if-not #'blank-p text) 0)))
          (label (find-if (lambda (label) (starts-with-subseq label text)) *labels*)))
     (and label (subseq text (length label)))))
 
 (defun without-label (text)
-  "Return TEXT, a line as typed, without the prompts that it begins with; nothing of a message."
+  "Return TEXT, a line, without the prompts at its beginning. If TEXT is a message, a warning or an
+error, return an empty string."
   (let ((rest (after-label text)))
     (cond ((warning-p text) "")
           ((null rest) text)
@@ -108,7 +110,8 @@ blanks, and extends to the end of TEXT if there is no second quote."
   (starts-with-subseq +continuation-prompt+ text))
 
 (defun line-pasted (text before)
-  "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if it continues another line."
+  "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if TEXT continues another
+line."
   (cond ((null before) (without-label text))
         ((continuation-prompt-p text) (subseq text (length +continuation-prompt+)))
         (t text)))
@@ -116,28 +119,29 @@ blanks, and extends to the end of TEXT if there is no second quote."
 ;;; If several lines were pasted, prompts tell which of them were typed.
 
 (defun typed-line-of (line)
-  "Return LINE, as pasted among others with prompts, without its own; NIL if it was not typed."
+  "Return the part of LINE, a pasted line, that was typed after a prompt; NIL if there is none."
   (cond ((continuation-prompt-p line) (line-pasted line t))
         ((after-label line) (let ((text (without-label line)))
                              (and (string/= "" text) text)))))
 
 (defun read-over (text more)
-  "Read past the form that TEXT, as typed, begins, if that is Lisp. MORE, a function of the text so
-far, returns the next line of it, or signals an error at the end."
+  "If TEXT begins with a Lisp form, read that form and discard it. MORE, a function of the text read
+so far, returns the next line of the form, or signals an error at the end."
   (when (and (not (comment-p text)) (lisp-p text))
     (handler-case (let ((*read-suppress* t))
                     (read-preserving-whitespace (text-stream text 0 more)))
       (error () nil))))
 
 (defun rest-of-form (text lines)
-  "Return which of LINES, as pasted below TEXT, are the rest of the form that it begins, without
-their prompts, and the LINES below them. What was typed at another prompt is not."
+  "Divide LINES, which were pasted below TEXT. Return the lines that complete the form begun in
+TEXT, without prompts, and the lines after the form. A line typed at a prompt does not belong to the
+form."
   (let ((taken '()))
     (flet ((next-of-form (text)
              (declare (ignore text))
              (loop for line = (first lines)
                    when (or (null lines) (and (after-label line) (typed-line-of line)))
-                     do (error "No line is left for the form.")
+                     do (error "No pasted line is left to complete the form.")
                    do (pop lines)
                    unless (after-label line)
                      return (first (push (or (typed-line-of line) line) taken)))))
@@ -145,8 +149,8 @@ their prompts, and the LINES below them. What was typed at another prompt is not
       (values (nreverse taken) lines))))
 
 (defun typed-by-label (lines)
-  "Return the typed lines among LINES, as pasted, the first of which has a prompt. Lines below an
-incomplete form are the rest of it."
+  "Return the typed lines among LINES, which were pasted; the first line has a prompt. Lines below
+an incomplete form are taken for the rest of the form."
   (loop while lines
         for line = (pop lines)
         for typed = (typed-line-of line)
@@ -158,16 +162,17 @@ incomplete form are the rest of it."
                          rest)))
 
 (defun typed-lines (lines)
-  "Return the typed lines among LINES, as pasted: all up to the first prompt, which may be the rest
-of one; those with prompts, except messages; and the rests of their forms. Return LINES if none has
-a prompt."
+  "Return the typed lines among LINES, which were pasted. These are the lines before the first
+prompt, lines with prompts except messages, and lines that complete a form. If no line has a prompt,
+return LINES."
   (let ((start (position-if #'after-label lines)))
     (if start
         (append (subseq lines 0 start) (typed-by-label (nthcdr start lines)))
         lines)))
 
 (defun answers-at-end (text)
-  "Return how many lines of TEXT, as pasted, below the last with a prompt are left out as answers."
+  "Return the number of lines of TEXT, which was pasted, that follow the last prompt and are taken
+for output."
   (let* ((lines (lines-in text))
          (start (position-if #'after-label lines :from-end t))
          (last (and start (nthcdr start lines)))

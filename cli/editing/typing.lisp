@@ -10,7 +10,8 @@
 ;;; the prompt, such as Tab, do nothing.
 
 (defstruct (ahead (:copier nil))
-  "What was typed ahead. LINES wait, the oldest first; TEXT is being typed, the cursor at POINT."
+  "Input typed before it is read. LINES are finished lines, the oldest first. TEXT is the line being
+typed, POINT the cursor's position in TEXT."
   (lines '() :type list)
   (text "" :type string)
   (point 0 :type (integer 0)))
@@ -25,7 +26,7 @@
     (inserted text (ahead-text ahead) (ahead-point ahead))))
 
 (defun enter-ahead (ahead lines)
-  "Append LINES to the waiting lines of AHEAD."
+  "Append LINES to the finished lines of AHEAD."
   (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
 
 (defun type-last-again (ahead)
@@ -35,7 +36,8 @@
       (change-ahead ahead line (length line)))))
 
 (defun show-neighbour (ahead entries step)
-  "Replace the text typed in AHEAD by that STEP further in ENTRIES; before the first is \"\"."
+  "Replace the text of AHEAD by an older line of the history if STEP is 1, a newer one if STEP is
+-1. ENTRIES are the lines before AHEAD, the newest first."
   (let* ((entries (cons "" (append (reverse (ahead-lines ahead)) entries)))
          (place (position (ahead-text ahead) entries :test #'string=))
          (next (and place (+ place step))))
@@ -43,7 +45,7 @@
       (change-ahead ahead (nth next entries) (length (nth next entries))))))
 
 (defun do-key-ahead (ahead key entries)
-  "Do to AHEAD what KEY does. ENTRIES, the newest first, were entered before its lines."
+  "Apply KEY to AHEAD. ENTRIES are the lines of the history before AHEAD, the newest first."
   (cond ((stringp key) (insert-ahead ahead key))
         ((consp key) (destructuring-bind (kind text) key
                        (ecase kind
@@ -63,14 +65,15 @@
 ;;; From octets, and to octets.
 
 (defun text-reader (text)
-  "Return a function that returns the next character of TEXT, or NIL; an argument steps back."
+  "Return a function that returns the next character of TEXT, or NIL at the end. Called with an
+argument, the function steps back by a character."
   (let ((position 0))
     (lambda (&optional again)
       (cond (again (decf position) nil)
             ((< position (length text)) (prog1 (char text position) (incf position)))))))
 
 (defun ahead-in (octets entries)
-  "Return what OCTETS, a string that has not been read yet, come to after ENTRIES."
+  "Return the type-ahead in OCTETS, an unread string. ENTRIES are as for DO-KEY-AHEAD."
   (loop with ahead = (make-ahead)
         with next = (text-reader octets)
         for key = (read-key next)
@@ -89,7 +92,7 @@
 ;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
 (defun escape-codes-p (stream)
-  "True if STREAM, of this process, is a terminal that interprets escape codes."
+  "True if STREAM is a terminal that interprets escape codes."
   (and (interactive-stream-p stream)
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
@@ -103,7 +106,8 @@
     (and name (string/= name "") (native-path name))))
 
 (defun standard-input (console plain)
-  "Return the typed input of this process, edited on CONSOLE if that is possible and PLAIN is NIL."
+  "Return a stream of the lines of the standard input. They are edited on CONSOLE if the terminal
+allows it and PLAIN is NIL."
   (let ((octets (octet-input 0)))
     (if (and (not plain) (console-window console) (escape-codes-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
@@ -111,7 +115,8 @@
         (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
 
 (defgeneric call-typing (function input)
-  (:documentation "Call FUNCTION, which reads lines from INPUT.")
+  (:documentation "Call FUNCTION, which reads lines from INPUT. Prepare the terminal before, and
+restore it afterwards.")
   (:method (function input)
     (declare (ignore input))
     (funcall function))
@@ -124,13 +129,13 @@
         (mark-pastes console nil)))))
 
 (defgeneric keep-lines (input)
-  (:documentation "Save all lines that were typed into INPUT, however this process ends.")
+  (:documentation "Save the history of INPUT now, before this process may end.")
   (:method (input))
   (:method ((input edited-text)) (save-entry (edited-history input))))
 
 (defgeneric remember-line (input line before)
-  (:documentation "Put LINE into the history of INPUT, joined to the text BEFORE, if that is not
-NIL.")
+  (:documentation "Add LINE to the history of INPUT. If BEFORE is not NIL, LINE continues the text
+BEFORE and is appended to that entry.")
   (:method (input line before)
     (declare (ignore input line before)))
   (:method ((input edited-text) line before)
@@ -142,8 +147,8 @@ NIL.")
 ;;; line at once counts as pasted, too: no user types that fast, except ahead.
 
 (defgeneric pasted-lines-left-p (input)
-  (:documentation "True if lines that were pasted into INPUT, with the one read last, wait to be
-read.")
+  (:documentation "True if the line read last was pasted into INPUT together with lines that are
+still unread.")
   (:method (input)
     (declare (ignore input))
     nil)
@@ -155,7 +160,7 @@ read.")
     (and (or (edited-lines input) (whole-line-p (edited-ahead input))) t)))
 
 (defgeneric take-waiting (input)
-  (:documentation "Return the lines that wait to be read of INPUT, and leave them unread.")
+  (:documentation "Remove the waiting lines from INPUT and return them.")
   (:method (input)
     (declare (ignore input))
     '())
@@ -164,8 +169,8 @@ read.")
     (append (shiftf (edited-lines input) '()) (take-lines-ahead input))))
 
 (defun take-lines-ahead (input)
-  "Return the lines that came into INPUT all at once with the one read last, and leave them unread.
-What is no whole line is being typed."
+  "Remove the finished lines of type-ahead from INPUT and return them. An unfinished last line
+becomes the line being typed."
   (when (whole-line-p (edited-ahead input))
     (let ((ahead (ahead-in (coerce (take-all-octets (edited-ahead input)) 'string) '())))
       (unless (string= "" (ahead-text ahead))
@@ -173,7 +178,7 @@ What is no whole line is being typed."
       (ahead-lines ahead))))
 
 (defgeneric discard-key (input)
-  (:documentation "Discard the key pressed in INPUT, unless more was typed or pasted with it.")
+  (:documentation "Discard the next key of INPUT, unless more input follows that key at once.")
   (:method (input) (clear-input input))
   (:method ((input edited-text))
     (let* ((octets (octets-come input)) (next (text-reader (coerce octets 'string))))
@@ -181,7 +186,8 @@ What is no whole line is being typed."
       (when (funcall next) (add-octets (edited-ahead input) octets)))))
 
 (defun drop-waiting (input)
-  "Remove the lines that wait in INPUT, and keep them as one history entry. Return their number."
+  "Remove the waiting lines from INPUT, and add them to the history as one entry. Return the number
+of lines."
   (let ((lines (take-waiting input)))
     (when lines (remember-line input (format nil "~{~A~^~%~}" lines) nil))
     (length lines)))
@@ -196,8 +202,8 @@ What is no whole line is being typed."
   (:documentation "The text that is typed in a window."))
 
 (defun make-window-input (console)
-  "Return input that is typed elsewhere, with its line shown on CONSOLE. It shares the history of
-the prompt at the terminal."
+  "Return an input stream for keys pressed in a window. The line being typed is shown on CONSOLE.
+The history file is that of the prompt at the terminal."
   (make-instance 'window-text :console console :history (make-history (file-for-history))
                               :octets (make-instance 'queued-octets)))
 
@@ -212,7 +218,7 @@ the prompt at the terminal."
     (answered (edited-console stream))))
 
 (defun being-typed-p (stream)
-  "True if a line is being typed into STREAM: no running line has to end first."
+  "True if STREAM is reading a line, so that keys go to that line at once."
   (and (line-of stream) t))
 
 (defmethod keep-ahead ((stream window-text))
@@ -223,7 +229,8 @@ the prompt at the terminal."
   (ahead-in octets (history-entries (edited-history stream))))
 
 (defun send-key (stream key)
-  "Pass KEY, as in keys.lisp, to the reader of STREAM. Until STREAM reads, it is type-ahead."
+  "Send KEY, a key as in keys.lisp, to STREAM. While STREAM reads no line, KEY is kept as
+type-ahead."
   (flet ((with-key (octets)
            (if (being-typed-p stream)
                (uiop:strcat octets (octets-of-key key))
@@ -235,7 +242,8 @@ the prompt at the terminal."
 ;;; What waits.
 
 (defun typed-ahead (stream)
-  "Return how many lines of STREAM wait, the text being typed after them, and the cursor's place."
+  "Return three values for the type-ahead of STREAM: the number of finished lines, the text being
+typed, and the cursor's position in that text."
   (let ((ahead (ahead-of stream (unread-octets (typed-octets stream)))))
     (values (+ (length (edited-lines stream)) (length (ahead-lines ahead)))
             (ahead-text ahead)

@@ -3,21 +3,23 @@
 (in-package :ars-magna.cli)
 
 (defun tell-rewound (point simulation)
-  "Queue a message that the robot no longer goes to POINT, as another run has replaced SIMULATION."
+  "Queue a warning that the robot no longer goes to POINT, because a rewind has replaced
+SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
-                              longer goes there. Give the line again if it should."
+                              longer goes there. Type the line again to send it there."
                          point))))
 
 (defun tell-failed-way (control point &rest arguments)
   (error-set (make-verdict (format nil "go-to: ~?" control (cons point arguments)))))
 
 (defun tell-arrival (err robot point)
-  "Queue a message about ROBOT, which was to go to POINT, a text: ERR is an error code, or NIL."
+  "Queue a message about the end of a drive of ROBOT to POINT, a text. ERR is an error code, or
+NIL."
   (case err
     ((nil) (message-set (format nil "go-to: Robot is near ~A, by its odometer" point)))
     (:no-way (tell-failed-way "There is no way to ~A for ~A" point robot))
-    (:gave-up (tell-failed-way "Something was in the way to ~A too often for ~A" point robot))
+    (:gave-up (tell-failed-way "Obstacles on the way to ~A stopped ~A too often" point robot))
     (t (tell-failed-way "Interrupted on the way to ~A" point))))
 
 (define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
@@ -44,7 +46,7 @@
 ;;; the other arguments.
 
 (defun by-part-p (by)
-  "True if BY, a list (variable type), is for a part of the robot."
+  "True if BY, a list (variable type) of a method, stands for a part of the robot."
   (and (second by) (part-type-p (type-key (second by)))))
 
 (defun method-usage (name method)
@@ -54,8 +56,8 @@
             (mapcar #'first others))))
 
 (defun manipulation-usages (manipulation &optional (usage #'method-usage))
-  "Return how MANIPULATION may be typed after the word MANIPULATE, a list of different texts; or
-what USAGE, a function like METHOD-USAGE, returns of its methods."
+  "Return a list of different texts: the ways to type MANIPULATION after the word MANIPULATE. USAGE
+is a function like METHOD-USAGE, which returns the text for a method."
   (remove-duplicates (loop for method in (manipulation-methods manipulation)
                            collect (funcall usage (manipulation-name manipulation) method))
                      :test #'string=))
@@ -66,7 +68,8 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
                    "MANIPULATE lists all.")))
 
 (defun arguments-for (method data robot)
-  "Return the arguments of METHOD for DATA, as typed, with ROBOT; NIL if their number is wrong."
+  "Return the arguments for METHOD from DATA, the typed values, for ROBOT. NIL if the number of
+values is wrong."
   (multiple-value-bind (objects by others) (method-shape method)
     (let* ((count (length objects))
            (extra (- (length data) count (length others))))
@@ -85,7 +88,7 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
     (apply #'run-manipulation (manipulation-name manipulation)
            (append (or (some (lambda (method) (arguments-for method data robot))
                              (manipulation-methods manipulation))
-                       (reject-line "It is: ~{MANIPULATE ~A~^ or ~}. Give numbers for objects ~
+                       (reject-line "Usage: ~{MANIPULATE ~A~^ or ~}. Give numbers for objects ~
                                      and parts." (manipulation-usages manipulation)))
                    (list (lambda (code value)
                            (declare (ignore value))
@@ -99,7 +102,7 @@ what USAGE, a function like METHOD-USAGE, returns of its methods."
                                           :optional))
     (:manipulating)
     "List the manipulations, or carry out the manipulation NAME. ARGS are the numbers of the
-designators that denote its objects, then that of the hand or other part."
+designators that denote its objects, then the number of the hand or other part."
   (cond (name (send-manipulation session (manipulation-called name)
                                  (read-data (or args "") (find-line "MANIPULATE"))))
         ((all-manipulations)

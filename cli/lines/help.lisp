@@ -52,9 +52,9 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
                    (write-help (line-to-help-with name))))))))
 
 (defun line-to-help-with (name)
-  "Return the line whose name begins with NAME. Signals BAD-LINE."
+  "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE if there is none."
   (handler-bind ((bad-line (lambda (condition)
-                             (reject-line "~A APROPOS ~(~A~) searches all that has a name."
+                             (reject-line "~A APROPOS ~(~A~) searches all names."
                                           (bad-line-text condition) name))))
     (find-line name)))
 
@@ -79,10 +79,11 @@ place type, attribute, value, error code, name of Lisp ..."
 ;;; Searching.
 
 (defparameter *most-topics* 40
-  "How many topics APROPOS lists that have a word in their texts only.")
+  "The largest number of topics that APROPOS lists for a word that is only in their descriptions.")
 
 (defun topics-with (word)
-  "Return the topics that have WORD in their names, and those that have it in their texts only."
+  "Return two lists: the topics with WORD in their names, and those with WORD only in their
+descriptions."
   (flet ((in-p (text) (search word text :test #'char-equal)))
     (let ((topics (all-topics)))
       (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)
@@ -98,11 +99,11 @@ place type, attribute, value, error code, name of Lisp ..."
 
 (define-line "APROPOS" (session (word :rest "a word, or a part of one"))
     (:general)
-    "List everything with WORD in its name, then in its description: lines, plans, parameters,
-place types, attributes, error codes, names of Lisp. HELP shows the whole description."
+    "List everything with WORD in its name, then with WORD in its description: lines, plans,
+parameters, place types, attributes, error codes, names of Lisp. HELP shows the whole description."
   (multiple-value-bind (named others) (topics-with word)
     (let ((more (- (length others) *most-topics*)))
-      (unless (or named others) (reject-line "Nothing has ~A in it." word))
+      (unless (or named others) (reject-line "No name or description contains ~A." word))
       (write-topics named)
       (when others
         (format t "~:[In the description~;Also in the description~]:~%" named)

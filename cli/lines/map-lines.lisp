@@ -5,7 +5,8 @@
 ;;; On a terminal a map is made to fit, and has colours; elsewhere it shows the whole world.
 
 (defun terminal-size (session)
-  "Return the known columns and lines of the terminal of SESSION; 80 and NIL without a terminal."
+  "Return the numbers of columns and lines of the terminal of SESSION; 80 and NIL without a
+terminal."
   (flet ((size-said (variable)
            (ignore-errors (parse-integer (environment-value variable)))))
     (multiple-value-bind (columns lines)
@@ -16,12 +17,13 @@
 ;;; Which part, and which layers.
 
 (defun words-of-map ()
-  "Return the words that MAP accepts: its own, and PICTURE's names for the same layers."
+  "Return the words that MAP accepts: names of layers, as for MAP and as for PICTURE, and LEGEND."
   (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'layer-named (text-layers)))))
 
 (defun word-meant (text words line takes)
-  "Return the keyword of the one of WORDS that begins with TEXT, which was typed after LINE. Signals
-BAD-LINE if there is none; TAKES is a control string that says what LINE takes besides WORDS."
+  "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
+BAD-LINE if there is none. TAKES is a format control that describes what LINE takes; its argument
+is WORDS."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
       (reject-line "~A does not take ~A.~@[ Did you mean ~A?~] It takes ~?." line text
@@ -33,7 +35,7 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
     (and (realp datum) (whole-if-whole datum))))
 
 (defun map-part (numbers)
-  "Return what NUMBERS, as typed, say of the part that is to be shown, as options of TEXT-MAP."
+  "Return the options of TEXT-MAP for NUMBERS, a typed radius or region, or none."
   (case (length numbers)
     (0 '())
     (1 (unless (whole-p (first numbers))
@@ -42,7 +44,7 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
      (list :radius (first numbers)))
     (4 (destructuring-bind (left top right bottom) numbers
          (unless (and (< left right) (< top bottom) (every #'finite-p numbers))
-           (reject-line "~{~A~^ ~} is no region. Give LEFT TOP RIGHT BOTTOM in metres, such as ~
+           (reject-line "~{~A~^ ~} is not a region. Give LEFT TOP RIGHT BOTTOM in metres, such as ~
                          MAP 0 0 40 20."
                         numbers)))
      (list :region numbers))
@@ -51,7 +53,7 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
                     numbers))))
 
 (defun map-options (text)
-  "Return options of TEXT-MAP for TEXT, as typed after MAP."
+  "Return the options of TEXT-MAP for TEXT, the words typed after MAP."
   (loop with takes = "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}"
         for word in (split-words (or text ""))
         for number = (number-typed word)
@@ -62,7 +64,8 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
                                       :only-legend (and (member :legend words) t))))))
 
 (defun map-text (session options &optional (lines-below 1))
-  "Return the map for OPTIONS of TEXT-MAP, fit for the terminal of SESSION above LINES-BELOW lines."
+  "Return the map as text, for OPTIONS of TEXT-MAP. The map fits the terminal of SESSION and leaves
+room for LINES-BELOW lines below."
   (let ((robot (session-robot))
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)
@@ -83,7 +86,7 @@ BAD-LINE if there is none; TAKES is a control string that says what LINE takes b
              (loop for name in (text-layers)
                    collect (list name (layer-title (layer-named name))))))
     "Show the world as characters: all of it, a radius around the robot, or a region.
-LEGEND shows only what the characters mean. PICTURE's names of layers work here, too."
+LEGEND shows only what the characters mean. The names of layers for PICTURE can be used, too."
   (write-string (map-text session (map-options what))))
 
 ;;; WATCH.
@@ -92,8 +95,8 @@ LEGEND shows only what the characters mean. PICTURE's names of layers work here,
 ;;; meanwhile are shown afterwards, the last line of them at once. Elsewhere the maps follow one
 ;;; another.
 
-(defconstant +frame-seconds+ 0.1d0 "How long a map is seen at least, in seconds.")
-(defconstant +usual-rate+ 20 "How many ticks pass in a second where time has no rate.")
+(defconstant +frame-seconds+ 0.1d0 "The shortest time for which a map is shown, in seconds.")
+(defconstant +usual-rate+ 20 "The ticks per second that WATCH shows in a run without a rate.")
 
 (defun time-passes-p (session simulation)
   (and (live-p simulation)
@@ -101,11 +104,12 @@ LEGEND shows only what the characters mean. PICTURE's names of layers work here,
        (not (paused-p simulation))))
 
 (defun idle-here-p (session simulation)
-  "True if no ticks of SIMULATION, the run of SESSION, pass until a command or change is requested."
+  "True if SIMULATION, the run of SESSION, passes no ticks until a command or change is requested."
   (and (time-passes-p session simulation) (idle-p simulation)))
 
 (defun pass-tick (session simulation)
-  "Pass a tick of SIMULATION, or wait until one has passed, or none will."
+  "Pass a tick of SIMULATION. If its clock passes the ticks, wait for the next tick, or until
+SIMULATION is idle."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
     (await (lambda ()
@@ -125,14 +129,14 @@ LEGEND shows only what the characters mean. PICTURE's names of layers work here,
 ;;; In place.
 
 (defun screen-p (session)
-  "True if SESSION is on a terminal that can be written over, and can read keys."
+  "True if SESSION has a terminal on which maps can be redrawn in place and keys can be read."
   (and (watched-p session)
        (terminal-stream-p (session-input session))
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
 
 (defun frame (session simulation options)
-  "Return the text for the screen: the map, and below it the time and the last message."
+  "Return the text for the screen: the map, and below the map the time and the last message."
   (let ((columns (1- (terminal-size session)))
         (said (last-held-back (session-console session))))
     (format nil "~A~A A key ends this.~%~A" (map-text session options 2)
@@ -140,15 +144,16 @@ LEGEND shows only what the characters mean. PICTURE's names of layers work here,
             (subseq said 0 (min columns (length said))))))
 
 (defun frame-seconds (session simulation)
-  "Return how many seconds pass from one map of SIMULATION to the next."
+  "Return the number of seconds between two maps of SIMULATION."
   (let ((rate (simulation-rate simulation)))
     (if (time-passes-p session simulation)
         +frame-seconds+
         (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
 
 (defun watch-screen (session simulation count options)
-  "Show maps of SIMULATION in place, until a key is pressed or a program breaks; or until COUNT
-ticks have passed or no more will, or without COUNT until a line is typed. True if it was a key."
+  "Show maps of SIMULATION in place until a key is pressed, a program breaks or the run is over.
+With COUNT, stop also after COUNT ticks or when the run is idle; without COUNT, when a line was
+typed. Return true if a key was pressed."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
         do (write-at-once (over-screen (frame session simulation options)) console)
@@ -174,7 +179,7 @@ ticks have passed or no more will, or without COUNT until a line is typed. True 
 ;;; The line.
 
 (defun take-count (text)
-  "Return the number that TEXT begins with, or NIL, and what follows it."
+  "Return the number at the beginning of TEXT, or NIL, and the rest of TEXT."
   (let* ((words (split-words (or text "")))
          (count (and words (number-typed (first words)))))
     (when (and count (not (whole-p count 1)))
@@ -182,13 +187,13 @@ ticks have passed or no more will, or without COUNT until a line is typed. True 
     (values count (format nil "~{~A~^ ~}" (if count (rest words) words)))))
 
 (defun check-watchable (session simulation count)
-  "Signal BAD-LINE if WATCH would show nothing, or for ever."
+  "Signal BAD-LINE if WATCH would show nothing or would never end."
   (cond ((session-trial session)
-         (reject-line "In a trial time passes between lines only. STEP and MAP show it tick by ~
+         (reject-line "In a trial, time passes between lines only. Use STEP and MAP to see each ~
                        tick."))
         (count)
         ((not (screen-p session))
-         (reject-line "There is no key here that would end this. WATCH n shows n ticks."))
+         (reject-line "No key can end WATCH here. WATCH n shows n ticks."))
         ((not (time-passes-p session simulation))
          (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME ~
                        continues.~]"
@@ -197,9 +202,9 @@ ticks have passed or no more will, or without COUNT until a line is typed. True 
 (define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
     (:seeing)
     "Show the map after each tick, in place on a terminal: WATCH 20 for 20 ticks, WATCH until
-nothing happens any more. A key or Control-C ends it. Words after the number are as for MAP. Where
-time stands still, it lets that number of ticks pass. Lines pasted with it, or meanwhile, are read
-after it; without a number they end it."
+nothing happens any more. A key or Control-C ends WATCH. Words after the number are as for MAP.
+Where time stands still, WATCH 20 lets 20 ticks pass. Lines pasted meanwhile are read afterwards; if
+no number was given, they end WATCH."
   (check-run)
   (multiple-value-bind (count rest) (take-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))

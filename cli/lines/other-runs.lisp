@@ -6,7 +6,7 @@
 ;;; for the new ones, also when the rewind comes from Lisp.
 
 (defun forget-jobs (old new)
-  "Stop reporting to prompts how the plans of OLD end, as NEW replaces it."
+  "Stop reporting to prompts how the plans of the run OLD end, because the run NEW replaces OLD."
   (declare (ignore new))
   (dolist (job (with-lock (*plan-jobs-lock*)
                  (remove old *plan-jobs* :key #'plan-job-simulation :test-not #'eq)))
@@ -45,7 +45,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
     "Go back to the end of TICK and continue from there, as with REWIND."
   (check-rewindable session)
   (let ((now (simulation-tick *simulation*)))
-    (unless (<= tick now) (reject-line "It is only tick ~D." now))
+    (unless (<= tick now) (reject-line "This run is only at tick ~D." now))
     (rewind-and-tell session (- now tick))))
 
 ;;;; TRIAL
@@ -53,7 +53,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Which trial is meant.
 
 (defun experiment-names (start)
-  "Return the names of the experiments that begin with START, or only START if that is one."
+  "Return the names of experiments that begin with START. If START itself is a name, return only
+that."
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
@@ -61,7 +62,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
                            #'string))))
 
 (defun experiment-meant (name)
-  "Return the experiment called NAME, or the only one whose name begins so. Signals BAD-LINE."
+  "Return the experiment named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
   (let ((names (experiment-names name)))
     (cond ((null names)
            (reject-absent "experiment" name (mapcar #'experiment-name (all-experiments))
@@ -70,7 +71,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
           (t (find-experiment (first names))))))
 
 (defun condition-meant (experiment text)
-  "Return the condition of EXPERIMENT that TEXT means: its number, from 1, or a part of its name."
+  "Return the condition of EXPERIMENT for TEXT: a number, counted from 1, or a part of its name."
   (find-condition experiment (or (ignore-errors (parse-integer text)) text)))
 
 ;;; What is there.
@@ -95,7 +96,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
           (condition-name (open-trial-condition trial))))
 
 (defun say-here (session control &rest arguments)
-  "Write a line formatted from CONTROL and ARGUMENTS, as it fits the window of SESSION."
+  "Format CONTROL with ARGUMENTS, and write the text as lines that fit the window of SESSION."
   (format t "~&~A~%" (fitted (apply #'format nil control arguments) (session-console session))))
 
 (defun write-open-trial (session trial)
@@ -124,7 +125,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
               (open-trial-changed trial))))
 
 (defun read-after-end (session trial result parts row)
-  "Read lines of SESSION after the end of TRIAL, with RESULT, until one leaves it."
+  "After the end of TRIAL with RESULT, read lines of SESSION until a line leaves the trial. ROW is
+the stored row to compare with RESULT, or NIL; PARTS are the parts of the row's fingerprint."
   (setf (open-trial-result trial) result)
   (pause-trial trial)
   (call-outside-trial (lambda ()
@@ -132,8 +134,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
                         (write-result session trial result)
                         (when row
                           (say-here session
-                                    "~:[It is as in its row.~;~:*It differs from its row: ~
-                                     ~{~A~^; ~}.~]"
+                                    "~:[The result is as in its row.~;~
+                                     ~:*The result differs from its row: ~{~A~^; ~}.~]"
                                     (row-differences (open-trial-experiment trial) result parts row
                                                      (open-trial-directory trial))))))
   (loop (run-line-in-trial session trial)))
@@ -141,7 +143,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Going there, and out again.
 
 (defun pause-soon (session trial restart)
-  "Pause TRIAL at its next tick, and continue by RESTART what was interrupted."
+  "Pause TRIAL at its next tick. Until then, continue the interrupted code by RESTART."
   (pause-trial trial)
   (setf (open-trial-interrupted-p trial) t)
   (write-fitted (session-console session)
@@ -150,8 +152,8 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (invoke-restart restart))
 
 (defun call-pausable (session trial function)
-  "Call FUNCTION. Control-C at the terminal of SESSION, while ticks pass in TRIAL, pauses the trial
-at the next tick. A second Control-C, if that does not come, leaves the trial."
+  "Call FUNCTION. While ticks pass in TRIAL, Control-C at the terminal of SESSION pauses the trial
+at the next tick. A second Control-C before that tick leaves the trial."
   (flet ((pause-or-leave (condition)
            (let ((restart (find-restart 'go-on condition)))
              (if (and restart (session-terminal-p session) (not (open-trial-interrupted-p trial)))
@@ -182,7 +184,7 @@ at the next tick. A second Control-C, if that does not come, leaves the trial."
         (funcall function))))
 
 (defun enter-trial (session trial)
-  "Run TRIAL in SESSION until a line leaves it. Return a function to call then."
+  "Run TRIAL in SESSION until a line leaves the trial. Return a function to call afterwards."
   (let ((*prompt-robot* nil) (left-p nil))
     (setf (session-trial session) trial)
     (unwind-protect
@@ -211,9 +213,9 @@ at the next tick. A second Control-C, if that does not come, leaves the trial."
                   (funcall (call-with-others-paused (lambda () (enter-trial session trial)))))))
 
 (defun leave-trial (session)
-  (unless (session-trial session) (reject-line "The prompt is in no trial."))
+  (unless (session-trial session) (reject-line "The prompt is not in a trial."))
   (leave-open-trial session
-                    (lambda () (format t "Out of the trial~@[, in ~(~A~)~].~%"
+                    (lambda () (format t "You have left the trial~@[ for ~(~A~)~].~%"
                                        (and *simulation* (simulation-name *simulation*))))))
 
 (define-line "TRIAL" (session (name :experiment "the name of an experiment, or OFF" :optional)
@@ -222,11 +224,12 @@ at the next tick. A second Control-C, if that does not come, leaves the trial."
                               (number count "the number of the trial" :optional)
                               (directory :token "the directory of its row" :optional))
     (:running)
-    "Enter a trial of an experiment, at tick 0, exactly as the experiment runs it. STEP, RESUME and
-RATE let time pass; STATUS, PLAN-TREE, WHY and others show its state; SAVE-JOURNAL saves it. Without
-a terminal, RESUME runs it to its end. With DIRECTORY, its outcome is compared with its row there.
-TRIAL OFF leaves it, as do WORLD and another TRIAL. Without NUMBER, list the conditions; without
-NAME, list the experiments, or tell which trial this is."
+    "Enter a trial of an experiment, at tick 0, exactly as the experiment runs the trial. STEP,
+RESUME and RATE let time pass; STATUS, PLAN-TREE, WHY and others show the state; SAVE-JOURNAL saves
+the run. Without a terminal, RESUME runs the trial to its end. With DIRECTORY, the outcome of the
+trial is compared with its row in the table there. TRIAL OFF leaves the trial, as do WORLD and
+another TRIAL. Without NUMBER, list the conditions; without NAME, list the experiments, or tell
+which trial the prompt is in."
   (cond ((and (null name) (session-trial session))
          (write-open-trial session (session-trial session)))
         ((null name) (write-experiments))
@@ -266,7 +269,8 @@ opens one of them."
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
-  "Run SESSION in FORK until a line leaves it. Its earlier jobs do not count there."
+  "Run SESSION in FORK until a line leaves the fork. Earlier jobs of SESSION are set aside
+meanwhile."
   (let ((jobs (shiftf (session-jobs session) '()))
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
@@ -277,7 +281,7 @@ opens one of them."
             (session-forks session) depth))))
 
 (defun go-to-fork (session seed)
-  "Run SESSION in a fork of the current run until a line leaves it; then discard the fork."
+  "Run SESSION in a fork of the current run until a line leaves the fork; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
     (tell-others session run
@@ -295,14 +299,14 @@ opens one of them."
 (define-line "FORK" (session (seed :off "OFF, or an integer: the seed of the copy"
                                    :optional))
     (:running)
-    "Continue in a copy of the run, plans included. The copy does what the run would do, or with
-SEED what it might do. The run itself is paused. FORK OFF returns to it, unchanged, and discards the
-copy."
+    "Continue in a copy of the run, plans included. The copy does exactly what the run would do.
+With SEED, the copy has other random numbers. The run itself is paused. FORK OFF discards the copy
+and returns to the run, which has not changed."
   (check-run)
   (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")
-         (when (zerop (session-forks session)) (reject-line "The prompt is in no fork."))
+         (when (zerop (session-forks session)) (reject-line "The prompt is not in a fork."))
          (throw 'left-fork t))
         (t (go-to-fork session (or (ignore-errors (parse-integer seed))
                                    (reject-line "The seed of a fork is an integer, not ~A."

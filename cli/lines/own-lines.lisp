@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defun alias-circle (name text)
-  "Return the aliases through which TEXT, the meaning of the alias NAME, leads back to NAME, with
-that one first and last; NIL if it does not."
+  "Return the cycle of aliases that arises if NAME becomes an alias of TEXT: a list that begins and
+ends with NAME. NIL if there is no cycle."
   (loop with aliases = (acons name (list text) *aliases*)
         for word = name then (split-line (second alias))
         for alias = (assoc word aliases :test #'string-equal)
@@ -14,7 +14,8 @@ that one first and last; NIL if it does not."
         when (< (length aliases) (length names)) return nil))
 
 (defun define-alias (name text)
-  "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, or TEXT begins with none."
+  "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, if TEXT does not begin with a
+command, or if aliases would form a cycle."
   (let ((circle (alias-circle name text)) (expansion (expand-alias text)))
     (cond ((find name (all-line-names) :test #'string=)
            (reject-line "~A is a command already; choose another name for the alias." name))
@@ -41,34 +42,36 @@ that one first and last; NIL if it does not."
 
 (define-line "EVAL" (session (exp :form "a Lisp form"))
     (:general)
-    "Evaluate EXP as Lisp and print its values; so does a line that begins with a parenthesis."
+    "Evaluate EXP as Lisp and print its values. A line that begins with a parenthesis is evaluated,
+too."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun switch-setting (name word)
-  "Return true if WORD, after the line NAME, is on, NIL if it is off. Signals BAD-LINE for another."
+  "Return true if WORD, typed after the line NAME, is ON, NIL if WORD is OFF. Signals BAD-LINE for
+another word."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
         (t (reject-line "~A takes ON or OFF, not ~A." name word))))
 
 (define-line "ECHO" (session (setting :switch "on or off" :optional))
     (:general)
-    "Show messages from commands issued by plans and programs, too; with OFF, only those from your
-own. Without SETTING, tell which is set."
+    "Show messages from commands issued by plans and programs, too; with OFF, only messages from
+your own commands. Without SETTING, tell whether ECHO is on."
   (when setting (setf (session-quiet-p session) (not (switch-setting "ECHO" setting))))
   (format t "Messages from commands of plans and programs are ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
 (defun check-time-passes (session cmd jobs inbox)
-  "Signal BAD-LINE if what SESSION has issued by the line CMD waits for RESUME: one of JOBS, or a
-request that was not in INBOX before."
+  "Signal BAD-LINE if a command that SESSION has issued by the line CMD waits for RESUME. Such a
+command is a job of JOBS, or a waiting request that is not in the list INBOX."
   (when (and (waits-for-resume-p session)
              (or (notevery #'job-over-p jobs)
                  (some #'awaited-p (set-difference (requests-waiting) inbox))))
-    (reject-line "Time stands still: ~A is carried out after RESUME, and not repeated." cmd)))
+    (reject-line "Time stands still: ~A runs once, after RESUME, and is not repeated." cmd)))
 
 (defun await-repetition (session cmd jobs inbox)
-  "Wait until JOBS, which SESSION has issued by the line CMD, and what Lisp has issued are done.
-Signals BAD-LINE if that waits for RESUME. INBOX has the requests that waited before."
+  "Wait for the end of JOBS, which SESSION has issued by the line CMD, and of commands that Lisp has
+issued. Signals BAD-LINE if one waits for RESUME. INBOX lists the requests that waited before CMD."
   (check-time-passes session cmd jobs inbox)
   (await-jobs session jobs)
   ;; For what Lisp has issued, too.
@@ -77,7 +80,7 @@ Signals BAD-LINE if that waits for RESUME. INBOX has the requests that waited be
   (check-time-passes session cmd jobs inbox))
 
 (defun repeat-once (session cmd)
-  "Run CMD, a line, and wait for what it has issued, unless SESSION is in a trial."
+  "Run the line CMD, and wait for the commands that the line issues, unless SESSION is in a trial."
   (let ((before (session-jobs session)) (inbox (requests-waiting)))
     (run-text session cmd)
     (unless (session-trial session)
@@ -89,13 +92,13 @@ Signals BAD-LINE if that waits for RESUME. INBOX has the requests that waited be
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
-    "Give the command CMD NUM times, each time after the last has completed; in a trial without
-waiting."
+    "Run the command CMD NUM times, each time after the one before has completed. In a trial, do not
+wait."
   (loop repeat num
         until (session-over-p session)
         do (repeat-once session cmd)))
 
 (define-line "QUIT" (session)
     (:general)
-    "Leave the prompt. If you called it from Lisp, the simulator continues."
+    "Leave the prompt. If the prompt was called from Lisp, the simulator continues."
   (setf (session-over-p session) t))

@@ -5,15 +5,16 @@
 ;;; A picture shows the default layers, and those whose names are typed.
 
 (defun picture-word (text line)
-  "Return the layer that TEXT means after LINE: a word or its beginning that names a layer for MAP
-or PICTURE, or BARE, for no default layers."
+  "Return the layer for TEXT, a word typed after LINE. TEXT is the name of a layer of MAP or
+PICTURE, or BARE, which omits the default layers, or the beginning of such a word."
   (layer-named (word-meant text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
                            line "a file, a scale, and words: ~{~A~^, ~}")))
 
 (defun picture-options (text &optional (line "PICTURE"))
-  "Return options of SAVE-PICTURE for TEXT, as typed after LINE and the name of the file."
+  "Return the options of SAVE-PICTURE for TEXT, the words typed after LINE and the name of the
+file."
   (loop for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
@@ -25,7 +26,7 @@ or PICTURE, or BARE, for no default layers."
                                              (unless (member :bare words) *picture-layers*))))))
 
 (defun layers-text (layers)
-  "Return LAYERS by name, each with its title unless that says the same."
+  "Return the names of LAYERS as text. A title follows each name, unless the title equals the name."
   (format nil "~:{~A~@[ (~A)~]~:^, ~}"
           (loop for layer in layers
                 for name = (substitute #\Space #\- (symbol-name layer))
@@ -39,8 +40,8 @@ or PICTURE, or BARE, for no default layers."
     (:seeing
      "PICTURE world.svg is usually enough. PICTURE world.png 30 GRID TRAIL has 30 pixels per cell
 and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES."
-     "Pixels per cell: from 1 to 256. By default graphics-scale* if that was set, else from 4 to 40,
-so that the map has at most 900 x 700 pixels."
+     "Pixels per cell: from 1 to 256. By default graphics-scale* if that was set, else a number
+from 4 to 40 for which the map has at most 900 x 700 pixels."
      (format nil "Shown by default, except with BARE: ~A." (layers-text *picture-layers*))
      (format nil "Shown if named: ~A."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
@@ -56,9 +57,9 @@ so that the map has at most 900 x 700 pixels."
                                    :optional))
     (:seeing)
     "Save the run so far in FILE, replacing it, as a film: an HTML page for any browser, to play,
-stop and step through, or an animated SVG. It marks what robots grasped, released and stowed, failed
-commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY saves
-it even if definitions have changed since the run began."
+stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
+failed commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY
+saves the film even if definitions have changed since the run began."
   (check-run)
   (let* ((words (split-words (or what "")))
          (others (remove "ANYWAY" words :test #'string-equal))
@@ -76,9 +77,9 @@ it even if definitions have changed since the run began."
 ;;; load it when a window is opened.
 
 (defun call-or-say (function trouble)
-  "Call FUNCTION, which compiles and loads libraries, in Lisp's own syntax. What the compiler says
-is of no interest. If that fails, signal BAD-LINE with TROUBLE, the control string of a text that
-says why."
+  "Call FUNCTION, which compiles and loads libraries, with Lisp's standard syntax and without
+output. If FUNCTION signals an error, signal BAD-LINE with TROUBLE, a format control whose argument
+is the text of the error."
   (handler-case
       (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
             (*package* (find-package :cl-user))
@@ -89,21 +90,22 @@ says why."
       (reject-line trouble (one-line (condition-text condition))))))
 
 (defun load-windows (quicklisp-p)
-  "Load the system of windows, and McCLIM through Quicklisp before if QUICKLISP-P."
+  "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
     (call-or-say #'ars-magna.clx:get-by-quicklisp
                  "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
                   WINDOW again."))
   (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
-               "No window: McCLIM is there, but cannot be loaded: ~A"))
+               "No window: McCLIM was found, but cannot be loaded: ~A"))
 
 ;; Read when this file is loaded, so that a saved program has it with it.
 (defparameter *how-to-get-windows*
   (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
-  "How to install McCLIM.")
+  "A text that tells how to install McCLIM.")
 
 (defun ensure-windows ()
-  "Load what opens windows, if needed. Signals BAD-LINE without X server, McCLIM or a working CLX."
+  "Load the code that opens windows, if needed. Signals BAD-LINE without X server, McCLIM or a
+working CLX."
   (unless *display-opener*
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
@@ -124,7 +126,8 @@ says why."
 ;;;; WINDOW
 
 (defun robot-at-work-called (name)
-  "Return the robot called NAME of this run or of another live one. Signals BAD-LINE if none."
+  "Return the robot named NAME of this run or of another live run. Signals BAD-LINE if there is
+none."
   (let* ((name (robot-called name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)
@@ -139,9 +142,9 @@ says why."
 (define-line "WINDOW" (session (name :robot-name "the robot; the one commanded if left out"
                                      :optional))
     (:seeing)
-    "Open a window that shows the robot NAME in its world and takes commands, or raise the one that
-is open. This needs McCLIM; if it is not installed, a message says how to install it. You may close
-the window at any time. It closes by itself when the run is over."
+    "Open a window that shows the robot NAME in its world and takes commands, or raise its open
+window. Windows need McCLIM; if McCLIM is not installed, a message says how to install it. You may
+close the window at any time. The window closes by itself when the run is over."
   (let ((robot (if name (robot-at-work-called name) (session-robot))))
     (ensure-windows)
     (open-display robot)
@@ -156,12 +159,12 @@ the window at any time. It closes by itself when the run is over."
 ;;;; Maps in files
 
 (defun free-middle (map)
-  "Return the point of MAP nearest its middle at which a robot can stand, a list, or NIL."
+  "Return the point nearest to the middle of MAP where a robot can stand, as a list (x y), or NIL."
   (let ((point (nearest-free-point map (list (/ (map-width map) 2) (/ (map-height map) 2)))))
     (and point (list (pt-x point) (pt-y point)))))
 
 (defun tell-imported (map report)
-  "Describe MAP by REPORT, the report of IMPORT-MAP, and say how to use it."
+  "Print a description of MAP from REPORT, as IMPORT-MAP returns it, and tell how to use the map."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
     (format t "~(~A~): ~D by ~D cells of ~A m~:[~; (a cell is 1 m for the robot)~], ~D free, ~
                ~D occupied, ~D unknown; ~D walls.~%"
@@ -172,14 +175,16 @@ the window at any time. It closes by itself when the run is over."
 
 (define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
-    "Make a map, named like FILE, of the occupancy grid in FILE and the image that it names. In the
-simulator each cell is one metre wide, whatever its real size: GO 5 m drives through five cells."
+    "Make a map, named like FILE, of the occupancy grid in FILE and the image that FILE names. In
+the simulator each cell is one metre wide, whatever its real size: GO 5 m drives through five
+cells."
   (multiple-value-call #'tell-imported (import-map file)))
 
 (define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
     (:seeing)
   "Write the walls of the robot's map to FILE, as an occupancy grid for ROS's map_server, and an
-image in PGM beside it. Replaces such a pair of files, but no other files. IMPORT reads them."
+image in PGM beside FILE. Maps saved under the same names are replaced, but no other files. IMPORT
+reads such files."
   (multiple-value-bind (description image)
       (export-map (world-map (robot-world (session-robot))) file)
     (format t "~A~%~A~%" (native-name description) (native-name image))))

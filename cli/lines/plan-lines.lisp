@@ -5,8 +5,8 @@
 ;;; Which plan is meant.
 
 (defun plan-called (name)
-  "Return the plan procedure called NAME, a string: the user's own, or else the newest in any
-package; NIL if there is none."
+  "Return the plan procedure named NAME, a string: the user's own, or else the newest in any
+package. NIL if there is none."
   (handler-case (find-procedure (or (find-symbol (string-upcase name)) name))
     (unknown-name () nil)))
 
@@ -14,7 +14,8 @@ package; NIL if there is none."
   (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
 (defun plan-meant (name)
-  "Return the plan procedure called NAME, or the only one whose name begins so. Signals BAD-LINE."
+  "Return the plan procedure named NAME, or the only one whose name begins with NAME. Signals
+BAD-LINE."
   (let ((candidates (items-with-prefix (string-upcase name) (plan-names) #'string)))
     (cond ((plan-called name))
           ((null candidates) (reject-absent "plan" name (plan-names) "PLAN lists all plans."))
@@ -30,7 +31,7 @@ package; NIL if there is none."
 
 ;; A plan that another plan of its author calls is a part, and not listed.
 (defun parts-of-plans ()
-  "Return the plans that others of the same package call."
+  "Return the plans that are called by other plans of the same package."
   (loop for plan in (all-procedures)
         append (loop for part in (called-procedures plan)
                      unless (or (eq part plan)
@@ -59,7 +60,7 @@ package; NIL if there is none."
   (handler-bind ((error (lambda (condition)
                           (close-job job)
                           (when (typep condition 'program-error)
-                            (reject-line "~A was given ~:[no arguments~;~:*~{~S~^ ~}~]. It is: ~
+                            (reject-line "~A was given ~:[no arguments~;~:*~{~S~^ ~}~]. Usage: ~
                                           PLAN ~A."
                                          (procedure-name plan) arguments (plan-usage plan))))))
     (setf (plan-job-task job) (apply #'begin-plan plan arguments))))
@@ -97,8 +98,8 @@ at once, otherwise when the plan has ended."
 ;;; Those under way.
 
 (defun call-reading-plan (name function)
-  "Call FUNCTION, which returns text with forms of the plan called NAME. Return it with few package
-prefixes, as an author of the plan would write it."
+  "Call FUNCTION, which returns text with forms of the plan named NAME. Return the text with few
+package prefixes, as an author of the plan would write the forms."
   (let* ((plan (plan-called (string name)))
          (*package* (if plan (symbol-package (procedure-name plan)) (user-package)))
          (*print-pretty* nil)
@@ -107,7 +108,7 @@ prefixes, as an author of the plan would write it."
       (setf text (without prefix text)))))
 
 (defun without (word text)
-  "Return TEXT without each WORD in it, ignoring case."
+  "Return TEXT with all occurrences of WORD removed, ignoring case."
   (with-output-to-string (out)
     (loop for start = 0 then (+ end (length word))
           for end = (search word text :start2 start :test #'char-equal)
@@ -116,7 +117,7 @@ prefixes, as an author of the plan would write it."
 
 (define-line "PLANS" (session) (:planning)
     "Show the running plans as trees of tasks, with what they do and wait for. If the last plan that
-ended failed, tell where and why."
+ended has failed, tell where and why it failed."
   (let ((plans (plans)))
     (if plans
         (write-string (call-reading-plan (task-name (first plans))
@@ -133,7 +134,8 @@ ended failed, tell where and why."
 
 (define-line "STOP-PLAN" (session (n count "the number of a running plan" :optional))
     (:planning)
-    "End the plan N, or all running plans. Their commands to the robot are interrupted."
+    "End the plan N, or all running plans. Commands that ended plans gave the robot are
+interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (or (find n (plans) :key #'task-serial)
                          (reject-line "No plan ~D is under way. PLANS shows which are." n))))
@@ -142,7 +144,7 @@ ended failed, tell where and why."
 ;;; PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and why.
 
 (defun tree-text (which)
-  "Return the whole stacks and variables of WHICH, a task or a plan runner with plans, as text."
+  "Return the full stacks and variables of WHICH, a task or a plan runner with plans, as text."
   (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
                     unless (task-parent task) return task)))
     (call-reading-plan (task-name plan)
@@ -150,7 +152,7 @@ ended failed, tell where and why."
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show all details of the running plans, or of the task N and its parts: each task's stack and
-variables, what it waits for and since when; and which task has which valve."
+variables, what it waits for and since when; and which task owns which valve."
   (let ((text (call-with-plans-in-use
                (lambda (runner)
                  (let ((which (cond ((null (plans)) nil)
@@ -181,7 +183,7 @@ Lisp (setf *trace-plans* t), before the plan starts."
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
-ticks, with what it waited for and the commands that it issued. This needs a trace: TRACE-PLANS ON,
+ticks, with what it waited for and the commands that it issued. A trace is needed: TRACE-PLANS ON,
 or in Lisp (setf *trace-plans* t), before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))
 
@@ -203,19 +205,19 @@ or in Lisp (setf *trace-plans* t), before the plan starts."
 (defun task-text (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
 
 (define-line "END-TASK" (session (n :task-number "the number of a running task")) (:planning)
-    "End the task N of a plan and its subtasks. It evaporates, as when its parent no longer needs
-it, and does not stop if it is stepped. Its commands to the robot are interrupted. STOP-PLAN ends
-whole plans."
+    "End the task N of a plan and its subtasks. The task evaporates, as when its parent no longer
+needs a task. A stepped task ends without another stop. Commands that the task gave the robot are
+interrupted. STOP-PLAN ends whole plans."
   (let ((task (task-meant n)))
     (step-task task nil)
     (end-plan task)
     (format t "Task ~A ends.~%" (task-text task))))
 
 (define-line "STEP-TASK" (session (n :task-number "the number of a running task")
-                                  (off :off "OFF: no longer" :optional))
+                                  (off :off "OFF ends stepping" :optional))
     (:planning)
     "Single-step the task N and its subtasks: stop before each expression and ask for STEP, NEXT,
-OUT or CONTINUE. OFF ends this. Without a terminal or window, each stop is only a message."
+OUT or CONTINUE. OFF ends stepping. Without a terminal or window, each stop is only a message."
   (let ((task (task-meant n)) (on-p (null off)))
     (unless (or on-p (string-equal off "off"))
       (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
@@ -224,8 +226,9 @@ OUT or CONTINUE. OFF ends this. Without a terminal or window, each stop is only 
             on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
-    "Trace what plans do from now on, running ones included, for WHY, PLAN-TIMELINE and the window's
-timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell which is set."
+    "Trace what plans do from now on, including running plans, for WHY, PLAN-TIMELINE and the
+window's timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell whether plans
+are traced."
   (when switch
     (let ((on-p (switch-setting "TRACE-PLANS" switch)))
       ;; A plan may hold the lock of all plans: then none is asked, and nothing changes.

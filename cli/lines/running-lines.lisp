@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun live-simulation ()
-  "Return the simulation, if it is live. Signals BAD-LINE."
+  "Return the current simulation. Signals BAD-LINE if it is not live."
   (check-run)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
@@ -11,7 +11,8 @@
     simulation))
 
 (defun time-text (session simulation &optional (tick (simulation-tick simulation)))
-  "Return in words that it is TICK in SIMULATION, the run of SESSION, and how time passes there."
+  "Return a text with TICK, a tick of SIMULATION, the run of SESSION, and how time passes in that
+run."
   (format nil "Tick ~D, ~A." tick
           (cond ((session-trial session) (trial-pace-text (session-trial session)))
                 ((simulation-over simulation) (simulation-over simulation))
@@ -34,7 +35,7 @@
     (format t "~A~%" (time-text session simulation))))
 
 (defun resume-here (session)
-  "Resume the run of SESSION, even if its clock was stopped."
+  "Resume the run of SESSION. If its clock was stopped, start the clock again."
   (check-run)
   (let ((simulation (current-simulation)))
     (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
@@ -43,14 +44,15 @@
              (format t "~A~%" (time-text session simulation))))))
 
 (define-line "RESUME" (session) (:running)
-    "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run it to its
-end."
+    "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run the
+trial to its end."
   (if (session-trial session)
       (resume-trial (session-trial session))
       (resume-here session)))
 
 (defun step-here (session count)
-  "Pass COUNT ticks; report that, and whether the clock had been stopped."
+  "Pass COUNT ticks of the run of SESSION, and print the tick. If not all of the ticks have passed,
+also print how time passes."
   (check-run)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))
@@ -67,7 +69,7 @@ end."
       (step-here session (or n 1))))
 
 (defun parse-rate (text)
-  "Return the rate that TEXT says: a number or :FREE. Signals BAD-LINE."
+  "Return the rate in TEXT: a number or :FREE. Signals BAD-LINE for another text."
   (if (string-equal text "free")
       :free
       (let ((rate (ignore-errors (values (read-data-from-string text 0)))))
@@ -76,7 +78,8 @@ end."
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
 (defun later-rate-text (session simulation)
-  "Return in words at what rate ticks will pass in SIMULATION, the run of SESSION, if it is paused."
+  "If SIMULATION, the run of SESSION, is paused, return as text the rate at which RESUME continues;
+else return NIL."
   (let ((trial (session-trial session)))
     (cond ((and trial (not (open-trial-running-p trial))) (rate-text (open-trial-rate trial)))
           ((and (null trial) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
@@ -113,8 +116,8 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
             (value-equal value default) (setting-text default))))
 
 (defun parameters-like (name)
-  "Return the parameters called NAME, with or without the star, or else those whose names begin with
-NAME, or else those whose names contain it."
+  "Return the parameters named NAME, with or without the star. If there are none, return those whose
+names begin with NAME, or else those whose names contain NAME."
   (flet ((called (test)
            (loop for parameter in (all-parameters)
                  when (funcall test (string-downcase name) (parameter-name parameter))
@@ -168,14 +171,14 @@ NAME, or else those whose names contain it."
       (format t "~A: ~A" (native-name path) (tick-text tick digest)))))
 
 (defun anyway-p (word)
-  "True if WORD is ANYWAY, NIL if it was left out. Signals BAD-LINE for another."
+  "True if WORD is ANYWAY, NIL if WORD is NIL. Signals BAD-LINE for another word."
   (cond ((null word) nil)
         ((string-equal word "anyway") t)
         (t (reject-line "REPLAY takes a file, then ANYWAY or nothing, not ~A." word))))
 
 (defun call-telling-ticks (function session end)
-  "Call FUNCTION, which goes through ticks up to END, with a function of a tick that shows progress
-at the terminal of SESSION. Return the values of FUNCTION."
+  "Call FUNCTION, which processes ticks up to END, and return its values. The argument of FUNCTION
+is a function of a tick that shows the progress at the terminal of SESSION."
   (let ((progress (and (session-terminal-p session)
                        (make-progress-line (session-console session)))))
     (flet ((tell (tick)
@@ -184,7 +187,8 @@ at the terminal of SESSION. Return the values of FUNCTION."
         (when progress (end-progress progress))))))
 
 (defun replay-showing (session journal anyway)
-  "Repeat JOURNAL. Return the tick and the digest at its end."
+  "Repeat the run of JOURNAL, and show the progress. Return the last tick and the digest of the
+state."
   (flet ((repeat (tell)
            (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
                              journal
@@ -197,7 +201,7 @@ at the terminal of SESSION. Return the values of FUNCTION."
                                (anyway :token "the word ANYWAY" :optional))
     (:running)
     "Repeat the run recorded in FILE, in a separate world, and show the tick and state at its end.
-ANYWAY does so even if definitions differ from those of the recorded run."
+ANYWAY repeats the run even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
       (replay-showing session (load-journal (path-called file)) (anyway-p anyway))
     (format t "~A: ~A" file (tick-text tick digest))))

@@ -5,7 +5,7 @@
 ;;; The layouts are those of the session in manual E.
 
 (defun write-parts (heading writer reader)
-  "Write HEADING, and by WRITER each part of the robot that READER returns."
+  "Write HEADING, then call WRITER with each part that READER returns for the robot."
   (let ((robot (session-robot)))
     (while-still
       (format t "~A~%-----~%" heading)
@@ -75,7 +75,8 @@
         (put-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun entry-text (entry control)
-  "Return what ENTRY, of :UNDER-WAY or :INTERRUPTED, says, formatted by CONTROL, after its part."
+  "Return as text ENTRY, an element of :UNDER-WAY or :INTERRUPTED: its part, then CONTROL
+formatted."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
@@ -88,7 +89,7 @@
                      (entry-text entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
 
 (defun thinking-text (status)
-  "Return in words what thinking costs, by STATUS, or NIL if that is as it is by default."
+  "Return as text what thinking costs, according to STATUS, or NIL for the default."
   (let ((mode (getf status :thinking)))
     (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
           ((eq :charged mode) "charged")
@@ -113,7 +114,7 @@
   (mapc #'write-designator (getf status :designators)))
 
 (defun write-standstill (session simulation)
-  "Print how time passes if SIMULATION, the live run of SESSION, passes no ticks now."
+  "If SIMULATION, the live run of SESSION, passes no ticks now, print why."
   (when (and (live-p simulation)
              (or (paused-p simulation) (idle-p simulation))
              (null (session-trial session)))
@@ -124,7 +125,7 @@
     "Show the robot's state: position, last change of position (real and estimated), heading, speed,
 turning speed, what its cameras see now, the last place sensed, its designators, the commands in
 progress and who issued them, the last interruption, and the cost of thinking if that was changed.
-It tells if no ticks pass. In Lisp: (status)."
+A line tells if no ticks pass now. In Lisp: (status)."
   (let ((robot (session-robot)))
     (while-still (or (report-status session robot)
                      (progn (write-status (status robot))
@@ -150,8 +151,8 @@ It tells if no ticks pass. In Lisp: (status)."
 
 (define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
-    "Put the robot at X, Y at once, without error and ignoring obstacles. A message tells if that is
-inside a wall."
+    "Put the robot at X, Y at once, without error and ignoring obstacles. A message tells if this
+point is inside a wall."
   (let ((robot (session-robot)))
     (place-robot robot x y (robot-angle robot))))
 
@@ -171,7 +172,8 @@ inside a wall."
   '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
     (:lists :view :contents :slots :data)
     (:truths :live :closed))
-  "Lists (kind key...): keys whose values are lists of property lists, lists, or true or false.")
+  "Lists (kind key...): keys of (status) whose values JSON shows as arrays of objects, as arrays, or
+as true or false.")
 
 (defun arrays-for-lists (value)
   (if (and (consp value) (null (cdr (last value))))
@@ -186,13 +188,14 @@ inside a wall."
     (t (if (eq key :failed) (object-for-json value) (arrays-for-lists value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with values that WRITE-JSON writes as their kinds."
+  "Return PLIST with its values converted, so that WRITE-JSON writes them as *KINDS-OF-KEYS* says."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))
 
 (defun report-status (session robot)
-  "Report the state of ROBOT, whose world stands still, if SESSION reports objects; true if so."
+  "If SESSION reports objects, report the status of ROBOT, whose world stands still, as an object
+and return true."
   (let ((account (session-account session)))
     (when (reports-p account)
       (apply #'report-object account "status"

@@ -8,9 +8,9 @@
 ;;; Descriptions.
 
 (defun place-type-words (type)
-  (format nil "PLACE senses whether the robot is in one~:[; PLACE-DESIG 0 ~(~A~) searches for one, ~
-               and takes something else for one with a probability of ~A~;, but no camera finds ~
-               it~]."
+  (format nil "PLACE senses whether the robot is in such a place~:[; PLACE-DESIG 0 ~(~A~) searches ~
+               for one, and takes another place for it with a probability of ~A~;, but no camera ~
+               finds such places~]."
           (place-type-invisible-p type) (place-type-name type)
           (amount-text (place-type-confusion type))))
 
@@ -26,7 +26,7 @@
           (attribute-supporters attribute)))
 
 (defun attribute-values ()
-  "Return lists (value attribute) for the values of all attributes that have names, such as RED."
+  "Return lists (value attribute) for all values of attributes that are names, such as RED."
   (loop for attribute in (all-attributes)
         append (loop for value in (attribute-domain attribute)
                      unless (member value '(t nil)) collect (list value attribute))))
@@ -40,8 +40,8 @@
             (text-as-typed (attribute-name attribute)) (text-as-typed value))))
 
 (defun substance-words (substance)
-  (format nil "A camera reads ~A where a wall or thing consists of it, unless that has a ~
-               value of its own."
+  (format nil "A camera reads ~A where a wall or thing consists of this substance, unless the wall ~
+               or thing has a value of its own."
           (amount-text (substance-parameter (substance-name substance)))))
 
 (defun kicker-words (kicker)
@@ -81,7 +81,7 @@
             (mapcar #'command-name commands))))
 
 (defun code-text (code)
-  "Return what CODE, an error code of a command, means, and what to try."
+  "Return a text that tells what CODE, an error code of a command, means and what to try."
   (let ((keyword (error-code-keyword code)))
     (if (error-code-meaning keyword)
         (format nil "~A~@[ ~A~]" (error-code-meaning keyword) (error-code-remedy keyword))
@@ -102,7 +102,7 @@
 ;;; Names in a separate system.
 
 (defun names-elsewhere ()
-  "Return the names that the system ars-magna/fiveam defines, or NIL if it is loaded."
+  "Return the names that the system ars-magna/fiveam defines; NIL if that system is loaded."
   (unless (find-package :ars-fiveam) '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")))
 
 (defun elsewhere-words (name)
@@ -118,7 +118,8 @@
                      :test #'string= :from-end t))
 
 (defun lisp-names ()
-  "Return the sorted documented names of simulator, worlds and user, without parameters."
+  "Return the documented names of the simulator, the worlds and the user, sorted, without
+parameters."
   (let ((names '()))
     (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
@@ -139,7 +140,7 @@
   (format nil "~{~A~^~%~}" (documentation-texts symbol)))
 
 (defun typed-name (symbol)
-  "Return how to type SYMBOL: with its package unless ARS-USER has it under that name."
+  "Return SYMBOL as users type it: with a package prefix unless it is accessible in ARS-USER."
   (if (eq symbol (find-symbol (symbol-name symbol) (user-package)))
       (symbol-name symbol)
       (format nil "~A:~A" (package-name (symbol-package symbol)) symbol)))
@@ -155,7 +156,8 @@
   (write-paragraphs (lisp-words symbol) 2))
 
 (defun write-paragraphs (text indent)
-  "Write TEXT from column INDENT on: lines that begin with a blank as they are, others filled."
+  "Write TEXT, indented by INDENT columns. Lines that begin with a blank are kept, others are
+filled."
   (let ((paragraph '()))
     (flet ((end-paragraph ()
              (when paragraph
@@ -191,8 +193,9 @@
     ("subject" all-subjects first subject-words)
     ("name of a library" names-elsewhere identity elsewhere-words)
     (lisp-title lisp-names identity lisp-words write-lisp-topic))
-  "Lists (title lister name words [writer]): a title, and functions that return all objects of the
-kind, an object's name and its description; WRITER writes its help. TITLE may be a function, too.")
+  "Lists (title lister name description [writer]), one for each kind of topic. LISTER is a function
+that returns all objects of the kind. NAME, DESCRIPTION and WRITER are functions of an object; the
+last prints its help. TITLE is a text or a function of an object.")
 
 (defstruct (topic (:constructor make-topic (kind object name)) (:copier nil))
   "A topic of HELP: an OBJECT of KIND, an element of *TOPIC-KINDS*."
@@ -214,7 +217,8 @@ kind, an object's name and its description; WRITER writes its help. TITLE may be
   (funcall (fourth (topic-kind topic)) (topic-object topic)))
 
 (defun bare-name (name)
-  "Return NAME in upper case, without Lisp's marks around it: red of :red, max-speed of max-speed*."
+  "Return NAME in upper case, without colons, stars and quotes: RED for :red, MAX-SPEED for
+max-speed*."
   (string-trim ":*'()" (string-upcase name)))
 
 (defun topics-called (name)

@@ -16,7 +16,8 @@
     (end-simulation old "the prompt has gone elsewhere")))
 
 (defun end-replaced-run (session old robot)
-  "End the run OLD, which SESSION has left for ROBOT, and move the other prompts there along."
+  "End the run OLD, which SESSION has left for the run of ROBOT. Move the other prompts of OLD to
+the run of ROBOT, too."
   (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot)))
   (end-run-left old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
@@ -24,7 +25,7 @@
       (when simulation (tell-of-run other simulation name)))))
 
 (defun start-live (session robot-name)
-  "Start the world of ROBOT-NAME again, at the rate of the run of SESSION, which ends."
+  "End the run of SESSION, and start a run of the world of ROBOT-NAME at tick 0 and the same rate."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
     ;; A run at tick 0 would continue instead of starting again.
@@ -36,7 +37,7 @@
       (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
 (defun robot-among (names name)
-  "Return which of NAMES, of robots of one world, is NAME, or the first if that is NIL."
+  "Return the one of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
       (or (find name names :test #'same-name-p)
           (reject-line "There is no robot ~A there, but ~{~A~^, ~}." (string-upcase name) names))
@@ -45,8 +46,8 @@
 (define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
                               (robot :robot-name "a robot there; the first if left out" :optional))
     (:seeing)
-    "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. This
-ends the present run."
+    "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. The
+present run ends."
   (if name
       (start-robot session (robot-among (world-robots-called name) robot))
       (write-worlds)))
@@ -61,7 +62,7 @@ ends the present run."
       (put-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y (eq robot (session-robot))))))
 
 (defun reject-elsewhere (name)
-  "Signal BAD-LINE that says how to get to the robot NAME, which is in another world."
+  "Signal BAD-LINE with a text that tells how to get to the robot NAME in another world."
   (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at tick 0, ~
                 and ends this run."
                name (map-name (world-of name))))

@@ -9,7 +9,7 @@
 (defparameter *effects-of-cleaning*
   '((:noise . "`clean-simulation` takes it out") (:delay . "a delay") (:limit . "a limit")
     (:setting . "a setting"))
-  "The kinds of parameters, in words.")
+  "Pairs (kind . text) that describe the kinds of parameters.")
 
 (defun number-words (value)
   ;; A double-float made from a single-float is written like the single-float, which has fewer
@@ -43,8 +43,8 @@
 ;;; Definitions by name. The files of the simulator's own definitions are not recorded with them.
 
 (defun entries-of (kind function)
-  "Return what FUNCTION makes of name, object and file of each definition of KIND that is the
-project's; the file is NIL if it is not known."
+  "Return the entries that FUNCTION makes from name, object and file of each definition of KIND in
+the project. The file is NIL if it is not known."
   (loop for (name object source) in (all-definitions kind)
         for name-of-file = (and source
                                 (not (eq :own source))
@@ -62,7 +62,7 @@ project's; the file is NIL if it is not known."
    (if (eq :discrete (attribute-kind attribute))
        (list (list "Read rightly" (format nil "with probability ~A, close by"
                                           (number-words (attribute-success attribute)))))
-       (list (list "Error" (format nil "deviation ~A close by, up to ~A times that far away"
+       (list (list "Error" (format nil "deviation ~A close by, up to ~A times larger far away"
                                    (number-words (attribute-base attribute))
                                    (number-words (attribute-max-mult attribute))))))
    (list (list "Noticed unasked"
@@ -75,7 +75,7 @@ project's; the file is NIL if it is not known."
   (make-entry :name (format nil "~(~S~)" (attribute-name attribute)) :chapter :attributes
               :use (format nil "(~(~S~) value)" (attribute-name attribute))
               :facts (attribute-facts attribute)
-              :text "An attribute, which things have and designators tell; see DEFATTRIBUTE."
+              :text "An attribute of things, which designators report; see DEFATTRIBUTE."
               :file (or file "src/world/thing.lisp")))
 
 (defun substance-entry (name substance file)
@@ -88,7 +88,7 @@ project's; the file is NIL if it is not known."
 (defun place-type-entry (name type file)
   (make-entry :name (string-downcase name) :chapter :place-types
               :use (string-downcase name)
-              :facts (list (list "Rank" (format nil "~:R of those that fit"
+              :facts (list (list "Rank" (format nil "~:R of the types that fit"
                                                 (1+ (place-type-rank type))))
                            (list "Confusion" (format nil "~A, the chance of a false designator"
                                                      (number-words (place-type-confusion type))))
@@ -122,7 +122,7 @@ project's; the file is NIL if it is not known."
                                  (format nil "~{`manipulate ~A`~^ or ~}"
                                          (manipulation-usages manipulation))))
               :text "A manipulation of the shipped worlds: see DEFMANIPULATION and MANIPULATE.
-Things are given as designators, the hand as that of a robot, such as `(robot-hand robbie 0)`."
+Things are given as designators, the hand as a part of a robot, such as `(robot-hand robbie 0)`."
               :file file))
 
 (defun map-entry (name map file)
@@ -192,8 +192,8 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (("RED" "GREEN" "BLUE" "VIOLET" "LIGHTRED" "LIGHTGREEN" "LIGHTBLUE" "LIGHTVIOLET")
      "A value of the attribute :COLOR.")
     (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
-     "A word of Nisp's for types, which DEFFUNC, DEFPROC and LET accept and ignore (manual 3.1)."))
-  "Lists (names text): words that are only symbols.")
+     "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept and ignore it (manual 3.1)."))
+  "Lists (names text): the descriptions of names that are only symbols.")
 
 (defun word-text (symbol)
   (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
@@ -226,7 +226,7 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (t "")))
 
 (defun value-facts (symbol)
-  "Return the fact that says what value the variable SYMBOL has, if that is short."
+  "Return a list of the fact that tells the value of the variable SYMBOL; NIL if the value is long."
   (when (and (boundp symbol) (not (constantp symbol)))
     (let ((value (symbol-value symbol)) (*print-case* :downcase))
       (when (typep value '(or real keyword boolean))
@@ -258,13 +258,13 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
     (sort found #'string<)))
 
 (defun users-symbols ()
-  "Return the names for users: marked ones, and the exports of the worlds and of test checks."
+  "Return the symbols for users: public symbols, and the exports of ARS-WORLDS and ARS-FIVEAM."
   (remove-duplicates (append (public-symbols :ars) (public-symbols :nisp)
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
                      :from-end t))
 
 (defun named-elsewhere-p (symbol entries)
-  "True if SYMBOL is only a word for one of ENTRIES, of substances or place types."
+  "True if SYMBOL is only the name of a substance or place type in ENTRIES."
   (and (null (sorts-of-symbol symbol))
        (find (symbol-name symbol) entries :key #'entry-name :test #'string-equal)))
 
@@ -279,7 +279,7 @@ Things are given as designators, the hand as that of a robot, such as `(robot-ha
 ;;; All.
 
 (defun all-entries ()
-  "Return all entries of the reference, by chapters."
+  "Return all entries of the reference, in the order of their chapters."
   (let ((entries (append (mapcar #'command-entry (own-commands)) (error-entries)
                          (mapcar #'line-entry (own-lines)) (parameter-entries)
                          (shipped-entries))))

@@ -6,14 +6,14 @@
 
 (define-record entry
   "An entry of the reference."
-  (name "" string "what the entry is about, as people write it" :export)
+  (name "" string "the name that the entry describes, as users write it" :export)
   (chapter nil keyword "the key of the chapter that the entry is in" :export)
-  (section "" string "the heading that it is listed under there")
+  (section "" string "the heading of the entry's section in the chapter")
   (symbol nil symbol)
-  (use "" string "how it is written")
+  (use "" string "a call or use of the name")
   (facts '() list "lists (label text)")
-  (text "" string "what it is")
-  (file nil (or null string) "the file where it is defined, or NIL"))
+  (text "" string "the description of the name")
+  (file nil (or null string) "the file where the name is defined, or NIL"))
 
 (defparameter *chapters*
   '((:commands "Commands" "Commands for robots, cameras, hands and storage bins.")
@@ -38,7 +38,8 @@ ended.")
     (:experiments "Shipped experiments" "Experiments that you can run as they are.")
     (:names "Functions, variables, types" "All other names of ARS and NISP, by layer.")
     (:worlds-names "Other names of the worlds" "What else ARS-WORLDS has: things, and functions."))
-  "Lists (key title introduction), in order. A name in several chapters means the first.")
+  "Lists (key title introduction), in order. A link from a name leads to the first chapter with
+it.")
 
 (defun chapter-title (chapter)
   "Return the title of CHAPTER, a key of *CHAPTERS*."
@@ -53,34 +54,34 @@ ended.")
   (format nil "~A#~A" (chapter-file (entry-chapter entry)) (anchor (entry-name entry))))
 
 (defun entry-key (entry)
-  "Return what the entry is looked for by: its name in lower case."
+  "Return the key by which ENTRY is found: its name in lower case."
   (string-downcase (entry-name entry)))
 
 ;;; What is known of symbols.
 
 (defun project-name (path)
-  "Return the name of the file PATH, as the system has it, in the project; NIL of others."
+  "Return PATH, a native file name, relative to the project's directory; NIL if it is outside."
   (let ((root (native-name (root))))
     (and path
          (starts-with-subseq root path)
          (subseq path (length root)))))
 
 (defun file-of-symbol (symbol)
-  "Return the name of the file of the project in which SYMBOL is defined, or NIL."
+  "Return the name of the project's file in which SYMBOL is defined, or NIL."
   (some #'project-name
         (append (when (fboundp symbol)
                   (list (function-file (or (macro-function symbol) (fdefinition symbol)))))
                 (mapcar #'first (files-besides-functions symbol)))))
 
 (defun plain-use (name lambda-list)
-  "Return how the function or macro NAME is called with LAMBDA-LIST, without names of packages."
+  "Return as text a call of the function or macro NAME with LAMBDA-LIST, without package prefixes."
   (let ((*print-case* :downcase) (*print-pretty* nil)
         (*package* (or (and (symbolp name) (symbol-package name)) *package*)))
     (format nil "(~A~{ ~A~})" (string-downcase name)
             (mapcar #'unqualified-text (without-hidden lambda-list)))))
 
 (defun without-hidden (lambda-list)
-  "Return LAMBDA-LIST without the parameters that a macro gets besides its arguments."
+  "Return LAMBDA-LIST without its &whole, &environment and &aux parameters."
   (loop with rest = lambda-list
         while (consp rest)
         for item = (pop rest)
@@ -171,12 +172,12 @@ ended.")
                                                    (command-parameters command)))
                              (list (result-fact command) (error-fact command))
                              (elsewhere-facts command))
-              :text (format nil "~A It takes effect in the next tick and returns nothing."
+              :text (format nil "~A The command takes effect in the next tick and returns nothing."
                             (command-documentation command))
               :file (file-of-symbol (command-name command))))
 
 (defun own-commands ()
-  "Return the commands for users, without those defined only in this Lisp."
+  "Return the simulator's own commands, without commands that users have defined."
   (remove-if-not (lambda (command) (packages-showing (command-name command))) (all-commands)))
 
 ;;; Error codes.
@@ -199,8 +200,8 @@ ended.")
                                              (mapcar (lambda (command)
                                                        (in-code (command-name command)))
                                                      failing))))
-                :text (format nil "~@[~A ~]~@[~A ~]The continuation of a command gets it as its ~
-                                   first argument."
+                :text (format nil "~@[~A ~]~@[~A ~]The continuation of a command gets this code as ~
+                                   its first argument."
                               (error-code-meaning keyword) (error-code-remedy keyword)))))
 
 (defun interrupt-entry ()
@@ -234,7 +235,7 @@ run (manual 3.1.1)."))
               :file (project-name (function-file (line-action line)))))
 
 (defun own-lines ()
-  "Return the prompt's lines, but for those of commands that only this Lisp has."
+  "Return the prompt's own lines, without lines for commands that users have defined."
   (let ((others (mapcar #'command-prompt-name (set-difference (all-commands) (own-commands)))))
     (remove-if (lambda (line) (member (line-name line) others :test #'string-equal))
                (all-lines))))

@@ -10,9 +10,9 @@
 ;;; such a block gets the shortest block that uses it.
 
 (defstruct (example (:copier nil))
-  "A block of code in the guide: of Lisp, or of lines at the prompt. NAMES, strings, are the names
-that it is an example of; WORDS are the names in it; CALLS are those of them that are certainly not
-its own variables. ID is that of the heading above it."
+  "A block of code in the guide: Lisp, or a session at the prompt. NAMES are strings, the names that
+the block is an example of. WORDS are the names in the block. CALLS are those of WORDS that cannot
+be variables of the block. ID is the id of the heading above the block."
   (page nil :type page :read-only t)
   (id "" :type string :read-only t)
   (heading "" :type string :read-only t)
@@ -28,13 +28,13 @@ its own variables. ID is that of the heading above it."
   (find char '(#\Space #\Newline #\( #\) #\' #\` #\, #\" #\;)))
 
 (defun first-name (code)
-  "Return the name that CODE begins with, perhaps after a parenthesis, in lower case."
+  "Return the name at the beginning of CODE, or after its first parenthesis, in lower case."
   (let* ((start (if (starts-with-subseq "(" code) 1 0))
          (end (or (position-if #'name-end-p code :start start) (length code))))
     (string-downcase (subseq code start end))))
 
 (defun names-alone (tokens)
-  "Return the names in TOKENS, a heading or paragraph, if there is nothing else in it."
+  "Return the names in TOKENS, a heading or paragraph; NIL if TOKENS contain other text."
   (flet ((code-p (token) (tag-called-p "code" token)))
     (loop for part in (parts-of (rest (butlast tokens)) #'code-p)
           if (code-p (first part)) collect (first-name (text-of part))
@@ -42,7 +42,8 @@ its own variables. ID is that of the heading above it."
             do (return nil))))
 
 (defun name-in-bold (tokens)
-  "Return the name that TOKENS, an element in bold, are about, if it is code alone, or NIL."
+  "Return the name in TOKENS, a bold element; NIL if the element contains more than one piece of
+code."
   (when (tag-called-p "code" (second tokens))
     (multiple-value-bind (element left) (element-at (rest tokens))
       (when (null (rest left)) (first-name (text-of element))))))
@@ -50,20 +51,21 @@ its own variables. ID is that of the heading above it."
 ;;; Names in blocks.
 
 (defun name-at (text start)
-  "Return the name in TEXT at START, in lower case and without its package, and where it ends."
+  "Return the name in TEXT at START, in lower case and without package prefix, and the name's end."
   (let* ((end (or (position-if #'name-end-p text :start start) (length text)))
          (colon (position #\: text :start start :end end :from-end t))
          (package-p (and colon (< start colon))))
     (values (string-downcase (subseq text (if package-p (1+ colon) start) end)) end)))
 
 (defun text-end (text start)
-  "Return where the string or comment that begins in TEXT at START ends, or NIL if none does."
+  "Return the end of the string or comment in TEXT that begins at START; NIL if none begins there."
   (case (char text start)
     (#\" (let ((end (position #\" text :start (1+ start)))) (if end (1+ end) (length text))))
     (#\; (or (position #\Newline text :start start) (length text)))))
 
 (defun map-names (function text)
-  "Call FUNCTION with each name in TEXT, of Lisp, its start and end; not in strings and comments."
+  "Call FUNCTION with name, start and end of each name in TEXT, Lisp code, outside strings and
+comments."
   (loop with i = 0
         while (< i (length text))
         do (let ((skipped (text-end text i)))
@@ -74,15 +76,16 @@ its own variables. ID is that of the heading above it."
                         (setf i end)))))))
 
 (defun call-p (name text start)
-  "True if NAME in TEXT at START is certainly no variable of that text: it is called, or quoted, or
-looks like a name of the simulator."
+  "True if NAME, in TEXT at START, cannot be a variable of TEXT: NAME is called or quoted, or looks
+like a name of the simulator."
   (or (find #\- name :start (min 1 (length name)))
       (find (char name (1- (length name))) "*:")
       (char= #\: (char text start))
       (and (plusp start) (find (char text (1- start)) "('"))))
 
 (defun lisp-names (text &optional (test (constantly t)))
-  "Return each name of Lisp in TEXT once, if TEST is true of the name, TEXT and its start."
+  "Return the names in TEXT, Lisp code, each once. TEST is a predicate of a name, TEXT and its
+start."
   (let ((names '()))
     (map-names (lambda (name start end)
                  (declare (ignore end))
@@ -106,8 +109,8 @@ looks like a name of the simulator."
     (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
 
 (defun example-in (element page heading names)
-  "Return the example that ELEMENT is, a block of code on PAGE under HEADING, a list (level id
-text), with NAMES; NIL if it is neither Lisp nor a session."
+  "Return an example of NAMES made from ELEMENT, a block of code on PAGE under HEADING, a list
+(level id text). NIL if ELEMENT is neither Lisp nor a session."
   (let* ((text (text-of element))
          (lisp-p (equal "lisp" (block-language element))))
     (when (or lisp-p (search *prompt* text))
@@ -117,8 +120,9 @@ text), with NAMES; NIL if it is neither Lisp nor a session."
                     :calls (if lisp-p (lisp-names text #'call-p) '())))))
 
 (defstruct (walk (:copier nil))
-  "The state of a search for examples on PAGE: below HEADING, a list (level id text), with NAMES,
-which a block has shown if USED-P is true; EXAMPLES are those found, the last first."
+  "The state of a search for examples on PAGE. HEADING, a list (level id text), is the last heading.
+NAMES are the last names; USED-P is true if a block has followed these names. EXAMPLES are the
+examples found, the last first."
   (page nil :type page :read-only t)
   (heading '() :type list)
   (names '() :type list)
@@ -126,7 +130,8 @@ which a block has shown if USED-P is true; EXAMPLES are those found, the last fi
   (examples '() :type list))
 
 (defun take-names (walk names &key keep)
-  "Make NAMES those that the following blocks show; with KEEP, besides those not shown yet."
+  "Let the following blocks be examples of NAMES. If KEEP, keep names that no block has followed
+yet."
   (when names
     (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
                                 (append (walk-names walk) names)
@@ -153,7 +158,7 @@ which a block has shown if USED-P is true; EXAMPLES are those found, the last fi
         when name collect name))
 
 (defun examples-of-page (page)
-  "Return the examples on PAGE, in order. Names that follow each other share what follows them."
+  "Return the examples on PAGE, in order. Names in sequence share the blocks that follow."
   (let ((walk (make-walk :page page :heading (list 1 "" (page-title page)))))
     (flet ((wanted-p (token)
              (or (heading-level token) (member (tag-name token) '("p" "pre") :test #'equal))))
@@ -171,18 +176,18 @@ which a block has shown if USED-P is true; EXAMPLES are those found, the last fi
 ;;; Choosing.
 
 (defparameter *longest-example* 30
-  "How many lines a block may have that is shown for a name that only occurs in it.")
+  "The largest number of lines of a block that is shown for a name which merely occurs there.")
 
 (defun words-of-kind (example kind)
-  "Return the words of EXAMPLE that count for KIND: :TYPED, :CALLED or :WRITTEN."
+  "Return the names in EXAMPLE of KIND: :TYPED at the prompt, :CALLED in Lisp, or :WRITTEN in Lisp."
   (ecase kind
     (:typed (if (example-lisp-p example) '() (example-words example)))
     (:called (example-calls example))
     (:written (if (example-lisp-p example) (example-words example) '()))))
 
 (defun examples-for (name kind examples)
-  "Return the EXAMPLES for NAME, a string. Either those that name it, and true; or a list of the
-shortest that has it among its WORDS-OF-KIND for KIND, and NIL."
+  "Return those of EXAMPLES that are about NAME, a string, and true. If there are none, return a
+list of the shortest example that has NAME among its WORDS-OF-KIND for KIND, and NIL."
   (flet ((having (reader)
            (remove-if-not (lambda (example)
                             (member name (funcall reader example) :test #'string=))

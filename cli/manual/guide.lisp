@@ -5,8 +5,8 @@
 (export '(read-guide))
 
 (defstruct (page (:copier nil))
-  "A page of the guide. SOURCE is its name in the project, FILE that of the HTML; TOKENS are the
-HTML of its Markdown, its headings with anchors."
+  "A page of the guide. SOURCE is the name of its Markdown file in the project, FILE the name of its
+HTML file. TOKENS are the HTML, with anchors at the headings."
   (source "" :type string :read-only t)
   (file "" :type string :read-only t)
   (title "" :type string :read-only t)
@@ -55,7 +55,8 @@ HTML of its Markdown, its headings with anchors."
     ("src/host/README.md" "host.html" "SBCL's internals" :inside)
     ("src/readings.md" "readings.html" "How the manual of 1992 is read" :inside)
     ("cli/manual/README.md" "about.html" "About this manual" :about))
-  "Lists (source file title part). Other README.md files are found, and have their own titles.")
+  "Lists (source file title part) of pages. All other README.md files are pages, too, and are titled
+by their headings.")
 
 (defun root () (asdf:system-relative-pathname "ars-magna" ""))
 
@@ -69,7 +70,8 @@ HTML of its Markdown, its headings with anchors."
         #'string<))
 
 (defun page-sources ()
-  "Return the names of the pages of the guide: those known that there are, and all others."
+  "Return the source files of the guide: the existing ones of *KNOWN-PAGES*, then all other
+README.md files."
   (let ((known (remove-if-not (lambda (name) (existing-path (project-path name)))
                               (mapcar #'first *known-pages*))))
     (append known (remove-if (lambda (name) (member name known :test #'string=))
@@ -79,7 +81,8 @@ HTML of its Markdown, its headings with anchors."
   (rest (assoc source *known-pages* :test #'string=)))
 
 (defun page-part (page)
-  "Return where PAGE is listed: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
+  "Return the part of the contents that lists PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or
+:ABOUT."
   (let ((source (page-source page)))
     (cond ((third (known-page source)))
           ((starts-with-subseq "tests/" source) :inside)
@@ -93,7 +96,7 @@ HTML of its Markdown, its headings with anchors."
 ;;; Headings.
 
 (defun heading-level (token)
-  "Return from 1 to 6 if TOKEN begins a heading, else NIL."
+  "Return the level, from 1 to 6, of the heading that TOKEN begins; NIL if TOKEN begins no heading."
   (let ((name (and (tag-p token) (tag-name token))))
     (and name
          (= 2 (length name))
@@ -101,7 +104,7 @@ HTML of its Markdown, its headings with anchors."
          (digit-char-p (char name 1)))))
 
 (defun with-anchors (tokens)
-  "Return TOKENS with an id in each heading, no two of them the same."
+  "Return TOKENS with a unique id in each heading."
   (let ((counts (make-hash-table :test #'equal)))
     (loop for rest on tokens
           for token = (first rest)
@@ -112,7 +115,8 @@ HTML of its Markdown, its headings with anchors."
                       token))))
 
 (defun headings (tokens)
-  "Return lists (level id text words) for the headings in TOKENS, in order; WORDS is what follows."
+  "Return lists (level id text words) for the headings in TOKENS. WORDS is the text below the
+heading."
   (loop for rest on tokens
         for token = (first rest)
         when (and (heading-level token) (attribute-value "id" token))
@@ -124,7 +128,7 @@ HTML of its Markdown, its headings with anchors."
                           (text-of (subseq below 0 (position-if #'heading-level below)))))))
 
 (defun mark-readings (tokens)
-  "Return TOKENS, of the page of readings, with an id where each reading begins, as reading-12."
+  "Return TOKENS, the page of readings, with an id such as reading-12 where each reading begins."
   (loop for (token next) on tokens
         for number = (and (tag-called-p "strong" token) next
                           (parse-integer next :junk-allowed t))
@@ -137,7 +141,7 @@ HTML of its Markdown, its headings with anchors."
 (defparameter *usages*
   '(("ars-magna" "usage.txt") ("ars-magna experiment" "usage-experiment.txt")
     ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt"))
-  "Lists (command file): what --help prints.")
+  "Lists (command file): the option --help of the command prints the file.")
 
 (defun markdown-of (source)
   (if (string= source "cli/shell/usage.txt")

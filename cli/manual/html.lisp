@@ -17,7 +17,7 @@
            *entities*))
 
 (defun unescaped (html)
-  "Return the text of HTML, which has no tags."
+  "Return HTML, which has no tags, as text: with characters in place of entities."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length html))
@@ -35,8 +35,8 @@
   (or (char<= #\a char #\z) (char<= #\0 char #\9) (char= char #\-)))
 
 (defun anchor (name)
-  "Return the id of the entry NAME on its page. It has only characters that need no escaping in
-addresses, and differs for different names."
+  "Return the id of the entry NAME on its page. Different names have different ids, and no character
+of an id needs escaping in addresses."
   (with-output-to-string (out)
     (loop for char across (string-downcase name)
           do (if (plain-char-p char)
@@ -44,7 +44,7 @@ addresses, and differs for different names."
                  (format out "_~(~2,'0X~)" (char-code char))))))
 
 (defun slug (heading)
-  "Return the id of HEADING, a text, on its page, as the sites that show Markdown make it."
+  "Return the id of HEADING, a text, on its page. Sites that show Markdown make the same id."
   (substitute #\- #\Space
               (remove-if-not (lambda (char)
                                (or (alphanumericp char) (find char " -_")))
@@ -53,13 +53,13 @@ addresses, and differs for different names."
 ;;; From Markdown to HTML, by the program cmark-gfm, and splitting HTML.
 
 (defun markdown-html (text)
-  "Return the HTML of TEXT, in Markdown as GitHub has it. HTML in TEXT is left out."
+  "Convert TEXT from GitHub's Markdown to HTML, and return the HTML. HTML in TEXT is left out."
   (multiple-value-bind (status html)
       (with-input-from-string (in text)
         (run-command "cmark-gfm" '("--extension" "table" "--extension" "autolink")
                      :input in :output :string))
     (unless (eql 0 status)
-      (reject-use "The manual needs the program cmark-gfm, of Debian's package of that name: ~
+      (reject-use "The manual needs the program cmark-gfm. Debian has it as a package: ~
                    apt-get install cmark-gfm."))
     html))
 
@@ -77,11 +77,11 @@ addresses, and differs for different names."
                     (setf start end)))))
 
 (defun tag-p (token)
-  "True if TOKEN, of HTML-TOKENS, is a tag."
+  "True if TOKEN, an element of HTML-TOKENS, is a tag."
   (char= #\< (char token 0)))
 
 (defun tag-name (token)
-  "Return the name of the tag TOKEN, with the slash of one that ends an element; NIL of text."
+  "Return the name of the tag TOKEN, with a slash first for an end tag; NIL if TOKEN is text."
   (and (tag-p token)
        (subseq token 1 (position-if (lambda (char) (find char " >")) token))))
 
@@ -97,7 +97,7 @@ addresses, and differs for different names."
         (unescaped (subseq tag start (position #\" tag :start start)))))))
 
 (defun with-attribute (attribute value tag)
-  "Return TAG with VALUE for ATTRIBUTE, which it may have or not."
+  "Return TAG with its ATTRIBUTE set to VALUE."
   (let* ((mark (format nil " ~A=\"" attribute))
          (start (search mark tag))
          (end (if start
@@ -107,7 +107,7 @@ addresses, and differs for different names."
             (subseq tag end))))
 
 (defun element-at (tokens)
-  "Return the tokens of the element, tags included, that TOKENS begin with, and the rest."
+  "Return the tokens of the first element in TOKENS, including its tags, and the remaining tokens."
   (let ((name (tag-name (first tokens))))
     (loop with depth = 0
           for rest on tokens
@@ -119,7 +119,8 @@ addresses, and differs for different names."
           finally (return (values element (rest rest))))))
 
 (defun parts-of (tokens whole-p)
-  "Return TOKENS in lists: whole elements whose first tag satisfies WHOLE-P, other tokens alone."
+  "Divide TOKENS into lists: an element whose first tag satisfies WHOLE-P is a list, as is each
+other token."
   (loop with rest = tokens
         while rest
         collect (if (funcall whole-p (first rest))

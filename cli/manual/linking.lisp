@@ -3,8 +3,8 @@
 (in-package :ars-magna.manual)
 
 (defstruct (book (:constructor make-book (pages entries examples table)) (:copier nil))
-  "The PAGES of the guide, the ENTRIES of the reference, the EXAMPLES, and a table of the entries by
-their names in lower case. FILES are the project's files that are copied beside the pages."
+  "The manual: the PAGES of the guide, the ENTRIES of the reference, and the EXAMPLES. TABLE maps
+names in lower case to entries. FILES are the project's files to copy beside the pages."
   (pages '() :type list :read-only t)
   (entries '() :type list :read-only t)
   (examples '() :type list :read-only t)
@@ -12,7 +12,8 @@ their names in lower case. FILES are the project's files that are copied beside 
   (files '() :type list))
 
 (defun table-of-entries (entries)
-  "Return a table of ENTRIES by name; the first of a name counts."
+  "Return a hash table from names to ENTRIES. Of several entries with the same name, it has the
+first."
   (let ((table (make-hash-table :test #'equal)))
     (dolist (entry entries table)
       (unless (gethash (entry-key entry) table)
@@ -27,7 +28,7 @@ their names in lower case. FILES are the project's files that are copied beside 
 ;;; Addresses. Pages of the project refer to other pages, or to files that are copied.
 
 (defun without-dots (name)
-  "Return NAME, of a file, without steps to directories above."
+  "Return NAME, a file name, with . and .. resolved."
   (let ((parts '()))
     (dolist (part (uiop:split-string name :separator "/"))
       (cond ((string= ".." part) (pop parts))
@@ -36,13 +37,14 @@ their names in lower case. FILES are the project's files that are copied beside 
     (format nil "~{~A~^/~}" (reverse parts))))
 
 (defun copied-name (name)
-  "Return the name beside the pages of the copy of the project's file NAME: what browsers do not
-show by themselves is called a text."
+  "Return the name of the manual's copy of the project's file NAME. If browsers cannot show the
+file, the copy has the type txt."
   (format nil "files/~A~:[.txt~;~]" name
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
 
 (defun file-address (name book)
-  "Return the address of the project's file NAME: a copy; for a directory its page, or the first."
+  "Return the address of the manual's copy of the project's file NAME. If NAME is a directory,
+return the address of its page, or of the first page."
   (if (uiop:directory-exists-p (project-path (format nil "~A/" name)))
       (let ((page (page-of-source (format nil "~A/README.md" name) book)))
         (if page (page-file page) "index.html"))
@@ -50,7 +52,7 @@ show by themselves is called a text."
              (copied-name name))))
 
 (defun new-address (address page book)
-  "Return where ADDRESS, as PAGE of the project has it, leads in the manual."
+  "Return the address in the manual for ADDRESS, a link on PAGE in the project."
   (multiple-value-bind (file place) (let ((mark (or (position #\# address) (length address))))
                                       (values (subseq address 0 mark) (subseq address mark)))
     (cond ((or (search "://" address) (starts-with-subseq "mailto:" address)) address)
@@ -76,7 +78,7 @@ show by themselves is called a text."
   "The chapters whose names are linked in Lisp code.")
 
 (defun linked-lisp (text book)
-  "Return the HTML of TEXT, of Lisp, its names leading to their entries."
+  "Return TEXT, Lisp code, as HTML with names linked to their entries."
   (with-output-to-string (out)
     (let ((done 0))
       (flet ((copy-to (end)
@@ -98,7 +100,8 @@ show by themselves is called a text."
 ;;; Pages of the guide.
 
 (defun linked-tokens (tokens page book)
-  "Return TOKENS, of PAGE, with the manual's addresses and with names linked to their entries."
+  "Return TOKENS, of PAGE, with links changed to addresses in the manual and names linked to
+entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
     (loop for part in (parts-of tokens #'linked-p)
           for token = (first part)
@@ -112,13 +115,14 @@ show by themselves is called a text."
                        (t (list (rewrite-picture-address token page book)))))))
 
 (defun linked-anchor (element page book)
-  "Return the tokens of ELEMENT, a link on PAGE, leading to where that is in the manual."
+  "Return the tokens of ELEMENT, a link on PAGE, with its address changed to the one in the manual."
   (cons (with-attribute "href" (new-address (attribute-value "href" (first element)) page book)
           (first element))
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
-  "Return TOKEN; if it is a picture on PAGE, with the address of its copy."
+  "Return TOKEN. If TOKEN is a picture on PAGE, its address is changed to that of the manual's
+copy."
   (if (tag-called-p "img" token)
       (with-attribute "src" (new-address (attribute-value "src" token) page book) token)
       token))
@@ -130,7 +134,8 @@ show by themselves is called a text."
   (or (alphanumericp char) (find char "-*+!?%:./_=<>")))
 
 (defun citation-address (word next book)
-  "Return where WORD, if it cites NEXT, a section of the manual of 1992 or a reading, leads."
+  "If WORD and NEXT cite a section of the manual of 1992 or a reading, return the address to link
+to."
   (let ((number (parse-integer next :junk-allowed t)))
     (cond ((string-equal "reading" word)
            (and number (page-of-source "src/readings.md" book)
@@ -140,7 +145,7 @@ show by themselves is called a text."
                 "about.html#the-manual-of-1992")))))
 
 (defun words-and-gaps (text)
-  "Return the words in TEXT and what is between them, in a list of strings that begins with a gap."
+  "Return TEXT as a list of strings: a gap, a word, a gap, and so on. A gap is text between words."
   (loop with start = 0
         for word = (position-if #'word-char-p text :start start)
         for end = (and word (or (position-if-not #'word-char-p text :start word) (length text)))
@@ -150,7 +155,7 @@ show by themselves is called a text."
         do (setf start end)))
 
 (defun word-html (word book own)
-  "Return the HTML of WORD, in prose of something with arguments called OWN."
+  "Return the HTML of WORD, linked if WORD names an entry. Names in OWN, a list, are not linked."
   (let ((name (string-right-trim ".:" word)))
     (cond ((and (< 1 (length name))
                 ;; In capitals, or a keyword.
@@ -162,7 +167,7 @@ show by themselves is called a text."
           (t (escaped word)))))
 
 (defun line-html (line book &optional own)
-  "Return the HTML of LINE, of prose without backquotes; OWN as for WORD-HTML."
+  "Return the HTML of LINE, prose without backquotes. OWN is as for WORD-HTML."
   (with-output-to-string (out)
     (loop for (gap word next-gap next) on (words-and-gaps line) by #'cddr
           do (write-string (escaped gap) out)
@@ -174,7 +179,7 @@ show by themselves is called a text."
                                out))))))
 
 (defun prose-html (text book &optional own)
-  "Return the HTML of TEXT, prose with names in backquotes or capitals; OWN as for WORD-HTML."
+  "Return the HTML of TEXT, prose with names in backquotes or capitals. OWN is as for WORD-HTML."
   (with-output-to-string (out)
     (loop for part in (uiop:split-string text :separator "`")
           for code-p = nil then (not code-p)
@@ -188,7 +193,7 @@ show by themselves is called a text."
   (starts-with-subseq "  " line))
 
 (defun paragraphs (text)
-  "Return the lines of TEXT in lists: those of a paragraph, or those of a list, which are indented."
+  "Divide the lines of TEXT into lists, each the lines of a paragraph or of an indented list."
   (let ((groups '()))
     (dolist (line (uiop:split-string text :separator '(#\Newline))
                   (reverse (mapcar #'reverse groups)))
@@ -199,7 +204,7 @@ show by themselves is called a text."
             (t (push (list line) groups))))))
 
 (defun docstring-html (text book own)
-  "Return the HTML of TEXT, documentation of several paragraphs; OWN as for WORD-HTML."
+  "Return the HTML of TEXT, a docstring of several paragraphs. OWN is as for WORD-HTML."
   (with-output-to-string (out)
     (dolist (lines (remove nil (paragraphs text)))
       (if (indented-p (first lines))

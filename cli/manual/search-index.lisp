@@ -103,7 +103,8 @@ Leave out a, an, the and my: the search ignores them.")
 
 (defstruct (row (:constructor make-row (name kind address sentence &optional (words "")))
                 (:copier nil))
-  "What the search may show: NAME, linked to ADDRESS, then KIND and SENTENCE. WORDS are searched."
+  "A row that the search may show: NAME, linked to ADDRESS, then KIND and SENTENCE. WORDS are
+searched as well as NAME."
   (name "" :type string :read-only t)
   (kind "" :type string :read-only t)
   (address "" :type string :read-only t)
@@ -120,7 +121,7 @@ Leave out a, an, the and my: the search ignores them.")
    :test #'string= :from-end t))
 
 (defun page-rows (page)
-  "Return rows for the headings of PAGE. Those of the guide have the words of their sections."
+  "Return rows for the headings of PAGE. On pages of the guide, a row has the words of its section."
   (loop for (nil id text words) in (headings (page-tokens page))
         collect (make-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
                           (if (member (page-part page) '(:learning :guide))
@@ -147,7 +148,8 @@ Leave out a, an, the and my: the search ignores them.")
                         (row-words row)))))
 
 (defun write-index (out book)
-  "Write the index as JavaScript. Synonyms come first: of equally good rows the first wins."
+  "Write the search index to OUT as JavaScript. Synonyms come first, because the search prefers the
+first of equally good rows."
   (let ((rows (append (mapcar #'entry-row (book-entries book))
                       (mapcan #'page-rows (copy-list (book-pages book))))))
     (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"

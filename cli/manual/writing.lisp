@@ -12,7 +12,7 @@
   "Lists (file title): the links at the top of each page.")
 
 (defun write-frame (out title body)
-  "Write to OUT a page called TITLE around BODY, HTML. It needs only files beside it."
+  "Write to OUT an HTML page with TITLE and BODY. The page uses only files in its own directory."
   (format out "<!DOCTYPE html>
 <html lang=\"en\">
 <head>
@@ -113,11 +113,11 @@
           (from-html example)))
 
 (defun shown-p (example named-p)
-  "True if EXAMPLE is to be shown with the entry. NAMED-P is true if the example names it."
+  "True if EXAMPLE is to be shown in full. NAMED-P is true if the example names its entry."
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
 (defun examples-of-entry (entry examples)
-  "Return those of EXAMPLES that are for ENTRY, and true if they name it."
+  "Return those of EXAMPLES that are for ENTRY, and true if they name the entry."
   (let ((chapter (entry-chapter entry)))
     (examples-for (entry-key entry)
                   (cond ((eq :prompt chapter) :typed)
@@ -135,9 +135,9 @@
                                       (from-html example)))))))
 
 (defparameter *about-examples*
-  "Each example is part of the page that its link leads to. Definitions that it uses are further
-up on that page."
-  "A note on the examples of a chapter.")
+  "A link leads from each example to its page. Definitions that the example uses are further up on
+that page."
+  "A note on examples, shown in each chapter of the reference.")
 
 ;;; Entries and chapters.
 
@@ -224,7 +224,8 @@ up on that page."
       (page (chapter-file chapter) #'write-chapter chapter))))
 
 (defun write-manual (directory)
-  "Write the manual into DIRECTORY, a name, made if there is none. Return its first page's path."
+  "Write the manual into DIRECTORY, a name, and return the path of the first page. Make the
+directory if it does not exist."
   (let ((directory (uiop:ensure-directory-pathname
                     (merge-pathnames (path-called directory) (base-directory))))
         (book (let ((pages (read-guide)) (entries (all-entries)))
@@ -238,7 +239,8 @@ up on that page."
     (merge-pathnames "index.html" directory)))
 
 (defun main (directory)
-  "Write the manual into DIRECTORY, a name; print its first page, or why not. Return the status."
+  "Write the manual into DIRECTORY, a name. Print the path of the first page, or the error. Return
+the exit status."
   (handler-case (progn (format t "~A~%" (native-name (write-manual directory)))
                        0)
     (error (condition)

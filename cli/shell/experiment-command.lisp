@@ -11,7 +11,7 @@
   (let ((number (number-from-text text)))
     (if (and (integerp number) (<= 1 number 1000000000))
         number
-        (reject-usage "~A is no number from 1 to 1e9, in digits." text))))
+        (reject-usage "~A is not a whole number from 1 to 1e9, in digits." text))))
 
 (defun parse-width (text)
   (let ((number (number-from-text text)))
@@ -20,7 +20,7 @@
         (reject-usage "--until takes the width of an interval, such as .02, not ~A." text))))
 
 (defconstant +largest-count-of-shards+ 100000
-  "Most shards that trials can be divided into. A command must have room for all their numbers.")
+  "The largest number of shards. The numbers of all shards must fit on a command line.")
 
 (defun parse-shards (text)
   (let ((count (number-from-text text)))
@@ -30,18 +30,18 @@
                       +largest-count-of-shards+ text))))
 
 (defun parse-shard (text)
-  "Return a cons (index . count) for TEXT, I/N."
+  "Return a cons (index . count) for TEXT, which has the form I/N."
   (let* ((slash (position #\/ text))
          (index (and slash (ignore-errors (parse-integer text :end slash))))
          (count (and slash (ignore-errors (parse-integer text :start (1+ slash))))))
     (if (and index count (< -1 index count (1+ +largest-count-of-shards+)))
         (cons index count)
-        (reject-usage "--shard takes I/N, a part I from 0 to below their number N, which is at ~
-                       most ~D, not ~A."
+        (reject-usage "--shard takes I/N: shard I of N shards, with I from 0 to N - 1 and N at ~
+                       most ~D. It does not take ~A."
                       +largest-count-of-shards+ text))))
 
 (defun parse-path (text)
-  (if (string= text "") (reject-usage "A file or directory has a name, not an empty one.") text))
+  (if (string= text "") (reject-usage "The name of a file or directory must not be empty.") text))
 
 (defparameter *experiment-options*
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
@@ -50,13 +50,13 @@
     ("--shard" :shard parse-shard) ("--parallel" :parallel identity :optional)
     ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shards)
     ("--missing" :missing nil) ("--save-executable" :save-executable parse-path))
-  "The options of the command EXPERIMENT, as in *OPTIONS*.")
+  "The options of the command `experiment`, in the format of *OPTIONS*.")
 
 (defparameter *options-that-need-others*
   '(("--plot" :plot :out) ("--shard" :shard :out) ("--parallel" :parallel :out)
     ("--slurm" :slurm :out) ("--missing" :missing :out) ("--missing" :missing :shards)
     ("--shards" :shards :parallel :slurm :missing))
-  "Lists (option key key-of-another...): one of the others must be there, too.")
+  "Lists (option key other-key...): the option needs one of the options with the other keys.")
 
 (defparameter *options-that-exclude-others*
   '((:shard :parallel :slurm :missing :save-executable) (:until :shard) (:until :parallel)
@@ -67,7 +67,7 @@
   (first (find key *experiment-options* :key #'second)))
 
 (defun check-together (options)
-  "Signal USAGE-ERROR if OPTIONS do not go together."
+  "Signal USAGE-ERROR if OPTIONS cannot be combined."
   (flet ((given-p (key) (find key options :key #'first)))
     (loop for (option key . others) in *options-that-need-others*
           do (when (and (given-p key) (notany #'given-p others))
@@ -104,8 +104,8 @@
     0))
 
 (defun tell-stopped (command arguments options under-way)
-  "Report what has been kept when COMMAND with ARGUMENTS was interrupted, and how to continue;
-UNDER-WAY says which trial took long, or is NIL."
+  "Report that COMMAND with ARGUMENTS was interrupted, how many rows are kept, and how to continue.
+UNDER-WAY is a text about a trial that took long, or NIL."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
@@ -129,14 +129,14 @@ UNDER-WAY says which trial took long, or is NIL."
                                 130)))))
 
 (defun print-missing (experiment options)
-  "Print the numbers of the shards that lack rows, in a line, or none."
+  "Print, on one line, the numbers of the shards with missing rows."
   (format t "~{~D~^ ~}~%" (missing-shards experiment (trials-of experiment options)
                                           (option-value :shards options)
                                           (option-value :out options)))
   0)
 
 (defun conduct-experiment (experiment words options)
-  "Run EXPERIMENT, which WORDS mean, as OPTIONS say. Return the exit status."
+  "Run EXPERIMENT, named by the arguments WORDS, with OPTIONS. Return the exit status."
   (cond ((option-value :save-executable options)
          (save-program (option-value :save-executable options)))
         ((option-value :missing options) (print-missing experiment options))
@@ -147,7 +147,7 @@ UNDER-WAY says which trial took long, or is NIL."
         (t (run-here experiment options))))
 
 (defun known-experiment (words)
-  "Return the experiment that WORDS mean: a file or name, and perhaps another name."
+  "Return the experiment named by WORDS: a file or an experiment, and possibly one in the file."
   (prog1 (apply #'experiment-called words)
     ;; A shell has no prompt to show warnings about definitions.
     (dolist (message (take-messages))
@@ -169,7 +169,7 @@ UNDER-WAY says which trial took long, or is NIL."
 
 (defparameter *merge-options*
   '(("--out" :out parse-path) ("--plot" :plot nil))
-  "The options of the command MERGE, as in *OPTIONS*.")
+  "The options of the command `merge`, in the format of *OPTIONS*.")
 
 (defun merge-command (arguments)
   (let* ((options (parse-options arguments :table *merge-options* :others t))
@@ -194,16 +194,17 @@ UNDER-WAY says which trial took long, or is NIL."
   '(("--by" :by identity) ("--against" :against identity)
     ("--measure" :measure identity) ("--plot" :plot parse-path) ("--trials" :trials parse-count)
     ("--workers" :workers parse-count) ("--out" :out parse-path) ("--quiet" :quiet nil))
-  "The options of the command COMPARE, as in *OPTIONS*.")
+  "The options of the command `compare`, in the format of *OPTIONS*.")
 
 (defun condition-word (word)
-  "Return the argument of COMPARE-CONDITIONS for WORD: a condition's number, its name, or :ALL."
+  "Convert WORD to an argument of COMPARE-CONDITIONS: a condition's number, its name, or :ALL."
   (cond ((string-equal word "all") :all)
         ((and (plusp (length word)) (every #'digit-char-p word)) (parse-integer word))
         (t word)))
 
 (defun results-meant (words options)
-  "Return the results that WORDS mean: a directory with them, or an experiment, which is run."
+  "Return the results named by WORDS: those in a directory, or those of an experiment, which is
+run."
   (if (and (null (rest words))
            (uiop:directory-exists-p (native-path-of-directory (first words)))
            (directories-with-rows (first words)))
@@ -226,10 +227,11 @@ UNDER-WAY says which trial took long, or is NIL."
          (unless (<= 1 (length words) 2)
            (reject-usage "compare --by FACTOR takes a directory with results, or an experiment.")))
         ((option-value :against options)
-         (reject-usage "--against VALUE goes with --by FACTOR."))
+         (reject-usage "--against VALUE needs --by FACTOR."))
         ((not (<= 2 (length words) 4))
-         (reject-usage "compare takes two directories with results; or two conditions, or values, ~
-                        and the directory or experiment they are in; or --by FACTOR and that."))))
+         (reject-usage "compare takes two directories with results; or two conditions or values, ~
+                        then a directory or experiment; or --by FACTOR and a directory or ~
+                        experiment."))))
 
 (defun compare-command (arguments)
   (let* ((options (parse-options arguments :table *compare-options* :others t))

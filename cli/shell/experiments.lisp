@@ -12,13 +12,14 @@
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
 (defun experiments-of (file experiments)
-  "Return those of EXPERIMENTS, defined by loading FILE, that FILE means: its own, or if it has
-none, those of the files that it loads."
+  "Return those of EXPERIMENTS that FILE itself defines. If it defines none, return all of
+EXPERIMENTS, which files loaded by FILE define."
   (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
       experiments))
 
 (defun load-experiments (path)
-  "Load the Lisp file at PATH. Return the experiments that it defines. Signals BAD-LINE if none."
+  "Load the Lisp file at PATH. Return the experiments that the file defines. Signals BAD-LINE if
+there are none."
   ;; Output of the file goes to the error output.
   (let ((before (all-experiments)) (*standard-output* *error-output*))
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
@@ -44,7 +45,8 @@ none, those of the files that it loads."
       (first experiments)))
 
 (defun experiments-called (word)
-  "Return the experiments in the file WORD, which is loaded, or of that name. Signals BAD-LINE."
+  "Load the file WORD and return its experiments, or return a list of the experiment named WORD.
+Signals BAD-LINE if there is neither."
   (let* ((path (path-called word))
          (known (experiment-among word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))
@@ -54,8 +56,8 @@ none, those of the files that it loads."
           (t (reject-file-or-experiment word)))))
 
 (defun experiment-called (word &optional name)
-  "Return the experiment that a user means by WORD, a file or an experiment's name, and NAME, if it
-is one of several in a file. Signals BAD-LINE."
+  "Return the experiment named by WORD, a file or an experiment. If the file has several
+experiments, NAME names the one to return. Signals BAD-LINE if there is no such experiment."
   (let ((experiments (experiments-called word)))
     (cond ((null name) (only-experiment word experiments))
           ((experiment-among name experiments))
@@ -63,14 +65,15 @@ is one of several in a file. Signals BAD-LINE."
           (t (reject-experiment name experiments)))))
 
 (defun ensure-results-directory (name)
-  "Return the path of the directory NAME, made if there is none."
+  "Return the path of the directory NAME. Make the directory if it does not exist."
   (handler-case (ensure-store-directory name)
     (misuse (condition) (reject-line "~A" condition))))
 
 ;;; What is said of results.
 
 (defun report-results (results plot)
-  "Print RESULTS. If they are kept, keep that text beside them, and with PLOT their pictures."
+  "Print RESULTS. If RESULTS have a directory, write the same text into a file there, and if PLOT,
+save pictures there."
   (print-results results *standard-output*)
   (when (results-directory results)
     (write-file-anew (lambda (out) (call-with-page-width (lambda () (print-results results out))))

@@ -6,8 +6,8 @@
   '(("experiment" experiment-command)
     ("merge" merge-command)
     ("compare" compare-command))
-  "Lists (name function): the function gets the arguments that follow, a list of strings, and
-returns the exit status. usage-NAME.txt describes the command.")
+  "Lists (name function) of commands. The function takes the command's arguments, a list of strings,
+and returns the exit status. The file usage-NAME.txt describes the command.")
 
 (defun find-command-called (name)
   (or (find name *shell-commands* :key #'first :test #'string=)
@@ -25,7 +25,7 @@ returns the exit status. usage-NAME.txt describes the command.")
       (ignore-errors (finish-output *error-output*)))))
 
 (defun usage-of-command (name)
-  "Return the usage text of the command NAME, or the text for all if that is NIL or no command."
+  "Return the usage text of the command NAME; the general usage text if NAME is not a command."
   (or (text-called (format nil "usage-~A.txt" name)) (text-called "usage.txt")))
 
 ;;; The prompt.
@@ -47,14 +47,15 @@ returns the exit status. usage-NAME.txt describes the command.")
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
 (defun load-before (names)
-  "Load the Lisp files NAMES before there is a prompt. Signals USAGE-ERROR."
+  "Load the Lisp files NAMES before the prompt starts. Signals USAGE-ERROR if a file cannot be
+loaded."
   (dolist (name names)
     (handler-case (load-lisp (file-called name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
 (defun robot-asked-for (session options)
-  "Return the name of the robot that OPTIONS ask for. If there is none, the files that SESSION
-begins with are loaded now, as they may define it. Signals USAGE-ERROR if they do not."
+  "Return the name of the robot that OPTIONS ask for. If that robot is not defined, load the files
+of the option --load now, because they may define it. Signals USAGE-ERROR if they do not."
   (handler-case (first-robot options)
     (bad-line (condition)
       (let ((files (shiftf (reader-files (session-reader session)) '())))
@@ -64,7 +65,8 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
                                (bad-line-text condition))))))))
 
 (defun run-headless (session robot-name seed)
-  "Run the lines of SESSION, a batch, in a fresh world. Return the robot to continue with, or NIL."
+  "Run the lines of SESSION, a batch, in a fresh world. Return the name of the robot that a line
+WORLD has chosen to continue with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (call-by-name (robots-of-same-world robot-name))
@@ -107,9 +109,9 @@ begins with are loaded now, as they may define it. Signals USAGE-ERROR if they d
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
 
 (defun standard-session (options)
-  "Return a session that carries out OPTIONS and then reads lines of the standard input. Without a
-terminal, it shows what it reads and waits for each command, for a transcript like those of manual
-E. A batch with plans to run does not wait for lines."
+  "Return a session that carries out OPTIONS and then reads lines of a script or the standard input.
+Without a terminal, the session echoes its lines and waits for each command, so that the output is a
+transcript as in manual E. A batch with plans to run reads no lines from a terminal."
   (let* ((script (option-value :script options))
          (objects (and (option-value :json options) (object-console)))
          (batch (or script objects (option-value :batch options)))
@@ -133,7 +135,7 @@ E. A batch with plans to run does not wait for lines."
         (run-live session robot-name options))))
 
 (defun write-all-as-objects (session)
-  "Turn all output of Lisp, also in users' threads, into objects of SESSION."
+  "Write all output of Lisp, including that of users' threads, as JSON objects of SESSION."
   (let* ((console (session-console session))
          (both (make-two-way-stream (session-input session) console)))
     (setf *standard-output* console
@@ -147,7 +149,8 @@ E. A batch with plans to run does not wait for lines."
     (when (and (or (option-value :batch options) (option-value :script options)
                    (option-value :json options))
                (null (option-value :rate options)))
-      (reject-usage "--window shows a live run; that of a batch or script is one with --rate."))
+      (reject-usage "--window shows a live run. The run of a batch or script is live only with
+--rate."))
     (handler-case (ensure-windows)
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
@@ -179,14 +182,15 @@ E. A batch with plans to run does not wait for lines."
         (t (run-prompt options))))
 
 (defun script-p (argument)
-  "True if ARGUMENT, the first of this process, or NIL, is a script: a file, but no command."
+  "True if ARGUMENT, the first argument of this process or NIL, is a script: a file, but not a
+command."
   (and argument
        (not (find argument *shell-commands* :key #'first :test #'string=))
        (or (string= argument "-")
            (and (not (option-p argument)) (script-path argument)))))
 
 (defun script-last-p (arguments)
-  "True if ARGUMENTS begin with an option and end with a script that is no option's value."
+  "True if ARGUMENTS begin with an option and end with a script that is not the value of an option."
   (and (option-p (or (first arguments) ""))
        (script-p (first (last arguments)))
        (ignore-errors (parse-options (butlast arguments)) t)))
@@ -222,17 +226,18 @@ E. A batch with plans to run does not wait for lines."
 ;;; The process.
 
 (defun ending-reason (condition)
-  "Return what CONDITION says, on one line, with names as users write them."
+  "Return the message of CONDITION on one line, with names as users write them."
   (let ((*package* (user-package)))
     (complaint-text (ending-text condition))))
 
 (defun give-reason (condition status)
-  "Write CONDITION to the error output; return STATUS."
+  "Write the message of CONDITION to the error output, and return STATUS."
   (ignore-errors (say-on-error-output (ending-reason condition)))
   status)
 
 (defun call-for-status (function)
-  "Call FUNCTION, which returns a status to exit with; return a status whatever happens."
+  "Call FUNCTION, which returns an exit status, and return that status. After an error or interrupt,
+report it and return the status for it."
   (catch 'leave
     (handler-case
         (call-until-interrupted
@@ -246,7 +251,7 @@ E. A batch with plans to run does not wait for lines."
         (give-reason condition 1)))))
 
 (defun deliver (console status)
-  "Write the pending output of CONSOLE. Return STATUS, or another if it could not be written."
+  "Write the pending output of CONSOLE. Return STATUS, or a status of at least 1 if writing failed."
   (finish-output console)
   (let ((trouble (console-trouble console)))
     (cond ((null trouble) status)
@@ -255,7 +260,8 @@ E. A batch with plans to run does not wait for lines."
           (t (give-reason trouble (max 1 status))))))
 
 (defun call-fitting (function console)
-  "Call FUNCTION. The tables that it prints fit the window of CONSOLE, if that is on a terminal."
+  "Call FUNCTION. If CONSOLE is on a terminal, tables that FUNCTION prints are made to fit the
+window."
   (if (terminal-stream-p (console-stream console))
       (call-with-page-width function (1- (window-size)))
       (funcall function)))
@@ -270,8 +276,8 @@ E. A batch with plans to run does not wait for lines."
                 (call-fitting (lambda () (run-arguments (process-arguments))) console))))))
 
 (defun main ()
-  "Run ./cli/ars-magna: do what the arguments of this process say, and end it. The argument --probe
-only asks whether the core starts."
+  "Run ./cli/ars-magna: do what the arguments of this process say, then end the process. The
+argument --probe only tests whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   ;; The core may have been saved where the environment names another.
   (uiop:setup-temporary-directory)

@@ -41,8 +41,8 @@
     ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
     ("--time-limit" :time-limit parse-seconds)
     ("--color" :color parse-color) ("--list" :list nil))
-  "Lists (option key parser [:optional]); PARSER is NIL for an option without a value. An optional
-value that is empty counts as none.")
+  "Lists (option key parser [:optional]). PARSER is NIL for an option without a value. If the value
+is optional, an empty value counts as left out.")
 
 ;;; Taking them apart.
 
@@ -50,14 +50,15 @@ value that is empty counts as none.")
   (starts-with-subseq "--" argument))
 
 (defun split-option (argument)
-  "Return the name of the option in ARGUMENT, and its value if one follows after =."
+  "Return the name of the option in ARGUMENT, and the value after the character =, or NIL."
   (let ((equals (position #\= argument)))
     (if (and equals (option-p argument))
         (values (subseq argument 0 equals) (subseq argument (1+ equals)))
         (values argument nil))))
 
 (defun value-that-follows (option arguments table)
-  "Return the value of OPTION, an element of TABLE, from ARGUMENTS after it, and those that remain."
+  "Return the value of OPTION, an element of TABLE, and the remaining arguments. ARGUMENTS follow
+the option."
   (destructuring-bind (name key parser &optional optional) option
     (declare (ignore key))
     (cond ((null parser) (values nil arguments))
@@ -69,10 +70,11 @@ value that is empty counts as none.")
           (t (values (first arguments) (rest arguments))))))
 
 (defun read-option (argument arguments table)
-  "Return a list (key value) for the option ARGUMENT, which ARGUMENTS follow, and those left."
+  "Return a list (key value) for the option ARGUMENT, and the remaining arguments. ARGUMENTS follow
+the option."
   (multiple-value-bind (name value) (split-option argument)
     (let ((option (or (find name table :key #'first :test #'string=)
-                      (reject-usage "~A is no option.~@[ Did you mean ~A?~]" name
+                      (reject-usage "~A is not an option.~@[ Did you mean ~A?~]" name
                                     (nearest-name name (mapcar #'first table))))))
       (destructuring-bind (name key parser &rest optional) option
         (declare (ignore optional))
@@ -83,7 +85,7 @@ value that is empty counts as none.")
 
 (defun parse-options (arguments &key (table *options*) others)
   "Return a list of (key value) for ARGUMENTS, a list of strings, with the options of TABLE. If
-OTHERS is true, arguments that are no options count as (:other argument). Signals USAGE-ERROR."
+OTHERS is true, an argument that is not an option becomes (:other argument). Signals USAGE-ERROR."
   (loop while arguments
         collect (let ((argument (pop arguments)))
                   (if (and others (not (option-p argument)))
@@ -108,7 +110,7 @@ OTHERS is true, arguments that are no options count as (:other argument). Signal
                       "spread-parallel.sh" "spread-slurm.sh")
         collect (list name (file-text (asdf:system-relative-pathname
                                        "ars-magna" (format nil "cli/shell/~A" name)))))
-  "Lists (name text).")
+  "Lists (name text): files of this folder, as saved in the program.")
 
 (defparameter *version* (asdf:component-version (asdf:find-system "ars-magna"))
   "The version of this program.")
@@ -117,7 +119,8 @@ OTHERS is true, arguments that are no options count as (:other argument). Signal
   (second (assoc name *texts* :test #'string=)))
 
 (defun with-settings (text settings)
-  "Return TEXT, of a script, with SETTINGS, lists (variable value comment), in their place."
+  "Return TEXT, of a script, with its mark @SETTINGS@ replaced by SETTINGS, lists (variable value
+comment)."
   (let ((mark "@SETTINGS@"))
     (with-output-to-string (out)
       (write-string text out :end (search mark text))

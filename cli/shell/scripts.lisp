@@ -23,7 +23,8 @@
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
 (defun report-end (session status)
-  "Report that SESSION is over, and the process will exit with STATUS. Return the status."
+  "Report as an object that SESSION is over, with the exit STATUS. Return the status; if output has
+failed, at least 1."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
     (report-object (session-account session) "end" :status status
                                                    :errors (session-errors session))
@@ -35,24 +36,25 @@
 ;;; (src/time/pacing.lisp).
 
 (defparameter *hog-patience* 3
-  "After how many seconds in one call of users' code a batch reports that call.")
+  "The time in seconds after which a batch reports a call of users' code that has not returned.")
 
 (defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
 
 (defparameter *grace* 3
-  "How many seconds the program has to end normally after a time limit.")
+  "The time in seconds that a session has to end normally after its time limit.")
 
 (defun call-under-way (session calls)
-  "Return in words whose code runs in SESSION, by CALLS, or in its live run; and how many calls were
-begun before. Without a second value, return which form of a file is being loaded, or NIL."
+  "Return a text that names the users' code running in SESSION, as recorded in CALLS, or in its live
+run, and the number of calls begun so far. While a file is loaded, return only a text that names the
+form; NIL if there is nothing to name."
   (let ((simulation (session-simulation session)))
     (cond ((user-calls-origin calls) (values (running-code-owner calls) (user-calls-count calls)))
           ((user-calls-place calls) (running-code-owner calls))
           ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
 
 (defun watch-for-blocking-code (session calls ended)
-  "Name users' code that blocks SESSION, by CALLS, until the semaphore ENDED is signalled. Code seen
-four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
+  "Report users' code that blocks SESSION, as recorded in CALLS, until the semaphore ENDED is
+signalled. Code blocks if the same call is seen four times, a third of *HOG-PATIENCE* apart."
   (loop with seen = nil and looks = 0
         until (wait-on-semaphore ended (/ *hog-patience* 3))
         do (multiple-value-bind (whose count) (call-under-way session calls)
@@ -69,7 +71,7 @@ four times in a row, a third of *HOG-PATIENCE* apart, has run that long."
 
 (defun end-at-limit (session calls thread seconds ended)
   "End SESSION, which THREAD runs, after SECONDS, unless the semaphore ENDED is signalled before. If
-it cannot be ended, end this process."
+the session cannot be ended, end this process."
   (unless (wait-on-semaphore ended seconds)
     (let ((whose (call-under-way session calls)) (said nil))
       (flet ((say ()
@@ -85,13 +87,14 @@ it cannot be ended, end this process."
           (end-process +time-over+))))))
 
 (defun report-code-on-interrupt (session calls)
-  "Make Control-C report whose code runs in SESSION, by CALLS, before it ends that at once."
+  "Make Control-C report the users' code running in SESSION, as recorded in CALLS, before it ends
+this process at once."
   (setf *before-ending-at-once*
         (lambda ()
           (say-stopped session (call-under-way session calls) "Control-C was pressed again"))))
 
 (defun call-with-watchers (session options function)
-  "Call FUNCTION, which runs SESSION. Without a terminal, name code that does not return. The time
+  "Call FUNCTION, which runs SESSION. Without a terminal, report code that does not return. The time
 limit of OPTIONS, if any, ends FUNCTION."
   (let* ((calls (make-user-calls)) (*user-calls* calls)
          (ended (make-semaphore "session ended"))

@@ -6,7 +6,7 @@
 ;;; is this program, with the user's file loaded: `./PROGRAM experiment NAME` runs an experiment in
 ;;; it, with the same fingerprints as here.
 
-(defvar *beginning* nil "The function with which this program has started.")
+(defvar *beginning* nil "The function that a saved copy of this program calls when it starts.")
 
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 
@@ -27,8 +27,8 @@
         (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
 
 (defun save-program-with (words name)
-  "Save this program as the executable file NAME, with the experiments that WORDS mean, a file or
-the name of one. Signals BAD-LINE."
+  "Save this program as the executable file NAME, with the experiments named by WORDS, a file or an
+experiment. Signals BAD-LINE if the program cannot be saved."
   ;; Saving ends the Lisp that does it; so another process does it.
   (let* ((new (format nil "~A.new" name))
          (arguments (append (rest (program-words)) (list "experiment") words
@@ -46,12 +46,14 @@ the name of one. Signals BAD-LINE."
 ;;; experiment, so that a second start finds the same ones.
 
 (defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
-  "Lists (script trials least): trials in a shard, and the least number of shards.")
+  "Lists (script trials least): the number of trials in a shard, and the smallest number of
+shards.")
 
-(defconstant +most-shards+ 1000 "Most shards, unless a user asks for more.")
+(defconstant +most-shards+ 1000 "The largest number of shards by default.")
 
 (defun default-shards (experiment trials script)
-  "Return how many shards TRIALS trials of each condition of EXPERIMENT make for SCRIPT."
+  "Return the default number of shards for SCRIPT, if EXPERIMENT has TRIALS trials of each
+condition."
   (destructuring-bind (size least)
       (rest (assoc script *shards-of-scripts* :test #'string=))
     (min trials
@@ -66,7 +68,7 @@ the name of one. Signals BAD-LINE."
     `(("experiment" ,(string-downcase (experiment-name experiment)) "what is run")
       ("trials" ,trials "of each condition")
       ("shards" ,(or (option-value :shards options) (default-shards experiment trials script))
-                "into how many parts all trials are divided")
+                "number of parts into which all trials are divided")
       ("limit" ,(format nil "~@[--time-limit ~A~]" (option-value :time-limit options))
                "--time-limit SECONDS: how long a trial may take")
       ("plot" ,(if (option-value :plot options) "--plot" "") "--plot: pictures, too"))))
@@ -87,22 +89,23 @@ the name of one. Signals BAD-LINE."
             ("options" ,(option-value :slurm options) "for sbatch: --partition=long ..."))))
 
 (defun write-script (name text directory)
-  "Write TEXT as the script NAME in DIRECTORY. A different one there is kept, as NAME~."
+  "Write TEXT as the script NAME in DIRECTORY. If a different script is there, rename it to NAME~."
   (let* ((path (merge-pathnames (native-path name) directory))
          (there (and (existing-path path) (file-text path))))
     (unless (equal there text)
       (when there
         (let ((old (native-path (format nil "~A~~" (native-name path)))))
           (replace-file old path)
-          (say "~A was there, and different; it is ~A now." (native-name path)
+          (say "~A was there with another text; that file is ~A now." (native-name path)
                (native-name old))))
       (write-file-anew (lambda (out) (write-string text out)) path "the script"
                        :remedy "remove it, or give another directory"))
     path))
 
 (defun spread (experiment words options script template settings)
-  "Run EXPERIMENT, which WORDS mean, arguments of this program, by SCRIPT, made from TEMPLATE and
-the values of SETTINGS, a function. Return the exit status."
+  "Write SCRIPT, which runs EXPERIMENT, named by the arguments WORDS, on many processors, and run
+it. TEMPLATE is the template of the script, SETTINGS a function that returns its settings. Return
+the exit status."
   (let ((directory (ensure-results-directory (option-value :out options))))
     ;; Rows must not be replaced by a program that cannot continue them.
     (check-same-code experiment directory)

@@ -31,15 +31,15 @@
    (colored-p :initform nil :accessor console-colored-p)
    (held-back-p :initform nil :accessor console-held-back-p)
    (held-back :initform '() :accessor console-held-back))
-  (:documentation "An output stream on top of another. WINDOW is a function that returns columns and
-rows of the terminal's window, or NIL if there is none. REST is the output since the last newline,
-if it is short; WRAPPED-P is true if that fills a row, and the cursor is in the next. EDITED-P is
-true if the prompt edits typed lines, TYPED the drawn-line that is being typed, or NIL. QUESTION is
-the question shown to the user, or NIL; OVERWRITTEN-P is true if something was written after it.
-ASKED-P is true while a program, not the prompt, reads typed input, ASKING-TOLD-P if the user has
-been told so since the last prompt. TROUBLE is the condition that output could not be delivered,
-:OVER after DISCARD-OUTPUT, or NIL. COLORED-P is true if messages and prompts have colours. While
-HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest first."))
+  (:documentation "An output stream that writes to STREAM, another stream. WINDOW is a function that
+returns columns and rows of the terminal's window, or NIL if there is no window. REST is the output
+since the last newline, if it is short. WRAPPED-P is true if REST fills a row and the cursor is in
+the next row. EDITED-P is true if the prompt edits typed lines. TYPED is the drawn-line being typed,
+or NIL. QUESTION is the prompt shown to the user, or NIL. OVERWRITTEN-P is true if output follows
+the prompt. ASKED-P is true while a program, not the prompt, reads typed input. ASKING-TOLD-P is
+true if the user has been told since the last prompt that a program reads. TROUBLE is the error of a
+failed write, :OVER after DISCARD-OUTPUT, or NIL. COLORED-P is true if messages and prompts have
+colours. While HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest first."))
 
 (setf (documentation 'console-line 'function)
       "Return the drawn-line that is being typed on the console, or NIL. Can be set."
@@ -47,32 +47,34 @@ HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest firs
       "True while a program, not the prompt, reads what is typed on the console.")
 
 (defun make-console (stream &optional window)
-  "Return a console on STREAM, or STREAM if it is one. WINDOW is as in CONSOLE."
+  "Return a console that writes to STREAM; STREAM itself if it is a console. WINDOW is as in
+CONSOLE."
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-without-output-p* nil
-  "True in the thread that leaves this process when output cannot be written.")
+  "True in a thread that ends this process when output cannot be written.")
 
 (defun try-to-write (function console)
-  "Call FUNCTION with the stream below CONSOLE unless that has failed before. True if it fails now."
+  "Call FUNCTION with the stream of CONSOLE, unless an earlier write failed. Return true if FUNCTION
+fails now."
   (with-lock ((console-lock console))
     (unless (console-trouble console)
       (handler-case (progn (funcall function (console-stream console)) nil)
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
 
 (defun discard-output (console)
-  "Discard further output to CONSOLE: the stream below may be gone. Output of another thread in
-progress is finished first."
+  "Discard all further output to CONSOLE, because its stream may be closed. A write by another
+thread is completed first."
   (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
 
 (defun call-with-console (function console)
-  "Call FUNCTION with the stream below CONSOLE, unless it has failed before."
+  "Call FUNCTION with the stream of CONSOLE, unless an earlier write failed."
   (when (and (call-holding-interrupts (lambda () (try-to-write function console)))
              *leave-without-output-p*)
     (throw 'leave 1)))
 
 (defmacro with-console ((stream console) &body body)
-  "Run BODY with STREAM bound to the stream below CONSOLE, while no other thread writes to it."
+  "Run BODY with STREAM bound to the stream of CONSOLE, while no other thread writes to CONSOLE."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
 (defun painted (text ink console)
@@ -107,7 +109,7 @@ progress is finished first."
               ""))))
 
 (defun column-of-row (console)
-  "Return in which column of the window the cursor is; 0 if it is after the last."
+  "Return the cursor's column in the window of CONSOLE; 0 if the cursor is after the last column."
   (mod (if (string= "" (console-rest console))
            (console-column console)
            (text-columns (console-rest console)))
@@ -116,12 +118,13 @@ progress is finished first."
 ;;; The line that is being typed.
 
 (defun call-in-window (function console stream)
-  "Call FUNCTION with the line of CONSOLE, STREAM, and how many columns and rows the window has."
+  "Call FUNCTION with the line of CONSOLE, STREAM, and the numbers of columns and rows of the
+window."
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
 (defgeneric wipe (console stream)
-  (:documentation "Erase the line being typed, if it is shown, so that further output continues
-where the last has ended.")
+  (:documentation "Erase the line being typed, if it is shown, and move the cursor to the end of the
+output above.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (drawn-line-shown line))
@@ -130,7 +133,7 @@ where the last has ended.")
           (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console))))))))
 
 (defgeneric draw (console stream)
-  (:documentation "Draw the line being typed below the output, if there is one and it is not
+  (:documentation "Draw the line being typed below the output, if there is such a line and it is not
 shown.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
@@ -150,7 +153,7 @@ shown.")
       (when (plusp (drawn-line-column line)) (terpri stream)))))
 
 (defun change-line (console function)
-  "Call FUNCTION with the line being typed, if any, and show the result."
+  "Call FUNCTION with the line being typed, if any, and draw the line again."
   (with-console (stream console)
     (when (console-line console)
       (wipe console stream)
@@ -159,7 +162,7 @@ shown.")
       (finish-output stream))))
 
 (defun begin-line (console)
-  "Begin a line to type after the last output, unless there is one already."
+  "Begin a line to type after the last output, unless a line is being typed already."
   (with-console (stream console)
     (unless (console-line console)
       (when (/= (console-column console) (length (console-rest console)))
@@ -174,7 +177,7 @@ shown.")
     (finish-output stream)))
 
 (defun redraw-if-resized (console)
-  "Draw the line that is being typed again if the window is not as wide as when it was drawn."
+  "Draw the line being typed again if the width of the window has changed since it was drawn."
   (let ((line (console-line console)))
     (when (and line
                (drawn-line-columns line)
@@ -182,7 +185,7 @@ shown.")
       (change-line console (constantly nil)))))
 
 (defun hide-line (console)
-  "Erase the line being typed, until something is shown."
+  "Erase the line being typed. It is drawn again with the next output."
   (with-console (stream console)
     (wipe console stream)
     (finish-output stream)))
@@ -213,7 +216,8 @@ shown.")
 ;;; Writing.
 
 (defun put-now (string console stream start end)
-  "Write STRING from START to END to STREAM, below CONSOLE, while the line being typed is erased."
+  "Write STRING from START to END to STREAM, the stream of CONSOLE. The line being typed must be
+erased."
   ;; The cursor is there already.
   (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
     (begin-row console)
@@ -223,14 +227,15 @@ shown.")
   (unless (console-line console) (setf (console-overwritten-p console) t)))
 
 (defun put-string (string console stream &optional (start 0) (end (length string)))
-  "Write STRING from START to END to STREAM, which is below CONSOLE and is locked."
+  "Write STRING from START to END to STREAM, the locked stream of CONSOLE. Keep STRING instead if
+CONSOLE holds back output."
   (cond ((= start end))
         ((console-held-back-p console) (hold-back (subseq string start end) console))
         (t (wipe console stream)
            (put-now string console stream start end))))
 
 (defun put-fresh (text console stream)
-  "Write TEXT as PUT-STRING does, from the beginning of a line on."
+  "Write TEXT like PUT-STRING, but at the beginning of a line."
   (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
   (put-string text console stream))
 
@@ -251,11 +256,11 @@ shown.")
   string)
 
 (defun write-fresh (text console)
-  "Write TEXT from the beginning of a line of CONSOLE on, all of it in one piece."
+  "Write TEXT to CONSOLE, at the beginning of a line and without output of other threads between."
   (with-console (stream console) (put-fresh text console stream)))
 
 (defun write-after-prompt (text console)
-  "Write TEXT after the prompt; or above it, if something has been typed there."
+  "Write TEXT after the prompt; if something has been typed after the prompt, write TEXT above it."
   (with-console (stream console)
     (let ((line (console-line console)))
       (cond ((null line) (put-string text console stream))
@@ -263,15 +268,16 @@ shown.")
             (t (put-fresh (concatenate 'string (drawn-line-label line) text) console stream))))))
 
 (defgeneric fitted (text console &optional label)
-  (:documentation "Return TEXT as it is written after LABEL: on a terminal, with lines that are
-broken between words.")
+  (:documentation "Return TEXT for output after LABEL. If CONSOLE has a window, lines are broken
+between words to fit the window.")
   (:method (text (console console) &optional (label ""))
     (if (console-window console)
         (broken-text text (1- (funcall (console-window console))) (text-columns label))
         text)))
 
 (defun write-fitted (console control &rest arguments)
-  "Write CONTROL formatted with ARGUMENTS as WRITE-FRESH does, FITTED to CONSOLE."
+  "Format CONTROL with ARGUMENTS, break the lines to fit the window, and write the text at the
+beginning of a line of CONSOLE."
   (write-fresh (fitted (apply #'format nil control arguments) console) console))
 
 (defmethod stream-write-char ((console console) char)
@@ -326,13 +332,13 @@ broken between words.")
   (finish-output console))
 
 (defun answered (console)
-  "Note that the user has ended the line of the prompt."
+  "Record that the user has finished the line after the prompt."
   (cond ((console-line console) (end-line console))
         (t (setf (console-prompt console) nil)
            (unless (console-edited-p console) (begin-row console)))))
 
 (defun show-answer (console text)
-  "Show TEXT as if the user had typed it, and ended the line."
+  "Show TEXT as if the user had typed TEXT and pressed Return."
   (if (console-line console)
       (change-line console (lambda (line) (setf (drawn-line-text line) text)))
       (format console "~A~%" text))

@@ -11,25 +11,27 @@
 ;;; its top, so the line is drawn again when the window has changed.
 
 (define-record drawn-line
-  "A line that is being typed. SHOWN is true if it is on the screen."
+  "A line that is being typed. SHOWN is true if the line is on the screen."
   (label "" string "the prompt that stands before the line. Can be set" :writable :export)
   (text "" string "what has been typed of the line. Can be set" :writable :export)
   (point 0 (integer 0) "where in the text of the line the cursor is. Can be set" :writable :export)
-  (shown nil list "what the line was drawn from, a list of label, text and point, or NIL if it is
-not on the screen" :writable :export)
-  (column 0 (integer 0) "the column of the cursor when it was drawn last" :writable)
-  (columns nil (or null (integer 0)) "how many columns the window had then" :writable))
+  (shown nil list "the label, text and point with which the line was drawn, in a list; NIL if the
+line is not on the screen" :writable :export)
+  (column 0 (integer 0) "the column of the cursor when the line was drawn last" :writable)
+  (columns nil (or null (integer 0)) "the number of columns of the window when the line was drawn
+last" :writable))
 
 ;;; Rows.
 
 (defun shown-chars (label text)
-  "Return a list of the text to show for each character of LABEL, unchanged, and of TEXT."
+  "Return a list with the text to show for each character of LABEL, unchanged, and of TEXT."
   (append (map 'list #'string label)
           (map 'list (lambda (char) (visible (substitute #\Space #\Tab (string char)))) text)))
 
 (defun rows-of (label text point columns)
-  "Return LABEL and TEXT as a list of rows of COLUMNS, each a list of a string and of what ends it:
-:NEWLINE, or NIL if it is full or the last. Also the row and the column of POINT in TEXT."
+  "Break LABEL and TEXT into rows of at most COLUMNS. Return a list of lists (string end): END is
+:NEWLINE, or NIL for a full row or the last row. Also return the row and the column of POINT, a
+position in TEXT."
   (let ((rows '()) (out (make-string-output-stream)) (column 0) (place-row 0) (place-column 0))
     (labels ((end-row (how)
                (push (list (get-output-stream-string out) how) rows)
@@ -57,12 +59,13 @@ not on the screen" :writable :export)
     (values (nreverse rows) place-row place-column)))
 
 (defun window-on (rows place-row height)
-  "Return those of ROWS around PLACE-ROW that fit into HEIGHT, and how many come before them."
+  "Return those of ROWS around PLACE-ROW that fit into HEIGHT, and the number of rows before them."
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
 (defun rows-to-show (label text point columns height)
-  "Return the rows of a line in a window of COLUMNS and HEIGHT, and the cursor's row and column."
+  "Return the rows of a line to show in a window of COLUMNS and HEIGHT, and the cursor's row and
+column."
   (multiple-value-bind (rows row column) (rows-of label text point columns)
     (multiple-value-bind (rows start) (window-on rows row height)
       (values rows (- row start) column))))
@@ -70,7 +73,7 @@ not on the screen" :writable :export)
 ;;; Drawing.
 
 (defun write-rows (rows stream)
-  "Write ROWS. The cursor is then in the last of them."
+  "Write ROWS to STREAM. Afterwards the cursor is in the last row."
   (loop for ((text how) . more) on rows
         do (write-string text stream)
            ;; The cursor leaves a full row only when the next character is written, and then not
@@ -88,7 +91,7 @@ not on the screen" :writable :export)
     (setf (drawn-line-shown line) (list label text point))))
 
 (defun wipe-line (line stream columns height)
-  "Erase LINE; the cursor is then where it began."
+  "Erase LINE from the screen. Afterwards the cursor is where LINE began."
   (destructuring-bind (label text point) (shiftf (drawn-line-shown line) '())
     (format stream "~A~C~A" (cursor-up (nth-value 1 (rows-to-show label text point columns height)))
             #\Return (cleared-below))))

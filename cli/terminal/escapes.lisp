@@ -15,7 +15,7 @@
     ("GRAY" . "90") ("SILVER" . "90") ("ORANGE" . "33") ("BROWN" . "33") ("GOLD" . "93")
     ("PINK" . "95") ("PURPLE" . "35") ("MAGENTA" . "35") ("TURQUOISE" . "36")
     ("BOLD" . "1") ("REVERSE" . "1;7"))
-  "The names and codes of inks.")
+  "Pairs (name . code) of the colours and styles of a terminal.")
 
 (defconstant +escape+ #\Escape "The beginning of the codes of terminals and of their keys.")
 
@@ -30,7 +30,8 @@
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defun paint (text ink)
-  "Return TEXT as a terminal shows it in INK, a colour's name, line by line; TEXT if INK is no ink."
+  "Return TEXT with codes that show each line in INK, a colour's name; TEXT itself if INK is
+unknown."
   (let ((code (and ink (string/= text "") (ink-code ink))))
     (flet ((paint-line (line)
              (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))
@@ -54,17 +55,17 @@ where nothing was painted."
                 start (1+ end)))))))
 
 (defun unpainted-text (text)
-  "Return TEXT without the colours of PAINT."
+  "Return TEXT without the escape codes of PAINT."
   (format nil "~:{~A~}" (painted-spans text)))
 
 ;;; Are colours wanted?
 
 (define-constant +color-settings+ '("auto" "always" "never") :test #'equal
-  :documentation "What --color takes.")
+  :documentation "The values of the option --color.")
 
 (defun color-wanted-p (setting stream)
-  "True if output to STREAM is to have colours. SETTING is :ALWAYS, :NEVER or :AUTO, which means on
-a terminal unless the environment has NO_COLOR."
+  "True if output to STREAM should have colours. SETTING is :ALWAYS, :NEVER or :AUTO. With :AUTO,
+only a terminal has colours, and only if the environment variable NO_COLOR is not set."
   (ecase setting
     (:always t)
     (:never nil)
@@ -82,11 +83,11 @@ a terminal unless the environment has NO_COLOR."
   (if (plusp count) (escape "~DC" count) ""))
 
 (defun row-cleared ()
-  "Return the code that erases the row of the cursor, from there on."
+  "Return the code that erases the rest of the row after the cursor."
   (escape "K"))
 
 (defun cleared-below ()
-  "Return the code that erases everything from the cursor on."
+  "Return the code that erases the rest of the screen after the cursor."
   (escape "J"))
 
 (defun window-cleared ()
@@ -96,7 +97,7 @@ a terminal unless the environment has NO_COLOR."
 ;;; What is pasted.
 
 (defun paste-in-brackets (on)
-  "Return the code that makes a terminal mark pasted text, if ON is true."
+  "Return the code that makes a terminal mark pasted text, or no longer mark it if ON is NIL."
   (escape "?2004~:[l~;h~]" on))
 
 (defun paste-ended ()
@@ -106,15 +107,15 @@ a terminal unless the environment has NO_COLOR."
 ;;; A separate screen, for output that is updated in place.
 
 (defun screen-begun ()
-  "Return the code for an empty screen without cursor; the terminal keeps what it showed."
+  "Return the code that saves the terminal's screen and shows an empty one without cursor."
   (format nil "~A~A~A" (escape "?1049h") (escape "?25l") (escape "2J")))
 
 (defun screen-ended ()
-  "Return the code that shows again what the terminal showed before SCREEN-BEGUN."
+  "Return the code that restores the cursor and the screen that SCREEN-BEGUN saved."
   (format nil "~A~A" (escape "?25h") (escape "?1049l")))
 
 (defun over-screen (text)
-  "Return TEXT, lines, as the code that writes it over the whole screen."
+  "Return the code that overwrites the whole screen with the lines of TEXT."
   (with-output-to-string (out)
     (write-string (escape "H") out)
     (loop for start = 0 then (1+ end)
@@ -133,7 +134,7 @@ a terminal unless the environment has NO_COLOR."
   (if (< (char-code char) 256) 1 (char-width char)))
 
 (defun columns-of-chars (text)
-  "Return a vector of how many columns each character of TEXT takes."
+  "Return a vector with the width of each character of TEXT, in columns."
   (loop with columns = (map 'vector #'char-columns text)
         with position = 0
         while (< position (length text))
@@ -150,8 +151,8 @@ a terminal unless the environment has NO_COLOR."
 ;;; Long lines are broken between words.
 
 (defun breaking-point (line columns)
-  "Return where to break LINE so that its first part has at most COLUMNS: at the last blank before
-that, or else the first; NIL if it need not be broken or has no blank."
+  "Return the position of the blank at which to break LINE. The first part then has at most COLUMNS,
+if possible. NIL if LINE fits into COLUMNS or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line
@@ -164,8 +165,8 @@ that, or else the first; NIL if it need not be broken or has no blank."
            (when (and best (> taken columns)) (return best))))
 
 (defun table-line-p (line indent)
-  "True if LINE, indented by INDENT, is not to be read as a sentence: it has gaps, as a table or a
-map has, but for one after a label, such as STATUS has: \"Time:    Tick 0\"."
+  "True if LINE, indented by INDENT, is a row of a table or map: it contains a gap of two blanks. A
+gap after a label, as in \"Time:    Tick 0\", does not count."
   (let ((colon (position #\: line :start indent)))
     (search "  " line :start2 (or (and colon
                                        (null (search "  " line :start2 indent :end2 colon))
@@ -173,8 +174,8 @@ map has, but for one after a label, such as STATUS has: \"Time:    Tick 0\"."
                                   indent))))
 
 (defun pieces-of-line (line first columns)
-  "Return LINE as a list of lines of at most COLUMNS, the first of FIRST, as far as blanks allow.
-Further lines are indented like LINE."
+  "Break LINE at blanks into lines of at most COLUMNS, the first of at most FIRST. Return the list
+of these lines. Further lines are indented like LINE."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))
@@ -185,7 +186,8 @@ Further lines are indented like LINE."
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
-  "Return TEXT with its lines broken at blanks to COLUMNS; its first begins after USED columns."
+  "Return TEXT with its lines broken at blanks to at most COLUMNS. USED columns of the first line
+are already taken."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns

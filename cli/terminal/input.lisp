@@ -6,21 +6,20 @@
 ;;; all of it has been read, so that the next line is read correctly. A stream that can no longer be
 ;;; read, such as a terminal that is gone, counts as ended.
 
-(defconstant +longest-line-typed+ 1000000 "Most bytes of a line.")
+(defconstant +longest-line-typed+ 1000000 "The largest number of bytes in a line.")
 
 ;; What follows so many bytes of one line may be misread.
 (defconstant +longest-outline+ 50000000
-  "How many bytes of a line are searched for parentheses and the like.")
+  "The number of bytes of a line that are searched for parentheses, quotes and comments.")
 
 (define-condition line-too-long (bad-line)
   ((beginning :initarg :beginning :reader line-beginning)
    (outline :initarg :outline :reader line-outline))
-  (:documentation "A line that was typed is too long. BEGINNING is how it begins; OUTLINE is a text
-with its beginning, its parentheses, quotes, comment marks, and a beginning of each word."))
+  (:documentation "A typed line is too long. BEGINNING is its first part. OUTLINE is a shorter text
+with the same parentheses, quotes, comment marks and beginnings of words."))
 
 (defvar *program-reads* nil
-  "A function to call before a user's program, not the prompt, reads a typed line; NIL while the
-prompt reads.")
+  "A function to call before a user's program reads a typed line. NIL while the prompt reads.")
 
 (defclass typed-text (fundamental-character-input-stream)
   ((octets :initarg :octets :reader typed-octets)
@@ -30,17 +29,17 @@ prompt reads.")
    (position :initform 0 :accessor typed-position)
    (count :initform 0 :accessor typed-count)
    (followed-p :initform nil :accessor typed-followed-p))
-  (:documentation "The UTF-8 text of the octets of the stream OCTETS. BY-HAND-P is true if it is
-typed, COUNT is the number of lines read; FOLLOWED-P is true if there was more when the last was
-read."))
+  (:documentation "A stream of the UTF-8 text in OCTETS, a stream of octets. BY-HAND-P is true if a
+user types the text. COUNT is the number of lines read. FOLLOWED-P is true if more input was
+available when the last line was read."))
 
 (defun more-at-once-p (stream)
-  "True if STREAM, of octets, has more without waiting."
+  "True if STREAM, a stream of octets, has more input that can be read without waiting."
   (handler-case (listen stream)
     (stream-error () nil)))
 
 (defgeneric lines-typed (stream)
-  (:documentation "Return how many lines have been read of STREAM, by the prompt or a program.")
+  (:documentation "Return the number of lines that the prompt and programs have read from STREAM.")
   (:method (stream)
     (declare (ignore stream))
     0)
@@ -53,14 +52,15 @@ read."))
   (interactive-stream-p stream))
 
 (defun outlining-p (char last)
-  "True if CHAR, which follows LAST, shows how forms of Lisp continue, or begins a word."
+  "True if CHAR, which follows LAST, belongs to the outline of a line: Lisp punctuation, or the
+start of a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
     (or (mark-p char) (mark-p last) (char= char #\Newline)
         (and (blank-p last) (not (blank-p char))))))
 
 (defun read-octets (octets)
-  "Return a line of the stream OCTETS, with its newline, and whether it was too long: then its end
-is only an outline."
+  "Read a line from the stream OCTETS. Return the line with its newline, and true if it was too
+long. The end of such a line is only an outline."
   (let* ((count 0)
          (line (with-output-to-string (out)
                  (handler-case
@@ -85,8 +85,8 @@ is only an outline."
                          +longest-line-typed+))))
 
 (defgeneric next-typed-line (stream)
-  (:documentation "Return the next line that is typed into STREAM, with the newline at its end, if
-there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
+  (:documentation "Return the next line typed into STREAM, with its newline if it has one; \"\" at
+the end of the input. Signals BAD-LINE if the line is too long.")
   (:method ((stream typed-text))
     (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
       (when too-long-p (reject-length octets))
@@ -94,7 +94,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
       (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
 
 (defun fill-line (stream)
-  "Read more of a line for STREAM, unless it is at its end."
+  "Read the next line of STREAM if the current line has been used up."
   (when (= (typed-position stream) (length (typed-line stream)))
     (when *program-reads* (funcall *program-reads*))
     (setf (typed-position stream) 0
@@ -130,7 +130,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   nil)
 
 (defgeneric typed-ahead-p (stream)
-  (:documentation "True if STREAM has something that was typed and can be read without waiting.")
+  (:documentation "True if STREAM has typed input that can be read without waiting.")
   (:method ((stream typed-text)) (line-left-p stream)))
 
 (defmethod stream-listen ((stream typed-text))
@@ -161,7 +161,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
     (and (typep source 'descriptor-stream) (interactive-stream-p source))))
 
 (defun typed-within-p (stream seconds)
-  "Wait until something is typed into STREAM, or it ends, for SECONDS at most. True if it is."
+  "Wait up to SECONDS for typed input in STREAM, or for its end. Return true if one of them came."
   (or (and (typep stream 'typed-text) (typed-ahead-p stream))
       (octets-within-p (source-of stream) seconds)))
 
@@ -177,18 +177,20 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
    (octets :initform "" :accessor queued-string)
    (start :initform 0 :accessor queued-start)
    (over-p :initform nil :accessor queued-over-p))
-  (:documentation "An input stream of the octets that REVISE-OCTETS leaves; it waits for them."))
+  (:documentation "An input stream of octets that other threads supply by REVISE-OCTETS. Reading
+waits for octets."))
 
 (defun unread-octets (stream)
   (subseq (queued-string stream) (queued-start stream)))
 
 (defun leave-octets (stream octets)
-  "Replace the unread octets of STREAM, whose lock is held, by OCTETS, a string."
+  "Replace the unread octets of STREAM by OCTETS, a string. The lock of STREAM must be held."
   (setf (queued-string stream) octets
         (queued-start stream) 0))
 
 (defun revise-octets (stream function)
-  "Replace the unread octets of STREAM, a string, by what FUNCTION returns for them, undisturbed."
+  "Call FUNCTION with the unread octets of STREAM, a string, and replace them by the string that
+FUNCTION returns. No other thread reads from STREAM meanwhile."
   (with-lock ((queued-lock stream))
     (leave-octets stream (funcall function (unread-octets stream))))
   (signal-semaphore (queued-ready stream))
@@ -200,7 +202,7 @@ there is one; \"\" at the end. Signals BAD-LINE if it is too long.")
   (values))
 
 (defun next-queued (stream)
-  "Return the next octet of STREAM, :EOF at its end, or NIL if none has come yet."
+  "Return the next octet of STREAM, :EOF at the end, or NIL if no octet is available yet."
   (with-lock ((queued-lock stream))
     (cond ((listen stream) (prog1 (char (queued-string stream) (queued-start stream))
                              (incf (queued-start stream))))

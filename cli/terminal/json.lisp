@@ -42,8 +42,8 @@
   ((stream :initarg :stream :reader object-stream-target)
    (words :initform (make-string-output-stream) :reader object-stream-words)
    (column :initform 0 :accessor object-stream-column))
-  (:documentation "A stream that writes JSON objects to STREAM. WORDS is the text written of a line
-so far, COLUMN its length."))
+  (:documentation "A stream that writes JSON objects to STREAM. WORDS is a stream that collects the
+text of the current line, COLUMN the length of that text."))
 
 (defun write-object (object stream)
   (end-text-line stream)
@@ -52,7 +52,7 @@ so far, COLUMN its length."))
   (finish-output (object-stream-target stream)))
 
 (defun end-text-line (stream &optional (always nil))
-  "Write the text that has been written to STREAM as an object, if there is any, or ALWAYS."
+  "Write the collected text of STREAM as a JSON object; an empty text only if ALWAYS is true."
   (when (or always (plusp (object-stream-column stream)))
     (setf (object-stream-column stream) 0)
     (write-object (list :type "output"

@@ -13,7 +13,8 @@
   (:documentation "A line typed at the prompt makes no sense."))
 
 (defun reject-line (control &rest arguments)
-  "Signal BAD-LINE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
+  "Signal BAD-LINE with a text formatted from CONTROL and ARGUMENTS. The text should name the
+remedy."
   (error 'bad-line :text (apply #'format-briefly nil control arguments)))
 
 ;;; Conditions.
@@ -21,14 +22,14 @@
 (define-constant +unprintable+
     "The message cannot be printed. Perhaps a method for PRINT-OBJECT fails."
   :test #'string=
-  :documentation "The message if not even an error can be printed.")
+  :documentation "The message that replaces an error message which cannot be printed.")
 
 (defun ending-text (condition)
-  "Return the text of CONDITION, which ends this process, if it can be printed."
+  "Return the message of CONDITION, which ends this process, or +UNPRINTABLE+."
   (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
 
 (defun condition-text (condition)
-  "Return the text of CONDITION, or its type if that fails."
+  "Return the message of CONDITION, or its type if the message cannot be printed."
   (if (typep condition 'lock-violation)
       (let ((symbol (locked-symbol condition)))
         (if symbol
@@ -39,10 +40,11 @@
 
 ;;; Lines.
 
-(defparameter *longest-complaint* 1000 "How many characters of an error message are shown at most.")
+(defparameter *longest-complaint* 1000 "The largest number of characters of an error message to
+show.")
 
 (defun complaint-text (text)
-  "Return TEXT, of an error, on one line that is not too long."
+  "Return TEXT, an error message, on one line of at most *LONGEST-COMPLAINT* characters."
   (visible (cut (one-line (cut text (* 3 *longest-complaint*))) *longest-complaint*)))
 
 ;;;; Values
@@ -51,7 +53,7 @@
 ;;; Yes and No; symbols are capitalised; four attributes go on a line.
 
 (defun amount-text (number)
-  "Return NUMBER, a size or weight that was specified, as a person would write it."
+  "Return NUMBER as text: an integer, or up to four decimals without zeros at the end."
   (if (= number (round number))
       (format nil "~D" (round number))
       (string-right-trim "0" (format nil "~,4F" number))))
@@ -60,7 +62,8 @@
   (format nil "~,1F" number))
 
 (defun value-text (value number-text)
-  "Return the VALUE of an attribute as STATUS and THINGS show it, numbers by NUMBER-TEXT."
+  "Return VALUE, of an attribute, as text for STATUS and THINGS. The function NUMBER-TEXT formats
+numbers."
   (cond ((eq value t) "Yes")
         ((null value) "No")
         ((symbolp value) (string-capitalize value))
@@ -79,16 +82,16 @@
                          collect (list key (value-text value number-text))))))
 
 (defun kind-text (designator)
-  "Return the kind of DESIGNATOR, an element of STATUS, such as Local Object."
+  "Return the kind of DESIGNATOR, a property list from STATUS, as text, such as Local Object."
   (format nil "~:(~A ~A~)" (getf designator :type) (getf designator :of)))
 
 (defun bearing-text (designator)
-  "Return the distance and the angle of DESIGNATOR, an element of STATUS."
+  "Return the distance and the angle of DESIGNATOR, a property list from STATUS, as text."
   (format nil "~,2F, ~,2F" (hundredths (getf designator :distance))
           (hundredths (getf designator :angle))))
 
 (defun location-text (part)
-  "Return where PART is, if inside something (manual E; reading 202)."
+  "Return a text that tells what PART is inside of, or NIL (manual E; reading 202)."
   (let ((location (part-location part)))
     (cond ((null location) nil)
           ((storage-bin-p location) "Located in storage-bin.")
@@ -105,7 +108,7 @@
 
 ;;; Running text.
 
-(defvar *text-width* 79 "How many characters a line of running text has at most.")
+(defvar *text-width* 79 "The largest number of characters in a line of running text.")
 
 (defun split-words (text)
   (remove "" (uiop:split-string (one-line text) :separator " ") :test #'string=))
@@ -122,8 +125,8 @@
           collect line))
 
 (defun write-filled (text indent &optional (head ""))
-  "Write TEXT in lines of at most *TEXT-WIDTH* characters from column INDENT on, after HEAD, which
-gets a separate line if it is too long."
+  "Write TEXT in lines of at most *TEXT-WIDTH* characters, indented by INDENT columns. HEAD comes
+before TEXT on the first line, or on a separate line if HEAD is too long."
   (when (and (plusp indent) (>= (length head) indent))
     (format t "~A~%" (shiftf head "")))
   (loop for line in (filled-lines text (- *text-width* indent))
@@ -131,7 +134,7 @@ gets a separate line if it is too long."
         do (format t "~VA~A~%" indent start line)))
 
 (defun first-sentence (text)
-  "Return TEXT up to its first period, colon or semicolon that ends a clause."
+  "Return the first clause of TEXT: up to a period, colon or semicolon before a blank or the end."
   (let* ((text (one-line text))
          (end (loop for i from 0 below (length text)
                     when (and (find (char text i) ".:;")
@@ -140,7 +143,7 @@ gets a separate line if it is too long."
     (subseq text 0 end)))
 
 (defun whole-sentence (text)
-  "Return TEXT up to its first full stop, on one line."
+  "Return the first sentence of TEXT, on one line."
   (let* ((text (one-line text)) (end (search ". " text)))
     (if end (subseq text 0 (1+ end)) text)))
 

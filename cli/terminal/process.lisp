@@ -13,8 +13,8 @@
 ;;; Streams.
 
 (defgeneric octets-within-p (stream seconds)
-  (:documentation "Wait until STREAM can be read or is at its end, for SECONDS at most. True if
-so.")
+  (:documentation "Wait up to SECONDS until STREAM has input or is at its end. Return true if that
+happens.")
   (:method ((stream stream) seconds)
     (input-within-p stream seconds)))
 
@@ -32,40 +32,42 @@ in."
 ;;; prompt catches it, so that it ends only what the user wants to end: see RUN-SESSION.
 
 (defvar *interrupts-while-ending* nil
-  "How often Control-C was pressed since one began to end this process; NIL while none has.")
+  "The number of times Control-C was pressed while this process was ending; NIL before it ends.")
 
 (defconstant +patience-of-users+ 3
-  "How often Control-C may be pressed while this process ends, before it ends at once.")
+  "The number of times Control-C must be pressed, while this process is ending, to end it at once.")
 
 (defun end-interrupted ()
   (say-on-error-output "stopped.")
   (end-process 130))
 
 (defun handle-interrupt ()
-  "Signal the interrupt to this thread's handlers; the restart GO-ON continues."
+  "Signal a user interrupt in this thread. The restart GO-ON continues the interrupted code."
   (allowing-interrupts
     (with-simple-restart (go-on "Go on.")
       (signal-user-interrupt))))
 
 ;; After Control-C, cleanup must finish before this process ends; Control-C often comes twice.
 (defun take-interrupt ()
-  "Handle Control-C, unless it has already begun to end this process."
+  "Handle Control-C. If this process is already ending, count the interrupt, and exit after too
+many."
   (cond ((null *interrupts-while-ending*) (handle-interrupt))
         ((< (incf *interrupts-while-ending*) +patience-of-users+))
         (t (end-interrupted))))
 
-(defvar *diagnostics* nil "The stream for this thread's error output, until it begins to end.")
+(defvar *diagnostics* nil "The stream for this thread's error output; once the process is ending, a
+stream that discards it.")
 
 (defun begin-to-end (condition)
-  "Suppress other output between CONDITION, an interrupt, and its message: the compiler would
-report that it was left."
+  "Record that CONDITION, an interrupt, ends this process. Discard error output until the final
+message, such as the compiler's report that it was aborted."
   (declare (ignore condition))
   (setf *interrupts-while-ending* 0
         *diagnostics* (make-broadcast-stream)))
 
 (defun call-until-interrupted (function then)
-  "Call FUNCTION and return its values. If Control-C ends it, this process is ending: return the
-values of THEN, another function, which is not interrupted."
+  "Call FUNCTION and return its values. If Control-C interrupts FUNCTION, this process is ending:
+call THEN, which is not interrupted, and return the values of THEN."
   (let ((*diagnostics* *error-output*))
     (handler-case
         (handler-bind ((user-interrupt #'begin-to-end))
@@ -83,11 +85,11 @@ or window, where the user may press it any number of times.")
 (defvar *interrupt-times* '() "When Control-C was pressed, in seconds, newest first.")
 
 (defparameter *interrupt-span* 5
-  "Within how many seconds Control-C must be pressed again to end this process at once.")
+  "The number of seconds within which further presses of Control-C end this process at once.")
 
 (defun ends-at-once-p (now times)
-  "True if Control-C, pressed at NOW and at TIMES, is to end this process at once: the third time;
-or the second if the first had no effect, unless both come from one press."
+  "True if Control-C, pressed at NOW and before at TIMES, should end this process at once. The third
+press does. The second does, too, if the first had no effect and was over 1/3 s before."
   (and times
        (or (rest times)
            (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
@@ -116,21 +118,22 @@ or the second if the first had no effect, unless both come from one press."
 ;;; like others, so that the order of keys is kept.
 
 (defvar *original-mode* nil "The mode of the terminal before the prompt changed it, or NIL.")
-(defvar *keys-interrupt-p* nil "True if Control-C and the like are signals, as last set.")
-(defvar *continued-p* nil "True if this process was suspended and continues, and this has not been
-handled yet.")
+(defvar *keys-interrupt-p* nil "True if the terminal turns Control-C and similar keys into
+signals.")
+(defvar *continued-p* nil "True from the time when a suspended process continues until the prompt
+has redrawn its line.")
 
 (defun terminal-mode ()
-  "Return the mode of the terminal, as the system keeps it, or NIL if there is no terminal."
+  "Return the mode of the terminal, a termios object, or NIL if there is no terminal."
   (ignore-errors (sb-posix:tcgetattr 0)))
 
 (defun set-terminal-mode (terminal-mode)
-  "Set the mode of the terminal to TERMINAL-MODE. Do nothing if it is gone."
+  "Set the mode of the terminal to TERMINAL-MODE. Do nothing if there is no terminal."
   (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow terminal-mode)))
 
 (defun hand-over-keys (&key interrupts)
-  "Make the terminal pass on keys as they are pressed, without echo; if INTERRUPTS, Control-C and
-the like are signals instead, which let pending output reach the screen. Only within
+  "Make the terminal pass on each key at once, without echo. If INTERRUPTS, Control-C and similar
+keys are signals instead, which keep pending output. This has an effect only within
 CALL-HANDING-OVER-KEYS."
   (setf *keys-interrupt-p* interrupts)
   (let ((terminal-mode (terminal-mode))
@@ -144,7 +147,7 @@ CALL-HANDING-OVER-KEYS."
       (set-terminal-mode terminal-mode))))
 
 (defun restore-terminal-mode ()
-  "Make the terminal pass on whole lines again, if the prompt has begun to edit them."
+  "Restore the original mode of the terminal, if the prompt has changed it."
   (when *original-mode* (set-terminal-mode *original-mode*)))
 
 (defun call-handing-over-keys (function)
@@ -155,19 +158,19 @@ CALL-HANDING-OVER-KEYS."
     (setf *original-mode* nil)))
 
 (defun suspend-process ()
-  "Give the terminal to the parent process, as Control-Z does, until this process continues."
+  "Suspend this process, as Control-Z does. Until it continues, the terminal has its original mode."
   (restore-terminal-mode)
   (sb-posix:kill 0 sb-posix:sigtstp)
   (hand-over-keys))
 
 ;; Another program, such as a shell, may have changed the mode of the terminal meanwhile.
 (defun resume-terminal ()
-  "Make the terminal pass on keys again, after this process was suspended."
+  "Make the terminal pass on each key again, after this process was suspended."
   (hand-over-keys :interrupts *keys-interrupt-p*)
   (setf *continued-p* t))
 
 (defun quit-by-signal ()
-  "End this process as Control-\\ does when keys are not passed on."
+  "End this process by the signal SIGQUIT, as Control-\\ does in other programs."
   (restore-terminal-mode)
   (sb-posix:kill (process-number) sb-posix:sigquit))
 

@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun write-at-once (text console)
-  "Write TEXT below CONSOLE, whether or not CONSOLE holds back output."
+  "Write TEXT to the stream of CONSOLE at once, even while CONSOLE holds back output."
   (with-console (stream console)
     (write-string text stream)
     (finish-output stream)))
@@ -28,8 +28,8 @@
     (finish-output stream)))
 
 (defun call-with-screen (function console)
-  "Call FUNCTION while CONSOLE, on a terminal that hands over keys, shows a screen that is written
-over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwards."
+  "Call FUNCTION while CONSOLE, on a terminal that passes on keys, shows a separate screen. FUNCTION
+draws the screen by WRITE-AT-ONCE and OVER-SCREEN. Other output is held back until the end."
   (call-holding-interrupts
    (lambda ()
      (begin-screen console)
@@ -39,7 +39,8 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
 ;;; A line that shows progress.
 
 (defstruct (progress-line (:constructor make-progress-line (console)) (:copier nil))
-  "A line of CONSOLE that shows progress, once something takes long."
+  "A line of CONSOLE that shows the progress of a slow operation. DUE is the time of the next
+update, WIDTH the length of the text shown."
   (console nil :type console :read-only t)
   (due (+ (seconds-now) 0.5d0) :type double-float)
   (width 0 :type fixnum))
@@ -52,7 +53,8 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "Show CONTROL formatted with ARGUMENTS in the line of PROGRESS, unless NIL, if an update is due."
+  "If an update is due, show CONTROL formatted with ARGUMENTS in PROGRESS, a progress line. Do
+nothing if PROGRESS is NIL."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (write-over progress (apply #'format nil control arguments))))
@@ -63,7 +65,7 @@ over by WRITE-AT-ONCE and OVER-SCREEN. What others write meanwhile comes afterwa
 ;;; Beside it.
 
 (defun say (control &rest arguments)
-  "Write a message to the error output, besides the requested output."
+  "Format CONTROL with ARGUMENTS, and write the message to the error output."
   ;; A line that shows progress may be there.
   (when (interactive-stream-p *error-output*)
     (format *error-output* "~C~A" #\Return (row-cleared)))
