@@ -30,7 +30,7 @@
   "Return the coordinates of the middle of an open cell of MAP near its beginning, or NIL."
   (loop for y from .5 below (min 12 (world:map-height map))
         do (loop for x from .5 below (min 12 (world:map-width map))
-                 unless (robot:start-trouble map x y)
+                 unless (robot:start-problem-text map x y)
                    do (return-from open-cell (values x y)))))
 
 (defun explore (map)

@@ -235,10 +235,10 @@
            (go-on (base:make-semaphore "settle"))
            (arrived (base:make-semaphore "arrived"))
            (threads '()))
-      (robot::remove-robots-called 'settler "test")
-      (host:wrap-function 'robot::remove-robots-called
-                          (lambda (remove-robots-called &rest arguments)
-                            (apply remove-robots-called arguments)
+      (robot::remove-robots-named 'settler "test")
+      (host:wrap-function 'robot::remove-robots-named
+                          (lambda (remove-robots-named &rest arguments)
+                            (apply remove-robots-named arguments)
                             (base:signal-semaphore arrived)
                             (base:wait-on-semaphore go-on 10))
                           'test)
@@ -246,9 +246,10 @@
            (progn
              (setf threads (loop repeat 3
                                  collect (base:start-thread
-                                          (lambda () (robot:settle-robot blueprint)) "settler")))
+                                          (lambda () (robot:ensure-resident-robot blueprint))
+                                          "settler")))
              (loop repeat 3 do (base:wait-on-semaphore arrived 10))
              (loop repeat 3 do (base:signal-semaphore go-on))
              (mapc #'base:join-thread threads))
-        (host:unwrap-function 'robot::remove-robots-called 'test))
+        (host:unwrap-function 'robot::remove-robots-named 'test))
       (is (= 1 (count 'settler (world:world-robots world) :key #'robot:robot-name))))))

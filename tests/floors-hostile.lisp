@@ -145,7 +145,7 @@
 
 (test home.is-known
   (is (string= (base:native-name (merge-pathnames "a/b.yaml" (user-homedir-pathname)))
-               (base:native-name (floors::file-called "~/a/b.yaml")))))
+               (base:native-name (floors::resolve-file-name "~/a/b.yaml")))))
 
 (test export.mistakes-are-told
   (with-own-definitions

@@ -58,8 +58,8 @@
     (check "the image has 4294967295 by 4294967295 pixels, and the limit is 25000000"
            4294967295 4294967295 16 6)
     (check "interlaced (Adam7), which is not supported; convert the image, for example by: ~
-            convert floor.png -colorspace gray -depth 8 floor.pgm, and name the converted image in the .yaml ~
-            file"
+            convert floor.png -colorspace gray -depth 8 floor.pgm, and name the converted image in ~
+            the .yaml file"
            3 1 8 0 '(0 0 1))))
 
 (test png.palettes-that-do-not-fit-are-told

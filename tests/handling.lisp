@@ -35,7 +35,8 @@
 (defun designate (name &key (type :local))
   "Return a new designator of COOK on the thing called NAME, seen where that is."
   (let ((thing (thing name)))
-    (robot:add-designator cook :type type :denotation thing :location (robot:thing-space thing))))
+    (robot:add-designator cook :type type :denotation thing
+                              :location (robot:thing-enclosure thing))))
 
 (defun hallucinate (&key (type :local))
   "Return a new false designator of COOK."

@@ -236,7 +236,7 @@ also widens the range that has none of its own."
         (is (<= 2550 locked 2850))
         (is (frequent-p locked 3000 .9))
         (is (= (- 3000 locked) (count '(:failed nil) outcomes :test #'equal)))
-        (is (eq t (attribute-of 'box :locked)))))))
+        (is (eq t (declared-attribute 'box :locked)))))))
 
 (test lock.wants-the-key-in-the-hand
   (with-lock (:seed 26)
@@ -245,7 +245,7 @@ also widens the range that has none of its own."
         (is (frequent-p (count (list :not-holding-key (hand 0)) outcomes :test #'equal)
                         1000 .9))
         (is (frequent-p (count '(:failed nil) outcomes :test #'equal) 1000 .1))
-        (is (null (attribute-of 'box :locked)))))
+        (is (null (declared-attribute 'box :locked)))))
     (world:move-thing (thing 'key) (hand 1))
     (is (find :not-holding-key (lock-outcomes 20 (first (ways-to-lock))
                                               (designate 'box) (designate 'key))
@@ -265,4 +265,4 @@ also widens the range that has none of its own."
         (is (always-fails-p way 'apple 'key))
         (is (always-fails-p way 'box 'apple))
         (is (always-fails-p way 'hamper 'key) "a container without a lock"))
-      (is (null (attribute-of 'box :locked))))))
+      (is (null (declared-attribute 'box :locked))))))

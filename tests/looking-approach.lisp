@@ -231,7 +231,7 @@
 (test false-designator.local-is-grasped-in-vain
   (with-watcher (:clean t)
     (let ((designator (track-at-once (phantom 5.5 10.5 :type :local))))
-      (is (robot:designator-local-p* designator))
+      (is (robot:designator-truly-local-p designator))
       (is (eq :missed-grasp (end-code 'command:hand-grasp-desig
                                       (robot:robot-hand watcher 0) (eye) designator)))
       (is (eq :camera-bump (end-code 'command:camera-insert (eye) designator))))))

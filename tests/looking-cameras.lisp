@@ -22,12 +22,12 @@
     (multiple-value-bind (ball here) (ball-at 5.9 10.5 :size 1)
       ;; By hand: its trajectory can be followed.
       (world:move-thing ball (robot:robot-hand watcher 0))
-      (is (robot:designator-local-p* here))
+      (is (robot:designator-truly-local-p here))
       (robot:set-down (robot:robot-hand watcher 0) ball)
       (run:run-ticks 1)
       (is (robot:designator-valid-p here))
       (robot:set-robot-pose watcher 3.5 10.5)
-      (is (not (robot:designator-local-p* here)))
+      (is (not (robot:designator-truly-local-p here)))
       (run:run-ticks 1)
       (is (not (robot:designator-valid-p here))))
     (multiple-value-bind (ball here) (ball-at 3.9 10.5)
@@ -51,7 +51,7 @@
       (robot:set-robot-pose watcher 20.5 10.5)
       (run:run-ticks 5)
       (is (robot:designator-valid-p door))
-      (is (not (robot:designator-local-p* door))))))
+      (is (not (robot:designator-truly-local-p door))))))
 
 (test designators.past-the-limit-push-out-the-oldest-untracked
   (with-watcher (:clean t)

@@ -99,7 +99,7 @@
   (let ((expected (loop for index below 50
                         collect (+ 0.3d0 (* (/ pi 2) (- (/ (+ index 0.5d0) 50) 0.5d0)))))
         (directions '()))
-    (robot::do-fan (dx dy) (0.3d0 (/ pi 2) 50) (push (atan dy dx) directions))
+    (robot::do-rays (dx dy) (0.3d0 (/ pi 2) 50) (push (atan dy dx) directions))
     (is (every #'near expected (reverse directions)))))
 
 ;;; Scans have a walk of their own, which has to meet the cells of all other walks.
@@ -128,11 +128,12 @@
                  (when stopped
                    (go-past (+ x (* dx at)) (+ y (* dy at)) dx dy))))
              (go-past (x y dx dy)
-               (multiple-value-bind (x y) (robot::past-corner world world:+opaque+ x y dx dy)
+               (multiple-value-bind (x y) (robot::line-past-corner world world:+opaque+ x y dx dy)
                  (unless (or (null x) (visit (world:map-index map x y)))
                    (walk x y dx dy)))))
-      (robot::do-fan (dx dy) (angle (/ pi 2) 50)
-        (walk x y (robot::nonzero dx) (robot::nonzero dy))))
+      (robot::do-rays (dx dy) (angle (/ pi 2) 50)
+        (walk x y (robot::nonzero-component dx)
+              (robot::nonzero-component dy))))
     (nreverse found)))
 
 (defun cells-near (world x y reach cells)

@@ -287,7 +287,7 @@ what has been seen."
              append (location-violations hand))
        (loop for bin across (robot:robot-bins robot)
              append (wrong (minusp (world:remaining-capacity bin)) "~A is too full" bin)
-             append (wrong (and (robot:storage-bin-closed-p bin) (robot:part-inside bin))
+             append (wrong (and (robot:storage-bin-closed-p bin) (robot:part-in-bin bin))
                            "~A is closed on a part" bin))
        (loop for designator in (robot:live-designators robot)
              append (wrong (not (eq designator (robot:find-designator

@@ -55,12 +55,12 @@
     (is (zerop (way-of-marvin)))))
 
 (test planned-ways.what-is-left-begins-where-the-robot-is
-  (flet ((left (x y) (robot::left-of-way '((0 0) (4 0) (4 6)) x y)))
+  (flet ((left (x y) (robot::remaining-points '((0 0) (4 0) (4 6)) x y)))
     (is (equalp '((0 0) (4 0) (4 6)) (left -1 2)))
     (is (equalp '((3 0) (4 0) (4 6)) (left 3 0.5)))
     (is (equalp '((4 2) (4 6)) (left 5 2)))
     (is (equalp '((4 6)) (remove-duplicates (left 4 9) :test #'equalp)))
-    (is (equal '() (robot::left-of-way '() 1 1)))))
+    (is (equal '() (robot::remaining-points '() 1 1)))))
 
 (test publish-way.is-taken-back-by-what-interrupts-the-robot
   "Also where the program that published it has not noticed."

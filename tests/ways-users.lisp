@@ -217,7 +217,7 @@ cells; NIL if there is none."
 (test ways.for-which-there-is-no-room-are-refused-in-words
   "What is only kept goes first; what it said is found anew."
   (let ((cost (ars:way-cost 'office '(62 38) '(108.5 70.5))))
-    (handler-case (progn (ways::ensure-room (base:heap-bytes) 16) (fail))
+    (handler-case (progn (ways::ensure-memory (base:heap-bytes) 16) (fail))
       (base:misuse (condition)
         (is (search "more memory than this Lisp has; start SBCL with a larger --dynamic-space-size"
                     (princ-to-string condition)))))

@@ -61,7 +61,7 @@
   "True if what is found from any of NODES to the node GOAL is not what the slow way finds."
   (let ((slow (slow-totals chart goal)))
     (some (lambda (node)
-            (/= (aref slow node) (ways::find-total (ways::field-to chart goal) node)))
+            (/= (aref slow node) (ways::find-total (ways::field-for-goal chart goal) node)))
           nodes)))
 
 (defun shuffled-nodes (list dice)
@@ -105,7 +105,7 @@
   (let* ((chart (ars:make-chart 'office)) (goal (node-in chart '(109 24))))
     (flet ((totals ()
              (ars:find-way chart '(10 5) '(109 24))
-             (copy-seq (ways::field-totals (ways::field-to chart goal)))))
+             (copy-seq (ways::field-totals (ways::field-for-goal chart goal)))))
       (ars:bar-cell chart '(20 70))
       (let ((before (totals)))
         (ars:bar-cell chart '(10.5 10.5))
@@ -171,4 +171,4 @@ way."
     (is (equal (sort keys #'<)
                (loop until (zerop (ways::queue-count queue))
                      collect (aref (ways::queue-keys queue) 0)
-                     do (ways::queue-drop queue))))))
+                     do (ways::queue-pop queue))))))

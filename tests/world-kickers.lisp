@@ -8,7 +8,7 @@
 (defun counting-world (count probability &key (seed 1) test)
   "Return a world with COUNT things that count their kicks, and the vector of the counts."
   (let ((world (open-world :seed seed)) (counts (make-array count :initial-element 0)))
-    (let ((kicker (world::fill-kicker
+    (let ((kicker (world::set-kicker-code
                    (world::make-kicker 'count) "test" probability test
                    (lambda (thing) (incf (aref counts (1- (world:thing-serial thing))))))))
       (dotimes (index count)
@@ -314,7 +314,7 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
       (dotimes (index 40)
         (thing-in world 'box (base:roll-between 0 20 dice) (base:roll-between 0 20 dice)
                   '((:obsmove t)) :kickers '(stroll fall)))
-      (world:writing (world)
+      (world:permitting-changes (world)
         (run-world world 20)
         (is (> 80000 (bytes-consed-by (lambda () (run-world world 1))))))
       (is-sound world))))

@@ -290,4 +290,4 @@ faces the end of the wall."
   (with-own-definitions
     (dolist (type (world:all-place-types))
       (finishes (handler-bind ((warning #'error))
-                  (world::warn-of-vain-rules "it" type))))))
+                  (world::warn-of-useless-rules "it" type))))))

@@ -50,7 +50,7 @@ NIL."
   (and (second by) (part-type-p (type-key (second by)))))
 
 (defun method-usage (name method)
-  (multiple-value-bind (objects by others) (method-shape method)
+  (multiple-value-bind (objects by others) (method-signature method)
     (format nil "~(~A~{ ~A~}~@[ [~A]~]~{ ~A~}~)" name objects
             (and (by-part-p by) (first by))
             (mapcar #'first others))))
@@ -70,7 +70,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
 (defun arguments-for (method data robot)
   "Return the arguments for METHOD from DATA, the typed values, for ROBOT. NIL if the number of
 values is wrong."
-  (multiple-value-bind (objects by others) (method-shape method)
+  (multiple-value-bind (objects by others) (method-signature method)
     (let* ((count (length objects))
            (extra (- (length data) count (length others))))
       (when (or (zerop extra) (and (= 1 extra) (by-part-p by)))

@@ -110,7 +110,7 @@ the project. The file is NIL if it is not known."
     (and (string/= "" text) text)))
 
 (defun manipulation-use (name method)
-  (multiple-value-bind (objects by others) (method-shape method)
+  (multiple-value-bind (objects by others) (method-signature method)
     (format nil "(manipulate ~(~A~{ ~A~} ~A~{ ~A~}~) [continuation])" name objects (first by)
             (mapcar #'first others))))
 

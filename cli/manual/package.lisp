@@ -19,7 +19,7 @@ from the definitions in this Lisp.")
                 #:command-parameters #:command-results #:command-errors
                 #:spec-name #:spec-type #:spec-text #:error-code-keyword #:error-code-text
                 #:error-code-meaning #:error-code-remedy
-                #:manipulation-name #:manipulation-methods #:method-shape)
+                #:manipulation-name #:manipulation-methods #:method-signature)
   (:import-from :ars-magna.rpl #:all-constructs #:procedure-lambda-list)
   (:import-from :ars-magna.rpl-robot #:all-fluent-variables)
   (:import-from :ars-magna.experiment #:experiment-documentation)

@@ -139,7 +139,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
 
 (defun values-of (key)
   "Return the values that the attribute called KEY can have, if they are few; none of NIL."
-  (and key (attribute-domain (attribute-of key))))
+  (and key (attribute-domain (declared-attribute key))))
 
 ;;; Lisp.
 

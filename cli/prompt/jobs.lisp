@@ -82,7 +82,7 @@ if it does not in time, when only this waiting lets ticks pass."
 
 (defun send (session command resource arguments)
   "Issue COMMAND on RESOURCE with ARGUMENTS, a job of SESSION that is done when it completes."
-  (let ((job (make-job :resource resource)) (*ticks-follow-p* t))
+  (let ((job (make-job :resource resource)) (*caller-passes-ticks-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
                                      (declare (ignore results))

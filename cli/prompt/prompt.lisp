@@ -113,7 +113,7 @@ waits, since time stands still."
          (*program-reads* (lambda () (report-asking (session-account session))))
          (*completer* (lambda (text point) (completions-in session text point)))
          (*waits-while-paused-p* (session-terminal-p session))
-         (*robot-meant* #'session-robot)
+         (*default-robot-function* #'session-robot)
          (*robot-to-drive* #'robot-commanded)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))

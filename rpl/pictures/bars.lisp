@@ -169,7 +169,7 @@ to two decimals, and a long text to its beginning."
     (cut (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own))) 56)))
 
 (defun ink-in-lane (span)
-  (if (and (trouble-p (span-error span)) (not in-color*)) black* white*))
+  (if (and (failure-code-p (span-error span)) (not in-color*)) black* white*))
 
 (defun place-for-name (length x width from to)
   "Return the x coordinate for the name of a command, LENGTH pixels wide, and whether it is on the
@@ -215,7 +215,8 @@ next command in the lane, or NIL. Return the x coordinate from which the lane is
                 (x-of-tick (span-start next) scale)
                 (+ 40 (x-of-tick (scale-end scale) scale)))))
     (with-subject (canvas (command-title span))
-      (look-box canvas (if (trouble-p (span-error span)) :trouble :command) x y width +lane-height+)
+      (look-box canvas (if (failure-code-p (span-error span)) :trouble :command)
+                x y width +lane-height+)
       (write-command canvas span x y width from to))))
 
 (defun draw-lane (canvas spans y scale)

@@ -17,5 +17,5 @@
                 #:task-image-folded-p #:tree-image-tick #:tree-image-rows #:tree-image-plans
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
-  (:import-from :ars-magna.command #:trouble-p #:error-code-meaning)
+  (:import-from :ars-magna.command #:failure-code-p #:error-code-meaning)
   (:import-from :ars-magna.display #:picture-kind #:save-svg #:lines-within))

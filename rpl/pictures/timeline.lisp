@@ -65,7 +65,7 @@ below."
   (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
           (mapcar #'span-kind (bar-spans bar))
           (loop for span in (bar-commands bar)
-                collect (if (trouble-p (span-error span)) :trouble :command))))
+                collect (if (failure-code-p (span-error span)) :trouble :command))))
 
 (defun legend-for (rows)
   (let ((drawn (loop for row in rows append (mapcan #'looks-of (row-bars row)))))

@@ -140,7 +140,7 @@ that happens at once, with :INTERRUPT and no results; what the robot answers to 
 the fluents of :SET, which say what the robot is or has. See reading 179."
   `(progn
      ,@(loop for command-name in commands
-             for (resource specifications sentence) = (command-shape command-name)
+             for (resource specifications sentence) = (command-signature command-name)
              for name = (plan-function-name command-name)
              for parameters = (append (unless (same-name-p 'robot (second resource))
                                         (list (first resource)))

@@ -6,9 +6,9 @@
         :ars-magna.robot :ars-magna.command)
   (:import-from :ars-magna.world
                 #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
-                #:some-kicker #:kicker-test #:kicker-body
+                #:some-kicker-p #:kicker-test #:kicker-body
                 #:warn-once
-                #:said-p #:note-looked-after)
+                #:warning-given-p #:record-progress-checked)
   (:import-from :ars-magna.time
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget

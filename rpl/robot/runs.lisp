@@ -68,7 +68,7 @@ called with that before anything else can happen."
 (defun warn-if-no-ticks-pass (plan interface)
   "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
   (let ((robot (interface-robot interface)))
-    (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *ticks-follow-p*))
+    (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *caller-passes-ticks-p*))
       (warn-once-in-run
        interface (list :kept (robot-name robot) :plan)
        "The plan ~A waits until ticks pass: none of ~A do by themselves now. (run-ticks ~

@@ -38,8 +38,8 @@ table of what has been looked through."
           answer))))
 
 (defun kickers-may-set-fluents-p (interface)
-  (some-kicker (lambda (kicker) (kicker-sets-fluents-p kicker interface))
-               (simulation-world (interface-simulation interface))))
+  (some-kicker-p (lambda (kicker) (kicker-sets-fluents-p kicker interface))
+                 (simulation-world (interface-simulation interface))))
 
 ;;; Commands do not fail: fluents such as ROBOT-MOVEMENT-ERROR* tell how they have ended. A plan
 ;;; that reads none of these may succeed though nothing was done. Reading, waiting and networks all
@@ -220,20 +220,20 @@ end of the same command."
       (and task (format nil "At the end ~A" (text-of-stranded task parts))))))
 
 ;;; Programs begin plans that never end, and stop when they have seen enough. Loops and policies say
-;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see NOTE-LOOKED-AFTER. What is left are plans
-;;; that would have ended, had more ticks passed.
+;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see RECORD-PROGRESS-CHECKED. What is left are
+;;; plans that would have ended, had more ticks passed.
 
 (defun cut-off-p (interface task)
   "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
   (not (or (task-parent task)
            (task-over-p task)
            (member task (interface-ends-requested interface))
-           (said-p (list :stranded (task-label task))
-                   (simulation-world (interface-simulation interface)))
+           (warning-given-p (list :stranded (task-label task))
+                            (simulation-world (interface-simulation interface)))
            (some #'watches-p (all-tasks task)))))
 
 (defmethod note-seen ((interface interface))
-  (note-looked-after (simulation-world (interface-simulation interface))))
+  (record-progress-checked (simulation-world (interface-simulation interface))))
 
 (defmethod participant-cut-off ((interface interface))
   (when (interface-valid-p interface)

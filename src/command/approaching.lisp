@@ -4,9 +4,9 @@
 
 ;;; The robot turns in place until it faces what the camera tracks, and then drives. In each tick it
 ;;; corrects its heading if the goal has moved sideways. It uses the track, as the camera does, not
-;;; the estimated angle that programs read. REACHED-P says when it has arrived. Losing the track
-;;; ends the approach; arriving ends the track. A false designator cannot be reached: the track is
-;;; lost there. Each step either brings the robot nearer to its goal, or ends the approach.
+;;; the estimated angle that programs read. ARRIVED-AT-POINT-P says when it has arrived. Losing the
+;;; track ends the approach; arriving ends the track. A false designator cannot be reached: the
+;;; track is lost there. Each step either brings the robot nearer to its goal, or ends the approach.
 
 (define-constant +aim+ 1d-6
   :documentation "A robot that faces its goal to within this angle, in radians, starts to drive.")
@@ -20,7 +20,7 @@
         0d0
         (angle-difference (bearing-to robot x y) (robot-angle robot)))))
 
-(defun ready-p (operation robot designator)
+(defun ready-to-drive-p (operation robot designator)
   "Count a turn of ROBOT towards DESIGNATOR. True if ROBOT faces DESIGNATOR exactly enough to drive,
 or has turned often enough."
   (when (or (>= (incf (operation-count operation)) +aiming-turns+)
@@ -36,17 +36,18 @@ arrived, and the obstacle that blocked it: :WALL, :THING or NIL."
             block)))
 
 (defun at-designator-p (robot designator &optional last-step block)
-  "True if ROBOT has arrived at the position of DESIGNATOR; see DESIGNATOR-POSITION and REACHED-P."
+  "True if ROBOT has arrived at the position of DESIGNATOR; see DESIGNATOR-POSITION and
+ARRIVED-AT-POINT-P."
   (multiple-value-bind (x y) (designator-position designator)
-    (reached-p robot x y last-step block)))
+    (arrived-at-point-p robot x y last-step block)))
 
 (defun arrive (operation camera designator)
   "End OPERATION, whose robot has arrived at DESIGNATOR, and end the track of CAMERA (readings 108
 and 110)."
   (cond ((designator-denotation designator)
          (succeed operation camera designator)
-         (end-on-arrival camera))
-        (t (end-on-arrival camera)
+         (end-track-on-arrival camera))
+        (t (end-track-on-arrival camera)
            (fail-with operation :not-tracking camera designator))))
 
 (defun approach-step (operation robot camera designator)
@@ -55,9 +56,9 @@ and 110)."
   (cond ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))
-        ((standing-p robot) (fail-with operation :not-moving camera designator))
+        ((speed-zero-p robot) (fail-with operation :not-moving camera designator))
         ((and (turn-towards robot (angle-to-goal robot designator) +facing+)
-              (ready-p operation robot designator))
+              (ready-to-drive-p operation robot designator))
          (multiple-value-bind (arrived block) (drive-to-goal robot designator)
            (cond (arrived (arrive operation camera designator))
                  (block (fail-with operation :robot-blocked camera designator)))))))
@@ -81,7 +82,7 @@ and 110)."
     ((camera "the camera")
      (designator "the designator that it tracked"))
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*) (:echo camera designator)
-     (:errors (:not-tracking (text-of "~*~A is not tracking anything"))
+     (:errors (:not-tracking (format-text "~*~A is not tracking anything"))
               (:goto-local "The designator is local: the robot is there already")
               (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))

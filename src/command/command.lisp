@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(command error-code *commands* command-shape trait-p))
+(export '(command error-code *commands* command-signature trait-p))
 
 ;;; A command is defined once (see define-command.lisp). Its COMMAND object has the data for the
 ;;; prompt, the journal and the plan language.
@@ -18,8 +18,8 @@
   (keyword nil keyword "the keyword that the continuation gets" :addition)
   (text "" (or string function)
         "the text of the message, a string or a function of the operation" :addition)
-  (explanation '() list "strings that say what the code means and what to try; () if *MEANINGS* has
-them"))
+  (explanation '() list "strings that say what the code means and what to try; () if the code is in
+*ERROR-CODE-EXPLANATIONS*"))
 
 (addition command-p)
 (define-record command
@@ -70,10 +70,10 @@ if another command follows" :export)
   :aliases (lambda (command) (list (command-prompt-name command))))
 
 ;; For other definitions in the same file, when that is compiled and the command does not exist.
-(defun command-shape (name)
+(defun command-signature (name)
   "Return a list of three parts of the definition of the command NAME: its resource (variable type),
 a list of its parameters (variable type text), and its sentence. Signals UNKNOWN-NAME."
-  (or (get name 'command-shape)
+  (or (get name 'command-signature)
       (find-command name)))
 
 (declaim (inline command-of))
@@ -96,9 +96,9 @@ a list of its parameters (variable type text), and its sentence. Signals UNKNOWN
 ;;; An operation has the name of a function that continues it, its step. A saved file may name
 ;;; steps, but no other function. Our own steps trust their arguments, so DEFINE-STEP states what
 ;;; these must be. A step passed to GO-ON in a user's program belongs to a user's command, which
-;;; CALL-GUARDED calls.
+;;; CALL-USERS-STEP calls.
 
-(defun note-step (step fits-p)
+(defun register-step (step fits-p)
   "Make the function STEP a step of all operations for which the predicate FITS-P is true. If FITS-P
 is :GUARDED, make STEP a step of all users' commands."
   (setf (get step 'step) fits-p)
@@ -109,32 +109,32 @@ is :GUARDED, make STEP a step of all users' commands."
 NEEDS, such as (robot-p (operation-resource operation)). An operation that was read from a file is
 refused if NEEDS is false."
   `(progn
-     (note-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
+     (register-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
      (defun ,name (,operation) ,documentation ,@body)))
 
-(defun use-step (step)
+(defun check-step (step)
   "Return STEP, an argument of GO-ON. Signals an error if code of the simulator passes a STEP that
 DEFINE-STEP has not defined."
   (cond ((get step 'step) step)
         (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
-        (t (note-step step :guarded))))
+        (t (register-step step :guarded))))
 
 (defun step-p (name)
   (and (get name 'step) (fboundp name) t))
 
-(defun using-step (form)
-  "Return FORM, a call with a step as its second argument. If the step is quoted, let USE-STEP check
-it."
+(defun check-step-in-form (form)
+  "Return FORM, a call with a step as its second argument. If the step is quoted, let CHECK-STEP
+check it."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
-        `(,function ,operation (load-time-value (use-step ,step)) ,@more)
+        `(,function ,operation (load-time-value (check-step ,step)) ,@more)
         form)))
 
 (define-compiler-macro go-on (&whole form &rest arguments)
-  (if (and (eq 'go-on (first form)) (rest arguments)) (using-step form) form))
+  (if (and (eq 'go-on (first form)) (rest arguments)) (check-step-in-form form) form))
 
 (define-compiler-macro go-on-now (&whole form &rest arguments)
-  (if (and (eq 'go-on-now (first form)) (rest arguments)) (using-step form) form))
+  (if (and (eq 'go-on-now (first form)) (rest arguments)) (check-step-in-form form) form))
 
 ;;; Facts about commands.
 

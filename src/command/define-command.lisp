@@ -4,7 +4,7 @@
 
 (export '(define-command))
 
-(defun replace-start (prefix replacement string)
+(defun replace-prefix (prefix replacement string)
   (when (starts-with-subseq prefix string)
     (concatenate 'string replacement (subseq string (length prefix)))))
 
@@ -12,12 +12,12 @@
   "Return the prompt's name for the command NAME: ROBOT- is left out, CAMERA- becomes CAM-, and
 STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
   (let ((name (symbol-name name)))
-    (or (replace-start "ROBOT-" "" name)
-        (replace-start "CAMERA-" "CAM-" name)
-        (replace-start "STORAGE-BIN-" "BIN-" name)
+    (or (replace-prefix "ROBOT-" "" name)
+        (replace-prefix "CAMERA-" "CAM-" name)
+        (replace-prefix "STORAGE-BIN-" "BIN-" name)
         name)))
 
-(defun option (key options &optional default)
+(defun option-arguments (key options &optional default)
   (let ((entry (assoc key options)))
     (if entry (rest entry) default)))
 
@@ -47,11 +47,11 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
   (one-line "a continuation: a function of an error code and the command's results, as
 (continuation (err &rest results) ...) makes, or NIL for none"))
 
-(defun check-form (name variable type)
+(defun argument-check-form (name variable type)
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
-(defun doubt-uncallable (name forms)
+(defun warn-of-uncallable (name forms)
   "Warn of each form in FORMS, the arguments in a call of the command NAME, that is no valid call,
 such as an unquoted list of data, or (90 deg)."
   (dolist (form forms)
@@ -65,7 +65,7 @@ such as an unquoted list of data, or (90 deg)."
                           without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
                          name (abridged form))))))
 
-(defun doubt-count (name parameters forms)
+(defun warn-of-argument-count (name parameters forms)
   "Warn if FORMS, the arguments in a call of the command NAME, are too few or too many for
 PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
@@ -79,7 +79,7 @@ function."
     ((cons (member setf setq)) (constantp (first (last form))))
     ((cons symbol) (or (member (first form) '(out terpri fresh-line format error-set warning-set
                                               message-set error-display))
-                       (get (first form) 'command-shape)))))
+                       (get (first form) 'command-signature)))))
 
 (defun called-early-p (form count)
   "True if FORM calls a user's function without arguments, although the function takes COUNT
@@ -93,7 +93,7 @@ function."
        (not (find 'function (ensure-list (third (ensure-list (sb-introspect:function-type
                                                               (first form)))))))))
 
-(defun doubt-result (name form count)
+(defun warn-of-early-call (name form count)
   "Warn if FORM, the continuation in a call of the command NAME, runs at once instead of when the
 command ends."
   (when (or (returns-nothing-p form) (called-early-p form count))
@@ -122,11 +122,12 @@ command ends."
           for option in options
           do (check (and (consp option) (member (first option) keys)) option
                     (format nil "~{(~(~S~) ...)~#[~; or ~:;, ~]~}" keys)))
-    (dolist (trait (option :traits options))
+    (dolist (trait (option-arguments :traits options))
       (check (member trait *command-traits*) trait
              (format nil "traits of ~{~(~S~)~^, ~}" *command-traits*)))
-    (dolist (code (option :expected options))
-      (check (assoc code (option :errors options)) code "an error code that (:errors ...) lists"))
+    (dolist (code (option-arguments :expected options))
+      (check (assoc code (option-arguments :errors options)) code
+             "an error code that (:errors ...) lists"))
     (let ((family (assoc :family options)))
       (check (and family (member (second family) *command-families*)) (or family options)
              (format nil "(:family family), one of ~{~(~S~)~^, ~}" *command-families*)))))
@@ -167,33 +168,33 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        its continuation is called at the beginning and at the end
 BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later (reading 149)."
   (check-command-form name resource parameters results options)
-  (let ((errors (option :errors options))
+  (let ((errors (option-arguments :errors options))
         (variables (mapcar #'first parameters))
-        (report (option :report options)))
+        (report (option-arguments :report options)))
     `(progn
        (public ,name)
        (check-types-known ',name '(,(second resource) ,@(mapcar #'second parameters)))
        (eval-when (:compile-toplevel :load-toplevel :execute)
-         (setf (get ',name 'command-shape) '(,resource ,parameters ,sentence)))
+         (setf (get ',name 'command-signature) '(,resource ,parameters ,sentence)))
        (register-command
         (make-command
          :name ',name
-         :prompt-name ,(first (option :prompt options (list (default-prompt-name name))))
-         :prefix ,(first (option :prefix options (list (string-downcase name))))
+         :prompt-name ,(first (option-arguments :prompt options (list (default-prompt-name name))))
+         :prefix ,(first (option-arguments :prefix options (list (string-downcase name))))
          :origin ,(format nil "the continuation of ~(~A~)" name)
-         :family ,(first (option :family options))
-         :section ,(first (option :section options))
+         :family ,(first (option-arguments :family options))
+         :section ,(first (option-arguments :section options))
          :documentation ,sentence
          :resource ,(spec-form resource)
-         :occupies ',(first (option :occupies options))
+         :occupies ',(first (option-arguments :occupies options))
          :parameters (list ,@(mapcar #'spec-form parameters))
          :results (list ,@(loop for (result text) in results
                                 collect (spec-form (list result t text))))
          :errors (list ,@(loop for error in errors collect `(make-error-code ,@error)))
-         :expected ',(option :expected options)
-         :traits ',(option :traits options)
-         :echo ',(option :echo options)
-         :delay (lambda () ,(first (option :delay options '(1))))
+         :expected ',(option-arguments :expected options)
+         :traits ',(option-arguments :traits options)
+         :echo ',(option-arguments :echo options)
+         :delay (lambda () ,(first (option-arguments :delay options '(1))))
          :instant-p ,(null (assoc :delay options))
          :report ,(when report
                     `(lambda (,operation ,@(first report))
@@ -205,15 +206,17 @@ BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later 
                  ,@body)))
        (defun ,name (,(first resource) ,@variables &optional continuation)
          ,(describe-command sentence resource parameters results errors
-                            (first (option :section options)))
-         ,(check-form name (first resource) (second resource))
+                            (first (option-arguments :section options)))
+         ,(argument-check-form name (first resource) (second resource))
          ,@(loop for (variable type) in parameters
-                 collect (check-form name variable type))
-         ,(check-form name 'continuation 'continuation)
+                 collect (argument-check-form name variable type))
+         ,(argument-check-form name 'continuation 'continuation)
          (issue (command-of ',name) ,(first resource) (list ,@variables) continuation))
        (define-compiler-macro ,name (&whole form &rest arguments)
-         (doubt-count ',name '(,(first resource) ,@variables &optional continuation) arguments)
-         (doubt-uncallable ',name arguments)
-         (doubt-result ',name (nth ,(1+ (length parameters)) arguments) ,(+ 2 (length results)))
+         (warn-of-argument-count ',name '(,(first resource) ,@variables &optional continuation)
+                                 arguments)
+         (warn-of-uncallable ',name arguments)
+         (warn-of-early-call ',name (nth ,(1+ (length parameters)) arguments)
+                             ,(+ 2 (length results)))
          form)
        ',name)))

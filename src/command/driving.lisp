@@ -7,47 +7,48 @@
 ;;; coasts. What is left of a movement, in ticks or metres, is negative if it goes
 ;;; backwards.
 
-(declaim (inline lessen drive-in-time drive-what-is-left drive-time-over-p))
-(defun lessen (number amount least)
+(declaim (inline reduce-towards-zero drive-remaining-time drive-remaining-distance
+                 drive-finished-p))
+(defun reduce-towards-zero (number amount least)
   "Return NUMBER moved towards 0 by AMOUNT, or 0 if at most LEAST would remain."
   (declare (type double-float number amount least))
   (let ((rest (- (abs number) amount)))
     (if (<= rest least) 0d0 (float-sign number rest))))
 
-(defun drive-in-time (operation)
+(defun drive-remaining-time (operation)
   "Drive the robot of OPERATION for a tick, or for the remaining time of OPERATION if shorter.
 Return the value of DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation))
          (quantum (double tick-quantum*)))
     (declare (type double-float left quantum))
-    (setf (operation-left operation) (lessen left quantum 0d0))
+    (setf (operation-left operation) (reduce-towards-zero left quantum 0d0))
     ;; A computed limit is allocated, so there is one in the last tick only.
     (cond ((< (abs left) quantum)
            (drive-tick robot (* left (the double-float (robot-speed-now robot)))))
           ((minusp left) (drive-tick robot (- +endless+)))
           (t (drive-tick robot)))))
 
-(defun drive-what-is-left (operation)
+(defun drive-remaining-distance (operation)
   "Drive the robot of OPERATION for a tick, at most the remaining metres of OPERATION. Return the
 value of DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     ;; What rounding leaves is not driven.
-    (setf (operation-left operation) (lessen left (step-now robot) 1d-9))
+    (setf (operation-left operation) (reduce-towards-zero left (step-now robot) 1d-9))
     (drive-tick robot left)))
 
-(defun drive-time-over-p (operation)
+(defun drive-finished-p (operation)
   "True if OPERATION has no time or distance left to drive."
   (zerop (operation-left operation)))
 
-(defmacro drive-on ((block operation &optional drive) &body body)
+(defmacro with-drive-tick ((block operation &optional drive) &body body)
   "Drive the robot of OPERATION for a tick: call DRIVE with OPERATION or, without DRIVE, call
 DRIVE-TICK. Run BODY with BLOCK bound to the robot's obstacle, :WALL, :THING or NIL. Continue in the
 next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed is 0."
   `(let ((robot (operation-resource ,operation)))
      (declare #.*hot* (type operation ,operation) (type robot robot))
-     (if (standing-p robot)
+     (if (speed-zero-p robot)
          (fail-with ,operation :not-moving)
          (let ((,block ,(if drive `(,drive ,operation) '(drive-tick robot))))
            ,@body
@@ -55,13 +56,13 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
 
 (define-step drive-a-while (operation (robot-p (operation-resource operation)))
   "Drive the robot for a tick, and end OPERATION when its time is over."
-  (drive-on (block operation drive-in-time)
+  (with-drive-tick (block operation drive-remaining-time)
     (cond (block (fail-with operation :robot-blocked))
-          ((drive-time-over-p operation) (succeed operation)))))
+          ((drive-finished-p operation) (succeed operation)))))
 
 (define-step drive-to-wall (operation (robot-p (operation-resource operation)))
   "Drive the robot for a tick, and end OPERATION at a wall."
-  (drive-on (block operation)
+  (with-drive-tick (block operation)
     (case block
       (:wall (succeed operation))
       (:thing (fail-with operation :robot-blocked)))))
@@ -69,10 +70,10 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
 (define-step coast (operation (robot-p (operation-resource operation)))
   "Drive the robot for a tick. OPERATION succeeds after its last tick, at an obstacle, or if the
 speed is 0."
-  (if (standing-p (operation-resource operation))
+  (if (speed-zero-p (operation-resource operation))
       (succeed operation)
-      (drive-on (block operation drive-in-time)
-        (when (or block (drive-time-over-p operation)) (succeed operation)))))
+      (with-drive-tick (block operation drive-remaining-time)
+        (when (or block (drive-finished-p operation)) (succeed operation)))))
 
 ;; See reading 233.
 (define-command robot-go-forward (operation (robot robot)
@@ -99,9 +100,9 @@ speed is 0."
 
 (define-step drive-the-rest (operation (robot-p (operation-resource operation)))
   "Drive the robot for a tick, and end OPERATION when no metres are left."
-  (drive-on (block operation drive-what-is-left)
+  (with-drive-tick (block operation drive-remaining-distance)
     (cond (block (fail-with operation :robot-blocked))
-          ((drive-time-over-p operation) (succeed operation)))))
+          ((drive-finished-p operation) (succeed operation)))))
 
 (define-command robot-go-distance (operation (robot robot)
                                    (metres distance "how far"))
@@ -133,7 +134,7 @@ number of ticks."
   (go-on-now operation 'drive-to-wall))
 
 ;; A stop that interrupts another continues it. The robot coasts backwards if it went so.
-(defmethod note-cut-short ((name (eql 'robot-stop)) operation rival)
+(defmethod record-interrupted-operation ((name (eql 'robot-stop)) operation rival)
   (call-next-method)
   (let ((command (operation-command rival)) (left (operation-left rival)))
     (cond ((eq name (command-name command))
@@ -164,7 +165,7 @@ prolong the coasting."
 ;;; of the four neighbouring cells of the robot that are walls; those at the side take precedence
 ;;; over the one ahead. The robot keeps it on the side where it was.
 
-(defun axis (angle)
+(defun nearest-axis (angle)
   "Return the axis of the grid nearest to ANGLE, as a number of quarter turns from 0 to 3."
   (mod (round (/ angle (/ pi 2))) 4))
 
@@ -183,7 +184,7 @@ from the x axis."
 (defun wall-to-follow (robot)
   "Return the direction of a wall next to ROBOT and the heading along this wall, both in quarter
 turns; or NIL if there is no wall."
-  (let* ((heading (axis (robot-angle robot)))
+  (let* ((heading (nearest-axis (robot-angle robot)))
          (sides (remove-if-not (lambda (quarter) (neighbour-wall-p robot quarter))
                                (list (1+ heading) (1- heading))))
          (side (first (sort sides #'< :key (lambda (quarter) (distance-to-side robot quarter))))))
@@ -191,7 +192,7 @@ turns; or NIL if there is no wall."
           ;; Ahead of the robot: turn right, so that the wall is at the left.
           ((neighbour-wall-p robot heading) (values heading (1+ heading))))))
 
-(defun drive-along (operation robot side)
+(defun drive-along-wall (operation robot side)
   (ecase (drive-tick robot)
     (:wall (succeed operation))
     (:thing (fail-with operation :robot-blocked))
@@ -209,8 +210,8 @@ heading along it, in quarter turns."
       (cond ((not (turn-towards robot
                                 (angle-difference (* heading (/ pi 2)) (robot-angle robot)) 1d-3))
              (repeat-step operation))
-            ((standing-p robot) (fail-with operation :not-moving))
-            (t (drive-along operation robot side))))))
+            ((speed-zero-p robot) (fail-with operation :not-moving))
+            (t (drive-along-wall operation robot side))))))
 
 ;; See reading 107.
 (define-command robot-follow-wall (operation (robot robot))

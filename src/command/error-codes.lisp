@@ -2,13 +2,13 @@
 
 (in-package :ars-magna.command)
 
-(export '(trouble-p))
+(export '(failure-code-p))
 
 ;;; An error code is only a word. This file has a sentence and a remedy for each that several
 ;;; commands share. Commands have their own messages, too, and explain their own codes (see
 ;;; DEFINE-COMMAND).
 
-(defparameter *meanings*
+(defparameter *error-code-explanations*
   '((:interrupt
      "A newer request took over the robot or part before the command had ended."
      "Wait for the command's continuation before you issue another command to the part. (under-way
@@ -124,11 +124,11 @@ enter."
   "Lists (code meaning remedy) for the simulator's own commands: an error code, a sentence, and a
 sentence or an empty string.")
 
-(mapc #'note-error-code (mapcar #'first *meanings*))
+(mapc #'note-error-code (mapcar #'first *error-code-explanations*))
 
 (defun explanation-of-code (code)
   "Return a list (meaning remedy) of strings for CODE, or NIL."
-  (or (rest (assoc code *meanings*))
+  (or (rest (assoc code *error-code-explanations*))
       (loop for command in (all-commands)
             for own = (find code (command-errors command) :key #'error-code-keyword)
             thereis (and own (error-code-explanation own)))))
@@ -146,7 +146,7 @@ the simulator nor a command explains CODE."
   (let ((remedy (second (explanation-of-code code))))
     (and remedy (string/= "" remedy) (one-line remedy))))
 
-(defun trouble-p (code)
+(defun failure-code-p (code)
   "True if CODE, an error code or NIL, is worth reporting as a failure. The codes :INTERRUPT and
 :DESIGNATOR-NOT-FOUND do not count, because plans often interrupt commands on purpose and search for
 things that are not there."

@@ -30,7 +30,7 @@ number of the next tick, because a tick is counted after its requests are perfor
          (eq (request-name request) (interruption-what interruption))
          interruption)))
 
-(defun note-failure (operation code text)
+(defun record-failure (operation code text)
   "Record in the robot of OPERATION that it ends with the error CODE and the message TEXT."
   (let* ((tick (timeline-tick (operation-timeline operation)))
          (interruption (and (eq code :interrupt) (interruption-of operation tick))))

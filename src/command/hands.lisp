@@ -37,12 +37,12 @@ DESTINATION denotes."
   (let ((denotation (designator-denotation designator)))
     (and (thing-p denotation) denotation)))
 
-(defun perhaps-lose-designators (designator probability dice &key silently)
+(defun drop-designators-by-chance (designator probability dice &key silently)
   "Drop each designator of the thing that DESIGNATOR denotes with PROBABILITY. If DESIGNATOR denotes
 no thing, drop only DESIGNATOR, with PROBABILITY."
   (let ((thing (designator-thing designator)))
     (dolist (other (if thing
-                       (designators-on (designator-robot designator) thing)
+                       (designators-of-thing (designator-robot designator) thing)
                        (list designator)))
       (when (chance probability dice)
         (drop-designator other :silently silently)))))
@@ -72,7 +72,7 @@ and 237)."
 
 ;;; Grasping.
 
-(defun grasp-obstacle (hand camera designator)
+(defun grasp-error-code (hand camera designator)
   "Return the error code for what prevents HAND from grasping, or NIL if nothing does (reading
 164)."
   (cond ((hand-holding hand) :hand-grasping)
@@ -97,7 +97,7 @@ and 237)."
     (if (and thing (not (part-reaches-p hand thing)))
         :missed-grasp
         (prog1 (grasp hand thing dice)
-          (perhaps-lose-designators designator prob-grasp-lose-desig* dice :silently t)))))
+          (drop-designators-by-chance designator prob-grasp-lose-desig* dice :silently t)))))
 
 (define-command hand-grasp-desig (operation (hand hand)
                                   (camera camera "a camera that tracks the designator")
@@ -105,35 +105,35 @@ and 237)."
     ((designator "the designator"))
     ((:family :handling) (:section "3.6") (:prompt "HAND-GRASP") (:prefix "hand-grasp")
      (:delay (+ hand-move-delay* hand-grasp-delay*))
-     (:errors (:hand-grasping (text-of "~A is already holding something"))
-              (:different-location (text-of "~A not in same location as ~A"))
+     (:errors (:hand-grasping (format-text "~A is already holding something"))
+              (:different-location (format-text "~A not in same location as ~A"))
               (:bad-designator "Designator is not valid")
               (:non-local-grasp "Designator is not local")
-              (:not-tracked (text-of "~*~A is not tracking ~A"))
-              (:missed-grasp (text-of "~A missed"))
-              (:insufficient-strength (text-of "~A is not strong enough")))
+              (:not-tracked (format-text "~*~A is not tracking ~A"))
+              (:missed-grasp (format-text "~A missed"))
+              (:insufficient-strength (format-text "~A is not strong enough")))
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))
     "Grasp with HAND what a local designator denotes. Whether or not the hand misses, it may bump
 the thing, which silently makes designators of the thing invalid."
-  (let ((obstacle (grasp-obstacle hand camera designator)))
+  (let ((obstacle (grasp-error-code hand camera designator)))
     (finish operation
             (or obstacle (try-grasp hand designator (handling-dice hand)))
             designator)))
 
-(defun dropped-text (hand thing)
+(defun drop-message (hand thing)
   (format nil "~A dropped ~A~@[ into ~A~]" hand thing
           (and (hand-location hand) (location-name (hand-location hand)))))
 
 (define-command hand-ungrasp (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
-     (:errors (:not-grasping (text-of "~A is not holding anything"))))
+     (:errors (:not-grasping (format-text "~A is not holding anything"))))
     "Drop what HAND holds: into the container the hand is in, or where the robot stands."
   (let ((thing (hand-holding hand)))
     (cond (thing (set-down hand thing)
-                 (succeed-with-message operation (dropped-text hand thing)))
+                 (succeed-with-message operation (drop-message hand thing)))
           (t (fail-with operation :not-grasping)))))
 
 ;;; Feeling.
@@ -148,8 +148,8 @@ the thing, which silently makes designators of the thing invalid."
 (define-command hand-grasp-check (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:traits :asks)
-     (:errors (:grasping (text-of "~A is holding something"))
-              (:not-grasping (text-of "~A is not holding anything"))))
+     (:errors (:grasping (format-text "~A is holding something"))
+              (:not-grasping (format-text "~A is not holding anything"))))
     "Feel whether HAND holds something. The answer is the error code :GRASPING or :NOT-GRASPING."
   (end-with-answer operation (if (hand-holding hand) :grasping :not-grasping)))
 
@@ -163,15 +163,15 @@ the thing, which silently makes designators of the thing invalid."
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))
           ((not (event-pending-p operation))
-           (unsettle (hand-robot hand))
+           (mark-world-unsettled (hand-robot hand))
            (go-on operation 'watch-grip +watch-period+)))))
 
 ;; See readings 222 and 239.
 (define-command hand-track (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay 1)
-     (:errors (:grasp-lost (text-of "~A lost its grip"))
-              (:not-grasping (text-of "~A is not holding anything"))))
+     (:errors (:grasp-lost (format-text "~A lost its grip"))
+              (:not-grasping (format-text "~A is not holding anything"))))
     "Watch the grip of HAND until the hand loses it, or until another command to HAND interrupts."
   (setf (operation-subject operation) (hand-holding hand))
   (if (hand-holding hand)

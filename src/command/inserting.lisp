@@ -5,11 +5,11 @@
 ;;; Insertion goes one level in, removal one level out. Only from the open can parts reach the
 ;;; robot's bins, and what stands in the open.
 
-(defun inserted-text (operation destination)
+(defun insertion-message (operation destination)
   (format nil "~A inserted into ~A" (operation-resource operation)
           (destination-name destination)))
 
-(defun inserting-text (control)
+(defun insertion-error-text (control)
   "Return a function of an operation that formats CONTROL, an error text, with the part and the name
 of the destination."
   (lambda (operation)
@@ -18,7 +18,7 @@ of the destination."
 
 ;;; Hands.
 
-(defun held-inside-p (hand container)
+(defun inside-held-thing-p (hand container)
   "True if HAND holds CONTAINER, or something that CONTAINER is in."
   (loop for outer = container then (thing-location outer)
         while (thing-p outer)
@@ -31,7 +31,7 @@ of the destination."
         ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
          :insufficient-capacity)
-        ((held-inside-p hand container) :holding-thing)
+        ((inside-held-thing-p hand container) :holding-thing)
         ((not (reaches-container-p hand container)) :different-location)
         ((chance hand-insert-miss-prob* (handling-dice hand)) :hand-bump)
         (t (move-part hand container)
@@ -41,7 +41,7 @@ of the destination."
   "Insert HAND into DESTINATION, a valid local designator or a storage bin (reading 157)."
   (let ((code (try-hand-insertion hand (destination-container destination))))
     (when (and (eq code :hand-bump) (designator-p destination))
-      (perhaps-lose-designators destination hand-insert-lose-desig-prob* (handling-dice hand)))
+      (drop-designators-by-chance destination hand-insert-lose-desig-prob* (handling-dice hand)))
     (finish operation code destination)))
 
 ;; See reading 156.
@@ -51,14 +51,14 @@ of the destination."
     ((destination "the designator or bin"))
     ((:family :handling) (:section "3.6") (:prompt "HAND-INSERT-DESIG")
      (:delay hand-move-delay*)
-     (:errors (:bin-closed (inserting-text "~*~A is closed"))
-              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
-              (:holding-thing (inserting-text "~A is holding ~A"))
-              (:hand-bump (inserting-text "~A bumped ~A"))
+     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
+              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
+              (:holding-thing (insertion-error-text "~A is holding ~A"))
+              (:hand-bump (insertion-error-text "~A bumped ~A"))
               (:bad-designator "Designator is not valid")
               (:non-local-designator "Designator is not local")
-              (:different-location (inserting-text "~A not in same location as ~A")))
-     (:report (destination) (inserted-text operation destination)))
+              (:different-location (insertion-error-text "~A not in same location as ~A")))
+     (:report (destination) (insertion-message operation destination)))
     "Insert HAND, with what it holds, into a container."
   (cond ((storage-bin-p destination) (insert-hand operation hand destination))
         ((not (own-designator-p hand destination))
@@ -71,12 +71,12 @@ of the destination."
                                  (storage-bin storage-bin "a storage bin of the same robot"))
     ((storage-bin "the storage bin"))
     ((:family :handling) (:section "3.6") (:prefix "hand-insert") (:delay hand-move-delay*)
-     (:errors (:bin-closed (inserting-text "~*~A is closed"))
-              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
-              (:holding-thing (inserting-text "~A is holding ~A"))
-              (:hand-bump (inserting-text "~A bumped ~A"))
-              (:different-location (inserting-text "~A not in same location as ~A")))
-     (:report (storage-bin) (inserted-text operation storage-bin)))
+     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
+              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
+              (:holding-thing (insertion-error-text "~A is holding ~A"))
+              (:hand-bump (insertion-error-text "~A bumped ~A"))
+              (:different-location (insertion-error-text "~A not in same location as ~A")))
+     (:report (storage-bin) (insertion-message operation storage-bin)))
     "Insert HAND, with what it holds, into a storage bin."
   (insert-hand operation hand storage-bin))
 
@@ -86,7 +86,7 @@ of the destination."
   "Take PART one level out of its container and end OPERATION (reading 160)."
   (let ((location (part-location part)))
     (cond (location
-           (move-part part (space-around part))
+           (move-part part (outer-enclosure part))
            (succeed-with-message
             operation (format nil "~A removed from ~A" part (location-name location))))
           (t (fail-with operation :not-inside)))))
@@ -94,14 +94,14 @@ of the destination."
 (define-command hand-remove (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
-     (:errors (:not-inside (text-of "~A is not inside anything"))))
+     (:errors (:not-inside (format-text "~A is not inside anything"))))
     "Take HAND, with what it holds, one level out of its container."
   (take-part-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
-     (:errors (:not-inside (text-of "~A is not inside anything"))))
+     (:errors (:not-inside (format-text "~A is not inside anything"))))
     "Take CAMERA out of its innermost container. The camera loses its track."
   (take-part-out operation camera))
 
@@ -136,14 +136,14 @@ NIL (reading 159)."
     ((destination "the designator or bin"))
     ((:family :handling) (:section "3.4.3") (:prompt "CAM-INSERT-DESIG")
      (:delay camera-move-delay*)
-     (:errors (:bin-closed (inserting-text "~*~A is closed"))
-              (:not-tracking (text-of "~A is not tracking anything"))
-              (:not-tracking-destination (text-of "~A is not tracking ~A"))
-              (:camera-bump (inserting-text "~A bumped ~A"))
-              (:insufficient-capacity (inserting-text "No room for ~A in ~A"))
+     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
+              (:not-tracking (format-text "~A is not tracking anything"))
+              (:not-tracking-destination (format-text "~A is not tracking ~A"))
+              (:camera-bump (insertion-error-text "~A bumped ~A"))
+              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
               (:non-local-designator "Designator is not local")
-              (:local-not-local (inserting-text "~A not in same location as ~A")))
-     (:report (destination) (inserted-text operation destination)))
+              (:local-not-local (insertion-error-text "~A not in same location as ~A")))
+     (:report (destination) (insertion-message operation destination)))
     "Insert CAMERA into a container, to look inside. The camera loses its track."
   (let ((code (try-camera-insertion camera destination (destination-container destination))))
     (when (and (designator-p destination)
@@ -158,7 +158,7 @@ NIL (reading 159)."
 (define-command storage-bin-open (operation (storage-bin storage-bin))
     ()
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
-     (:errors (:bin-open (text-of "~A is already open"))))
+     (:errors (:bin-open (format-text "~A is already open"))))
     "Open STORAGE-BIN."
   (cond ((storage-bin-closed-p storage-bin)
          (setf (storage-bin-closed-p storage-bin) nil)
@@ -170,15 +170,15 @@ NIL (reading 159)."
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
      (:expected :bin-closed :bin-jammed)
-     (:errors (:bin-closed (text-of "~A is already closed"))
+     (:errors (:bin-closed (format-text "~A is already closed"))
               (:robot-in-bin (lambda (operation)
                                (let ((bin (operation-resource operation)))
-                                 (format nil "~A still in ~A" (part-inside bin) bin))))
-              (:bin-jammed (text-of "~A is jammed"))))
+                                 (format nil "~A still in ~A" (part-in-bin bin) bin))))
+              (:bin-jammed (format-text "~A is jammed"))))
     "Close STORAGE-BIN, so that kickers cannot move things out of the bin."
   (cond ((storage-bin-closed-p storage-bin) (fail-with operation :bin-closed))
-        ((part-inside storage-bin)
-         (fail-with operation :robot-in-bin (part-inside storage-bin)))
+        ((part-in-bin storage-bin)
+         (fail-with operation :robot-in-bin (part-in-bin storage-bin)))
         ((and (storage-bin-contents storage-bin)
               (chance bin-close-jam-prob* (handling-dice storage-bin)))
          (fail-with operation :bin-jammed))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-(export '(issue *ticks-follow-p* between-runs-p *asked-with* parameters-bound doubt-asked-with
-          asked-elsewhere-p))
+(export '(issue *caller-passes-ticks-p* between-runs-p *recorded-bindings* parameters-bound
+          warn-of-recorded-bindings requested-elsewhere-p))
 
 ;;; Arguments from another run.
 
@@ -12,7 +12,7 @@
     (designator (designator-robot argument))
     (part (part-robot argument))))
 
-(defun check-of-this-run (command resource arguments)
+(defun check-same-run (command resource arguments)
   (let ((world (robot-world (resource-robot resource))))
     (dolist (argument arguments)
       (let* ((robot (if (robot-p argument) argument (argument-robot argument)))
@@ -41,8 +41,8 @@ position. TOLD lists the names of the arguments."
             do (let ((other (position name told :test #'string=)))
                  (when (and other (/= place other)) (return t)))))))
 
-(defun doubt-continuation (command world continuation
-                           &optional (told (continuation-arguments command)))
+(defun warn-of-continuation (command world continuation
+                             &optional (told (continuation-arguments command)))
   "Warn once if CONTINUATION cannot be called with the arguments that COMMAND passes. TOLD lists the
 names of the arguments."
   (let ((*print-pretty* nil))
@@ -59,26 +59,26 @@ names of the arguments."
 
 ;;; One simulation inside another.
 
-(defun asked-elsewhere (world)
+(defun elsewhere-request-key (world)
   "Return the key under which requests to WORLD from a simulation of another world are recorded in
 this tick."
   (list :asked-elsewhere (world-tick world)))
 
-(defun asked-elsewhere-p (world)
+(defun requested-elsewhere-p (world)
   "True if a program has issued a request to WORLD inside a simulation of another world since the
 last tick of WORLD."
-  (said-p (asked-elsewhere world) world))
+  (warning-given-p (elsewhere-request-key world) world))
 
-(defun note-asked-elsewhere (world)
+(defun record-elsewhere-request (world)
   "If a program issues a request to an idle WORLD inside a simulation of another world, record
 this."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
-               (by-program-p)
+               (from-program-p)
                (not (eq timeline (timeline-of *simulation*)))
                (not (live-p timeline))
                (not (timeline-passing-p timeline)))
-      (first-time-p (asked-elsewhere world) world))))
+      (first-time-p (elsewhere-request-key world) world))))
 
 ;;; Two commands without a tick between them.
 
@@ -87,12 +87,12 @@ this."
 something do not count."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
-(defun by-program-p ()
+(defun from-program-p ()
   "True if a program or a continuation issues the command, not a plan, the prompt or a journal."
   (or (null *asker*)
       (and (stringp *asker*) (starts-with-subseq "the continuation of " *asker*))))
 
-(defun not-begun (resource timeline)
+(defun pending-request (resource timeline)
   "Return the last request on RESOURCE that has not begun and whose command takes time, or NIL."
   (find-if (lambda (request)
              (and (operation-p request)
@@ -100,7 +100,7 @@ something do not count."
                   (takes-time-p (operation-command request))))
            (timeline-inbox timeline)))
 
-(defun just-begun (resource timeline)
+(defun operation-just-begun (resource timeline)
   "Return the operation that RESOURCE has begun in the last tick of a live run, if its command takes
 time, or NIL."
   (let ((event (resource-event resource)))
@@ -121,12 +121,13 @@ BEFORE may be left over from earlier work."
                  (let ((world (robot-world resource)))
                    (not (eq world (map-resident (world-map world)))))))))
 
-(defun doubt-interrupting (command resource arguments timeline)
+(defun warn-if-interrupting (command resource arguments timeline)
   "Warn once for each pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts a
 command without a continuation that the same program issued in this tick or, in a live run, in the
 last tick."
-  (when (and (by-program-p) (takes-time-p command))
-    (let ((before (or (not-begun resource timeline) (just-begun resource timeline))))
+  (when (and (from-program-p) (takes-time-p command))
+    (let ((before (or (pending-request resource timeline)
+                      (operation-just-begun resource timeline))))
       (when (and before
                  (not (may-replace-p command resource arguments before))
                  (null (operation-continuation before))
@@ -145,7 +146,7 @@ last tick."
                        (command-name before) (continuation-arguments before) (command-name command)
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
-(defun doubt-repeating (command resource arguments timeline)
+(defun warn-if-repeating (command resource arguments timeline)
   "Warn once if a program in a headless run issues COMMAND, a relative turn of RESOURCE by
 ARGUMENTS, again while the same turn is in progress without a continuation. The turn then starts
 over."
@@ -153,7 +154,7 @@ over."
     (when (and (operation-p before)
                (eq command (operation-command before))
                (trait-p :turns command)
-               (by-program-p)
+               (from-program-p)
                (not (live-p timeline))
                (not (operation-finished-p before))
                (null (operation-continuation before))
@@ -171,7 +172,7 @@ over."
                        (command-name command) ticks (continuation-arguments command)))))
 
 ;; Manipulations, and commands that users define, may be for two robots.
-(defun doubt-owners (command robot arguments)
+(defun warn-of-other-owners (command robot arguments)
   (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
     (dolist (argument arguments)
       (let ((owner (argument-robot argument)))
@@ -180,11 +181,11 @@ over."
                      (format nil "~(~A~): ~A belongs to ~A, not to ~A."
                              (command-name command) argument owner robot)))))))
 
-(defun doubt-arguments (command world arguments)
+(defun warn-of-arguments (command world arguments)
   (loop for spec in (command-parameters command)
         for argument in arguments
         do (case (spec-type spec)
-             (angle (doubt-angle (command-name command) world argument))
+             (angle (warn-of-angle (command-name command) world argument))
              (ticks (when (minusp argument)
                       (warn-once (list :ticks (command-name command)) world
                                  (format nil "~(~A~): ~A ticks do nothing.~@[ To drive back, turn ~
@@ -192,7 +193,7 @@ over."
                                          (command-name command) argument
                                          (trait-p :drives command))))))))
 
-(defvar *asked-with* '()
+(defvar *recorded-bindings* '()
   "A list (command world (parameter . value)...) for each command that a program has issued in a
 headless run since the last tick, while parameters had other values than in the run.")
 
@@ -201,7 +202,7 @@ headless run since the last tick, while parameters had other values than in the 
 differs from that in the run of TIMELINE in WORLD.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
 
-(defun doubt-bindings (command world bindings)
+(defun warn-of-bindings (command world bindings)
   "Warn once for COMMAND if it runs with other parameter values than it was issued with."
   (loop for (symbol . value) in bindings
         unless (eql value (symbol-value symbol))
@@ -212,14 +213,14 @@ differs from that in the run of TIMELINE in WORLD.")
                                      (ROBOT :parameters '((~3:*~(~A~) ~A))) ...)."
                                 (command-name command) symbol value (symbol-value symbol)))))
 
-(defun doubt-asked-with (world)
+(defun warn-of-recorded-bindings (world)
   "When ticks of WORLD pass, warn once for each command that runs with other parameter values than
 it was issued with. Then forget the recorded parameters."
-  (loop for (command asked . bindings) in (reverse *asked-with*)
-        when (eq asked world) do (doubt-bindings command world bindings))
-  (setf *asked-with* (remove world *asked-with* :key #'second :test #'eq)))
+  (loop for (command asked . bindings) in (reverse *recorded-bindings*)
+        when (eq asked world) do (warn-of-bindings command world bindings))
+  (setf *recorded-bindings* (remove world *recorded-bindings* :key #'second :test #'eq)))
 
-(defun doubt-bindings-here (command world bindings)
+(defun warn-of-thread-bindings (command world bindings)
   "Warn once that COMMAND, issued in the live run of WORLD, does not see BINDINGS, which hold in
 this thread only."
   (loop for (symbol . value) in bindings
@@ -228,15 +229,15 @@ this thread only."
                                    is ~A, not ~A as in this LET. Write (setf ~1@*~(~A~) ~3@*~A)."
                               (command-name command) symbol (global-value symbol) value))))
 
-(defun note-bindings (command world)
+(defun record-bindings (command world)
   "Record the parameters that are bound around COMMAND, issued in WORLD between ticks. In a live
 run, warn at once."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (parameters-bound timeline world)))
         (cond ((null bindings))
-              ((live-p timeline) (doubt-bindings-here command world bindings))
-              (t (push (list* command world bindings) *asked-with*)))))))
+              ((live-p timeline) (warn-of-thread-bindings command world bindings))
+              (t (push (list* command world bindings) *recorded-bindings*)))))))
 
 (defun between-runs-p (world)
   "True if requests to a robot in WORLD, the resident world of a map, wait for a run to start or
@@ -272,16 +273,16 @@ continue."
           (t (format nil "A robot is in the run of WITH-SIMULATION if WITH-SIMULATION names the ~
                           robot, as in (with-simulation ((ROBOT ~(~A~))) ...)." name)))))
 
-(defvar *ticks-follow-p* nil
+(defvar *caller-passes-ticks-p* nil
   "True if the caller lets ticks pass for its commands, or itself reports that no ticks pass.")
 
-(defun warn-if-kept (command resource robot)
+(defun warn-if-postponed (command resource robot)
   "Warn once for ROBOT, the robot of RESOURCE, if COMMAND is kept for a later run, and once for each
 WITH-SIMULATION in another thread that binds the name of ROBOT. Do not warn of commands from plans,
 because running a plan passes ticks."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
-             (not *ticks-follow-p*))
+             (not *caller-passes-ticks-p*))
     (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, because no run of ~A is in progress. ~
@@ -290,7 +291,7 @@ because running a plan passes ticks."
 
 ;;; Issuing.
 
-(defun occupied (command resource)
+(defun occupied-resource (command resource)
   (let ((reader (command-occupies command)))
     (if reader (funcall reader resource) resource)))
 
@@ -298,25 +299,25 @@ because running a plan passes ticks."
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy the lists in ARGUMENTS.
 CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
 if the robot's run is over, or if an argument belongs to another run."
-  (check-in-run resource (command-name command))
-  (check-of-this-run command resource arguments)
+  (check-not-retired resource (command-name command))
+  (check-same-run command resource arguments)
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))
          (arguments (if (some #'consp arguments)
                         (copy-argument (command-name command) "arguments" arguments)
                         arguments)))
-    (count-request (occupied command resource))
-    (doubt-interrupting command (occupied command resource) arguments timeline)
-    (doubt-repeating command (occupied command resource) arguments timeline)
-    (post (make-operation command (occupied command resource) arguments
+    (count-request (occupied-resource command resource))
+    (warn-if-interrupting command (occupied-resource command resource) arguments timeline)
+    (warn-if-repeating command (occupied-resource command resource) arguments timeline)
+    (post (make-operation command (occupied-resource command resource) arguments
                           (if (untold-p timeline) nil continuation)
                           timeline)
           timeline)
-    (doubt-arguments command world arguments)
-    (note-bindings command world)
-    (note-asked-elsewhere world)
-    (doubt-owners command robot arguments)
-    (doubt-continuation command world continuation)
-    (warn-if-kept command resource robot)
+    (warn-of-arguments command world arguments)
+    (record-bindings command world)
+    (record-elsewhere-request world)
+    (warn-of-other-owners command robot arguments)
+    (warn-of-continuation command world continuation)
+    (warn-if-postponed command resource robot)
     (values)))

@@ -26,13 +26,13 @@
 (define-argument-type 'specification #'specification-p
   "a descriptor specification: a list such as ((:color (red blue)) (:size (3 5) .5)), with values
 that the attributes can have; a range begins with its lower end"
-  #'specification-trouble)
+  #'specification-problem-text)
 
 (define-argument-type 'place-type
   (lambda (value) (and value (typep value '(or symbol string place-type))))
   "the name of a place type")
 
-(defun found-text (operation designators)
+(defun found-message (operation designators)
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
@@ -67,7 +67,7 @@ keeps."
 
 ;;; Places.
 
-(defun place-search-obstacle (camera type)
+(defun place-search-error-code (camera type)
   "Return the error code for what keeps CAMERA from searching for the place type TYPE, or NIL if
 nothing does (reading 69)."
   (cond ((camera-tracking camera) :already-tracking)
@@ -77,7 +77,7 @@ nothing does (reading 69)."
 
 (defun search-for-places (operation camera place-type all)
   (let* ((type (find-place-type place-type nil))
-         (obstacle (place-search-obstacle camera type)))
+         (obstacle (place-search-error-code camera type)))
     (if obstacle
         (fail-with operation obstacle)
         (funcall (if all #'designate-all #'designate-first)
@@ -93,11 +93,11 @@ nothing does (reading 69)."
     ((:family :looking) (:section "3.4.3") (:prompt "PLACE-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:invalid-place-type (text-of "~*~A is not a place type"))
-              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
-              (:camera-enclosed (text-of "~A is inside a container"))
-              (:designator-not-found (text-of "~A found no ~A")))
-     (:report (designator) (found-text operation (list designator))))
+              (:invalid-place-type (format-text "~*~A is not a place type"))
+              (:invisible-place-type (format-text "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (format-text "~A is inside a container"))
+              (:designator-not-found (format-text "~A found no ~A")))
+     (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for a place of a type. Of several places, one is chosen at random. The error
 code :DESIGNATOR-NOT-FOUND means that the camera found no place; the robot has no fault."
   (search-for-places operation camera place-type nil))
@@ -109,11 +109,11 @@ code :DESIGNATOR-NOT-FOUND means that the camera found no place; the robot has n
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-PLACE-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:invalid-place-type (text-of "~*~A is not a place type"))
-              (:invisible-place-type (text-of "~*~A cannot be recognized at a distance"))
-              (:camera-enclosed (text-of "~A is inside a container"))
-              (:designator-not-found (text-of "~A found no ~A")))
-     (:report (designators) (found-text operation designators)))
+              (:invalid-place-type (format-text "~*~A is not a place type"))
+              (:invisible-place-type (format-text "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (format-text "~A is inside a container"))
+              (:designator-not-found (format-text "~A found no ~A")))
+     (:report (designators) (found-message operation designators)))
     "Look with CAMERA for all places of a type. Each place after the first takes a tick more. The
 error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
   (search-for-places operation camera place-type t))
@@ -125,7 +125,7 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
   (loop for (key value) in specification
         when (eq key :substance)
           do (dolist (choice (ensure-list value))
-               (when (and choice (symbolp choice)) (note-unknown-substance choice))))
+               (when (and choice (symbolp choice)) (warn-of-unknown-substance choice))))
   (if (camera-tracking camera)
       (fail-with operation :already-tracking)
       (funcall (if all #'designate-all #'designate-first)
@@ -140,8 +140,8 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:designator-not-found (text-of "~A found no such object")))
-     (:report (designator) (found-text operation (list designator))))
+              (:designator-not-found (format-text "~A found no such object")))
+     (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for an object that fits a description. Of several objects, one is chosen at
 random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; the robot has no
 fault."
@@ -155,8 +155,8 @@ fault."
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:designator-not-found (text-of "~A found no such object")))
-     (:report (designators) (found-text operation designators)))
+              (:designator-not-found (format-text "~A found no such object")))
+     (:report (designators) (found-message operation designators)))
     "Look with CAMERA for all objects that fit a description. Each object after the first takes a
 tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object."
   (search-for-things operation camera type specification t))
@@ -164,7 +164,7 @@ tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no o
 ;;; CAMERA-TRACK calls its continuation twice: with NIL when the track begins, and with a code when
 ;;; it ends; only once if it cannot begin.
 
-(defun track-obstacle (camera designator)
+(defun track-error-code (camera designator)
   "Return the error code for what keeps CAMERA from tracking DESIGNATOR, or NIL if nothing does."
   (let ((local (eq (designator-type designator) :local)))
     (cond ((camera-tracking camera) :already-tracking)
@@ -179,14 +179,14 @@ tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no o
 same container or in the open (reading 140)."
   (and (own-designator-p camera designator)
        (eq (designator-location designator) (camera-location camera))
-       (designator-local-p* designator)))
+       (designator-truly-local-p designator)))
 
 ;; Warnings have been queued already, unless it was interrupted.
 (defmethod track-ended ((operation operation) code designator)
   (setf (operation-finished-p operation) t)
   (if (eq code :interrupt)
       (report operation code '())
-      (note-failure operation code (error-text operation code)))
+      (record-failure operation code (error-text operation code)))
   (notify operation code (list designator)))
 
 (defun interrupt-track (operation camera)
@@ -209,14 +209,14 @@ same container or in the open (reading 140)."
     ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*) (:echo designator)
      (:traits :begins)
      (:errors (:already-tracking #'already-tracking-text)
-              (:local-not-local (text-of "~*~A is not local any more"))
-              (:camera-inside (text-of "~A is inside a container and cannot track ~A"))
-              (:lost-track (text-of "~A lost track of ~A")))
+              (:local-not-local (format-text "~*~A is not local any more"))
+              (:camera-inside (format-text "~A is inside a container and cannot track ~A"))
+              (:lost-track (format-text "~A lost track of ~A")))
      (:report (designator)
               (format nil "~A tracking ~A" (operation-resource operation) designator)))
     "Turn CAMERA to what DESIGNATOR denotes and keep CAMERA pointed there. The continuation is
 called with NIL when the track begins, and with an error code when the track ends."
-  (let ((obstacle (track-obstacle camera designator)))
+  (let ((obstacle (track-error-code camera designator)))
     (if obstacle
         (fail-with operation obstacle designator)
         (begin-track operation camera designator))))
@@ -225,7 +225,7 @@ called with NIL when the track begins, and with an error code when the track end
 (define-command camera-untrack (operation (camera camera))
     ()
     ((:family :looking) (:section "3.4.3") (:traits :stops) (:expected :not-tracking)
-     (:errors (:not-tracking (text-of "~A is not tracking anything")))
+     (:errors (:not-tracking (format-text "~A is not tracking anything")))
      (:report () (format nil "~A stopped tracking" (operation-resource operation))))
     "Stop CAMERA from tracking. The designator remains; the track's continuation gets :INTERRUPT."
   (cond ((camera-tracking camera)
@@ -249,21 +249,21 @@ called with NIL when the track begins, and with an error code when the track end
 turned."
   (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
-(defun camera-turned-text (operation angle)
+(defun camera-turn-message (operation angle)
   (phrase "~A turned ~,2F" (operation-resource operation) angle))
 
 (define-command camera-turn (operation (camera camera)
                              (angle angle "how far in radians, to the right if positive"))
     ((angle "an estimate of the angle turned"))
     ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
-     (:report (angle) (camera-turned-text operation angle)))
+     (:report (angle) (camera-turn-message operation angle)))
     "Turn CAMERA by ANGLE, relative to where it points."
   (succeed operation (turn-camera operation camera angle)))
 
 (define-command camera-align-robot (operation (camera camera))
     ((angle "an estimate of the angle turned"))
     ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
-     (:report (angle) (camera-turned-text operation angle)))
+     (:report (angle) (camera-turn-message operation angle)))
     "Point CAMERA where the robot is heading."
   (succeed operation (turn-camera-to operation camera 0)))
 
@@ -273,7 +273,7 @@ turned."
     ((:family :looking) (:section "3.4.3") (:delay camera-align-delay*)
      (:errors (:no-place-type "No place type here to align with"))
      (:report (angle place-type)
-              (format nil "~A, at a ~A" (camera-turned-text operation angle) place-type)))
+              (format nil "~A, at a ~A" (camera-turn-message operation angle) place-type)))
     "Point CAMERA in the nearest canonical direction of the place that the robot senses."
   (let* ((robot (camera-robot camera)) (type (sense-place-type robot)))
     (if type

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(manipulation-command-p command-for))
+(export '(manipulation-command-p command-of-manipulation))
 
 ;;; Objects are given as designators. An invalid, false or non-local one, or one of another robot,
 ;;; designates nothing.
@@ -11,7 +11,7 @@
   "Return the local thing that DESIGNATOR denotes for the robot of RESOURCE, or NIL (reading 175)."
   (and (own-designator-p resource designator)
        (eq (designator-type designator) :local)
-       (designator-local-p* designator)
+       (designator-truly-local-p designator)
        (designator-thing designator)))
 
 ;;; Methods for given arguments.
@@ -71,7 +71,7 @@ designated things now, or NIL."
 
 ;;; In its tick.
 
-(defun doubt-code (operation code)
+(defun warn-of-returned-code (operation code)
   "Warn once for the manipulation of OPERATION if CODE, which its body returned, is no error code."
   (unless (typep code '(or null keyword))
     (let ((name (command-prefix (operation-command operation))) (text (unqualified-text code)))
@@ -81,7 +81,7 @@ designated things now, or NIL."
                               result, write (values nil result)."
                          name (cut text 60))))))
 
-(defun run-body (operation method)
+(defun run-method-body (operation method)
   "Run the body of METHOD; end OPERATION with the error code and the value that the body returns, or
 with :FAILED if the body fails."
   (let* ((arguments (operation-arguments operation)) (things (method-things method arguments))
@@ -92,7 +92,7 @@ with :FAILED if the body fails."
                                        (apply (method-body method)
                                               (append things (nthcdr (length things) arguments))))))
                       (list "manipulation " (command-prefix (operation-command operation))))
-      (progn (doubt-code operation (first results))
+      (progn (warn-of-returned-code operation (first results))
              (finish operation (first results) (second results))))))
 
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
@@ -104,7 +104,7 @@ chance."
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
              (chance (method-success method) dice))
-        (run-body operation method)
+        (run-method-body operation method)
         (fail-with operation :failed))))
 
 (defun begin-manipulation (operation resource &rest arguments)
@@ -122,7 +122,7 @@ no method, as after UNDEFINE."
 (defun designator-arguments (operation)
   (remove-if-not #'designator-p (operation-arguments operation)))
 
-(defun outcome-text (operation value)
+(defun manipulation-report-text (operation value)
   "Return a text with the objects and the resource of OPERATION, and with its VALUE unless NIL
 (manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
@@ -137,7 +137,7 @@ no local thing."
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
-(defun failed-text (operation)
+(defun manipulation-failure-text (operation)
   "Return a text that says that the manipulation OPERATION failed and, if known, why."
   (format nil "~A failed~@[: ~A is not local, but objects of manipulations must be. Drive there, ~
                for example with robot-goto-designator, and search again with the type :local~]~@[: ~
@@ -162,12 +162,12 @@ no local thing."
      :documentation (format nil "Carry out the manipulation ~A." name)
      :resource (make-spec 'by t "the robot or part that carries out the manipulation")
      :results (list (make-spec 'value t "what the manipulation returns"))
-     :errors (list (make-error-code :failed #'failed-text))
+     :errors (list (make-error-code :failed #'manipulation-failure-text))
      :delay (constantly 1)
-     :report #'outcome-text
+     :report #'manipulation-report-text
      :body #'begin-manipulation)))
 
-(defun command-for (manipulation)
+(defun command-of-manipulation (manipulation)
   "Return the command by which MANIPULATION is carried out. Make the command if there is none yet."
   (or (manipulation-command manipulation)
       (setf (manipulation-command manipulation)
@@ -185,9 +185,9 @@ codes of the manipulation. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no meth
          (continuation (first (last arguments)))
          (arguments (butlast arguments))
          (resource (method-resource (first (methods-for manipulation arguments)) arguments))
-         (command (command-for manipulation)))
+         (command (command-of-manipulation manipulation)))
     (check-of-type name 'continuation continuation 'continuation)
-    (doubt-continuation command (robot-world (resource-robot resource)) continuation '(err value))
+    (warn-of-continuation command (robot-world (resource-robot resource)) continuation '(err value))
     (issue command resource arguments (and continuation
                                            (lambda (code resource value)
                                              (declare (ignore resource))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(define-manipulation method-shape manipulation-method))
+(export '(define-manipulation method-signature manipulation-method))
 
 ;;; A manipulation is a name with methods, the newest first. When it begins, it chooses the first
 ;;; method that takes the arguments and fits the designated things. The method must still fit when
@@ -67,7 +67,7 @@ type) for its resource and for each other parameter. The type may be NIL."
         collect (parse-pattern definition specification) into patterns
         finally (return (values variables patterns))))
 
-(defun parse-typed (definition list)
+(defun parse-typed-variables (definition list)
   "Return a list of (variable type) for the variables in LIST. A hyphen and a type may follow each
 variable."
   (loop while list
@@ -84,7 +84,7 @@ variable."
   (unless (and (proper-list-p form) (rest (member :by form)))
     (reject-clause definition form "(variable - descriptor ... :BY resource other...)"))
   (multiple-value-bind (objects patterns) (parse-objects definition (ldiff form (member :by form)))
-    (let* ((typed (parse-typed definition (rest (member :by form))))
+    (let* ((typed (parse-typed-variables definition (rest (member :by form))))
            (variables (append objects (mapcar #'first typed))))
       (unless (equal variables (remove-duplicates variables))
         (reject-clause definition form "a different variable for each parameter"))
@@ -94,7 +94,7 @@ variable."
   (append (parameter-list-objects parameters)
           (mapcar #'first (parameter-list-typed parameters))))
 
-(defun method-shape (method)
+(defun method-signature (method)
   "Return the parameters of METHOD as three values: the variables of its objects, a list (variable
 type) for its resource, and such lists for the others. The type is NIL where none is given."
   (destructuring-bind (by . others) (parameter-list-typed (method-parameters method))
@@ -112,7 +112,7 @@ type) for its resource, and such lists for the others. The type is NIL where non
        (null (cdddr form))
        "the list of options comes after the parameters, () for none"))
 
-(defun outdated-p (name method source)
+(defun outdated-method-p (name method source)
   "True if METHOD of NAME comes from an earlier version of the file of SOURCE, and the file no
 longer contains METHOD."
   (let ((old (method-source method)))
@@ -122,7 +122,7 @@ longer contains METHOD."
          (not (part-in-file-p (source-file source) (list 'defmanipulation name)
                               (method-form method))))))
 
-(defun retyped-p (old method)
+(defun retyped-method-p (old method)
   "True if OLD and METHOD were both typed, not read from files, and METHOD looks like an edited
 OLD."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
@@ -132,15 +132,16 @@ OLD."
          (every #'similar-patterns-p
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
-(defun with-method (name methods method)
+(defun replace-old-methods (name methods method)
   "Return METHODS of NAME with METHOD in front, without the methods that METHOD replaces (reading
 174)."
-  (let* ((current (remove-if (lambda (old) (outdated-p name old (method-source method))) methods))
+  (let* ((current (remove-if (lambda (old) (outdated-method-p name old (method-source method)))
+                             methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
-                  (find-if (lambda (old) (retyped-p old method)) current))))
+                  (find-if (lambda (old) (retyped-method-p old method)) current))))
     (cons method (remove old current))))
 
-(defun warn-if-shared (name methods method)
+(defun warn-if-in-other-files (name methods method)
   (let* ((file (source-file (method-source method)))
          (files (mapcar (lambda (old) (source-file (method-source old))) methods))
          (others (remove nil files)))
@@ -161,15 +162,15 @@ list, BODY a function of these parameters. Return NAME."
                   :success (double (check-option definition :success success 'probability))
                   :delay (check-option definition :delay delay 'tick-span))))
     (dolist (pattern (parameter-list-patterns (method-parameters method)))
-      (warn-of-slips definition "a pattern" pattern))
-    (warn-if-shared name (manipulation-methods manipulation) method)
+      (warn-of-misspellings definition "a pattern" pattern))
+    (warn-if-in-other-files name (manipulation-methods manipulation) method)
     (setf (manipulation-methods manipulation)
-          (with-method name (manipulation-methods manipulation) method))
+          (replace-old-methods name (manipulation-methods manipulation) method))
     (unless (find-manipulation name nil)
       (register *manipulations* name manipulation))
     name))
 
-(defun doubt-type (definition type)
+(defun warn-of-type (definition type)
   "Warn if TYPE, the type of a parameter, is neither an argument type nor a class, but resembles an
 argument type."
   (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
@@ -186,7 +187,7 @@ argument type."
   (check-options definition options '(:success :delay))
   (let* ((parsed (parse-parameters definition parameters))
          (variables (parameter-variables parsed)))
-    (loop for (nil type) in (parameter-list-typed parsed) do (doubt-type definition type))
+    (loop for (nil type) in (parameter-list-typed parsed) do (warn-of-type definition type))
     (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
     `((define-manipulation ',name ',parameters
         (lambda ,variables (declare (ignorable ,@variables)) ,@body)
@@ -202,9 +203,9 @@ Each variable of an object is bound to a thing that fits the descriptor ((attrib
 occurs. A hyphen and a type may follow the resource and each other parameter. The resource is the
 robot or part that the command occupies. OPTIONS is ([:success probability] [:delay ticks]), by
 default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value. Of several
-methods that fit, the newest is used. A method replaces one with the same parameter list. Loading a
-changed file again removes the methods that it no longer contains. Signals MALFORMED-DEFINITION.
-Return NAME."
+methods that fit, the newest is used. A method replaces an older method with the same parameter
+list. Loading a changed file again removes the methods that it no longer contains. Signals
+MALFORMED-DEFINITION. Return NAME."
   (let ((definition (title "defmanipulation" name)))
     (expand-definition form environment
                        (lambda ()

@@ -93,7 +93,7 @@ the command that it has interrupted, or NIL"))
       (string text)
       (function (funcall text operation)))))
 
-(defun text-of (control)
+(defun format-text (control)
   "Return a function of an operation that formats CONTROL with the operation's resource and
 arguments."
   (lambda (operation)
@@ -112,7 +112,7 @@ arguments."
                                :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))
                  *message-queue*)
-  (note-failure operation code text))
+  (record-failure operation code text))
 
 (defun report (operation code results)
   "Queue the message that OPERATION has ended with CODE and RESULTS (reading 229)."
@@ -128,7 +128,7 @@ arguments."
                     (when text (queue-operation-message operation text)))))))
 
 ;; See reading 86.
-(defun tell-end (operation code results)
+(defun call-continuation (operation code results)
   "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
@@ -140,7 +140,7 @@ arguments."
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
   (when (operation-continuation operation)
-    (notify-later (operation-timeline operation) 'tell-end operation code results)))
+    (notify-later (operation-timeline operation) 'call-continuation operation code results)))
 
 (defun finish (operation code &rest results)
   "End OPERATION with the error CODE, or successfully if CODE is NIL. The continuation gets CODE,
@@ -161,13 +161,13 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
   "End OPERATION successfully; its continuation gets NIL, the resource and RESULTS."
   (apply #'finish operation nil results))
 
-(note-step 'succeed (constantly t))
+(register-step 'succeed (constantly t))
 
 (defun fail-with (operation code &rest results)
   "End OPERATION with the error CODE; its continuation gets CODE, the resource and RESULTS."
   (apply #'finish operation code results))
 
-(defun begun-p (operation)
+(defun body-begun-p (operation)
   "True if the delay of OPERATION is over."
   (not (eq (operation-step operation) 'start-body)))
 
@@ -180,14 +180,14 @@ all others."
           for position = (position (spec-name result) names)
           collect (cond ((not (member (spec-name result) (command-echo command))) nil)
                         (position (nth position (operation-arguments operation)))
-                        ((begun-p operation) (operation-subject operation))))))
+                        ((body-begun-p operation) (operation-subject operation))))))
 
 (defun interrupt-operation (operation)
   (apply #'finish operation :interrupt (results-if-interrupted operation)))
 
 ;;; Beginning and continuing.
 
-(defun call-guarded (operation step)
+(defun call-users-step (operation step)
   "Call STEP, a step of a user's command. If STEP fails, or neither ends nor continues OPERATION,
 queue a message and end OPERATION with :FAILED."
   (let ((origin (list "command " (command-prefix (operation-command operation))))
@@ -205,7 +205,7 @@ queue a message and end OPERATION with :FAILED."
 (declaim (inline call-step))
 (defun call-step (operation step)
   (if (command-guarded-p (operation-command operation))
-      (call-guarded operation step)
+      (call-users-step operation step)
       (funcall (the symbol step) operation)))
 
 (defun run-operation (operation)
@@ -249,22 +249,22 @@ RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORW
         (t (note-interruption rival operation (1+ (agenda-tick agenda)))
            (interrupt-event agenda rival))))
 
-(defgeneric note-cut-short (name operation rival)
+(defgeneric record-interrupted-operation (name operation rival)
   (:documentation "Record in OPERATION, an operation of the command NAME, that it interrupts the
 operation RIVAL.")
   (:method (name operation rival)
     (declare (ignore name))
-    (when (begun-p rival)
+    (when (body-begun-p rival)
       (setf (operation-subject operation) (command-name (operation-command rival))))))
 
-(defun begin (operation)
+(defun begin-operation (operation)
   "Let OPERATION take over its resource, and continue OPERATION after the delay of its command."
   (let* ((agenda (operation-agenda operation))
          (rival (pending-event agenda (operation-resource operation)))
          (delay (funcall (command-delay (operation-command operation)))))
     (when rival
       (when (operation-p rival)
-        (note-cut-short (command-name (operation-command operation)) operation rival))
+        (record-interrupted-operation (command-name (operation-command operation)) operation rival))
       (free-resource operation agenda rival))
     (go-on operation 'start-body (ticks-for delay))))
 
@@ -273,7 +273,7 @@ operation RIVAL.")
   (declare (ignore timeline))
   (if (robot-retired (resource-robot (operation-resource operation)))
       (finish operation :interrupt)
-      (begin operation)))
+      (begin-operation operation)))
 
 (defun resource-robot (resource)
   "Return RESOURCE if it is a robot, else the robot whose part or mind RESOURCE is."

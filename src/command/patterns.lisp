@@ -20,12 +20,12 @@
                              (value-like value (attribute-domain attribute)))))))
 
 (defun check-clause (definition clause)
-  (let* ((key (attribute-key (first clause))) (attribute (attribute-of key))
+  (let* ((key (attribute-key (first clause))) (attribute (declared-attribute key))
          (value (second clause)))
     (when (and value (symbolp value) (starts-with-subseq "?" (symbol-name value)))
       (reject-clause definition clause
                      "a value; write (in-readtable :nisp) before this form to make ?x a matchvar"))
-    (when (and (asks-range-p attribute value) (not (range-p value)))
+    (when (and (specifies-range-p attribute value) (not (range-p value)))
       (reject-clause definition clause "a range with the lower end first"))
     (cond ((null attribute))
           ((discrete-p attribute)
@@ -37,10 +37,10 @@
 (defun parse-pattern (definition specification)
   "Return the pattern of SPECIFICATION, a list of lists (attribute value [threshold]). Signals
 MALFORMED-DEFINITION about DEFINITION. See reading 126."
-  (unless (and (proper-list-p specification) (every #'asking-form-p specification))
+  (unless (and (proper-list-p specification) (every #'specification-clause-p specification))
     (reject-clause definition
                    (if (proper-list-p specification)
-                       (find-if-not #'asking-form-p specification)
+                       (find-if-not #'specification-clause-p specification)
                        specification)
                    "a descriptor ((attribute value [threshold]) ...) after each object's hyphen"))
   (dolist (clause specification) (check-clause definition clause))
@@ -49,7 +49,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
 
 ;;; Values.
 
-(defun within-p (number low high threshold)
+(defun within-threshold-p (number low high threshold)
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
@@ -62,11 +62,11 @@ range, else its type."
 (defun value-fits-p (key wanted threshold value)
   "True if VALUE, a thing's value of the attribute KEY, fits WANTED, a value in a pattern."
   (cond ((or (null wanted) (null value)) (and (listp wanted) (member value (or wanted '(nil)))))
-        ((and (realp wanted) (realp value)) (within-p value wanted wanted threshold))
+        ((and (realp wanted) (realp value)) (within-threshold-p value wanted wanted threshold))
         ((atom wanted) (value-equal wanted value))
-        ((not (asks-range-p (attribute-of key) wanted))
+        ((not (specifies-range-p (declared-attribute key) wanted))
          (or (member value wanted :test #'value-equal) (value-equal wanted value)))
-        ((realp value) (within-p value (first wanted) (second wanted) threshold))))
+        ((realp value) (within-threshold-p value (first wanted) (second wanted) threshold))))
 
 ;;; Matchvars.
 
@@ -74,7 +74,7 @@ range, else its type."
   "True if MATCHVAR can have VALUE, a value of the attribute KEY. Return as a second value BINDINGS
 with that binding added."
   (let ((binding (assoc matchvar bindings)))
-    (cond ((not (or value (can-be-false-p (attribute-of key)))) (values nil bindings))
+    (cond ((not (or value (can-be-false-p (declared-attribute key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))
           (binding (values (value-equal value (cdr binding)) bindings))
           (t (values t (acons matchvar value bindings))))))
@@ -106,7 +106,7 @@ matchvars."
 
 ;;; Versions of a pattern.
 
-(defun exclusive-p (one other)
+(defun exclusive-values-p (one other)
   "True if no value can fit both ONE and OTHER, values in patterns."
   (multiple-value-bind (low high) (value-limits one)
     (multiple-value-bind (other-low other-high) (value-limits other)
@@ -119,4 +119,4 @@ matchvars."
 (defun similar-patterns-p (pattern other)
   "True if PATTERN and OTHER have the same attributes, and a thing can fit both patterns."
   (and (equal (mapcar #'first pattern) (mapcar #'first other))
-       (notany #'exclusive-p (mapcar #'second pattern) (mapcar #'second other))))
+       (notany #'exclusive-values-p (mapcar #'second pattern) (mapcar #'second other))))

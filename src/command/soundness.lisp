@@ -27,7 +27,7 @@
              "a command in progress is invalid")
   (let ((name (command-name (operation-command operation))))
     (must-hold (eq (operation-resource operation)
-                   (occupied (operation-command operation) (named-resource operation)))
+                   (occupied-resource (operation-command operation) (named-resource operation)))
                "~(~A~) does not occupy its resource" name)
     (must-hold (arguments-fit-p operation) "~(~A~) does not have the arguments that it needs" name)
     (when (operation-step operation)

@@ -12,7 +12,7 @@
      (:report () "Robot has thought"))
     "Make ROBOT think. If the run charges for thinking, THINK takes TICKS, at least 1; otherwise it
 ends with the next tick. The robot's body and parts continue meanwhile. A newer THINK interrupts an
-older one."
+older THINK."
   (if (and (> ticks 1) (thinking-charged-p (operation-timeline operation)))
       (go-on operation 'succeed (1- ticks))
       (succeed operation)))

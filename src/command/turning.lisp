@@ -12,7 +12,7 @@ range, else NIL (reading 91)."
         ((> value high) (values (double high) :high))
         (t (values (double value) nil))))
 
-(defun limit-text (control parameter)
+(defun limit-error-text (control parameter)
   "Return a function of an operation that formats CONTROL, an error text, with the value of
 PARAMETER."
   (lambda (operation)
@@ -25,7 +25,8 @@ PARAMETER."
     ((speed "the speed set"))
     ((:family :moving) (:section "3.5")
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")
-              (:too-high-speed (limit-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
+              (:too-high-speed
+               (limit-error-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
      (:report (speed) (phrase "Speed set to ~,2F" speed)))
     "Set the speed at which ROBOT drives, limited to the range from 0 to MAX-SPEED*."
   (multiple-value-bind (speed outside) (limit-value speed 0 max-speed*)
@@ -39,9 +40,9 @@ PARAMETER."
     ((turn-angle "the turn angle set"))
     ((:family :moving) (:section "3.5")
      (:errors (:too-low-turn-angle
-               (limit-text "Turn angle too low. Set to the minimum, ~,2F" 'min-turn-angle*))
+               (limit-error-text "Turn angle too low. Set to the minimum, ~,2F" 'min-turn-angle*))
               (:too-high-turn-angle
-               (limit-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
+               (limit-error-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
     "Set how far ROBOT turns in a tick, limited to the range from MIN-TURN-ANGLE* to
 MAX-TURN-ANGLE*."
@@ -91,14 +92,14 @@ if nothing is left to turn."
       (succeed operation 0d0)
       (go-on-now operation 'turn-on)))
 
-(defun turned-text (angle)
+(defun turn-message (angle)
   (phrase "Robot turned ~,2F" angle))
 
 (define-command robot-turn (operation (robot robot)
                             (angle angle "how far in radians, to the right if positive"))
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*) (:traits :turns)
-     (:report (angle) (turned-text angle)))
+     (:report (angle) (turn-message angle)))
     "Turn ROBOT in place by about ANGLE."
   (turn-by operation robot angle))
 
@@ -106,7 +107,7 @@ if nothing is left to turn."
              `(define-command ,name (operation (robot robot))
                   ((angle "a reading of the angle turned"))
                   ((:family :moving) (:section "3.5") (:delay robot-turn-delay*) (:traits :turns)
-                   (:report (angle) (turned-text angle)))
+                   (:report (angle) (turn-message angle)))
                   ,(format nil "Turn ROBOT in place by about ~A." words)
                 (turn-by operation robot ,angle))))
   (define-turn robot-about-face pi "half a circle")
@@ -126,8 +127,8 @@ if nothing is left to turn."
   (let ((type (sense-place-type robot)))
     ;; The symbol that the author of the map writes.
     (setf (robot-last-place robot)
-          (and type (own-symbol (place-type-name type)
-                                (map-package (world-map (robot-world robot))))))
+          (and type (symbol-of-package (place-type-name type)
+                                       (map-package (world-map (robot-world robot))))))
     (succeed operation (robot-last-place robot))))
 
 (defun turn-to-face (operation robot direction)
@@ -146,7 +147,7 @@ not notice the mistake (reading 103)."
     ((:family :moving) (:section "3.5") (:delay (+ robot-turn-delay* robot-align-delay*))
      (:errors (:incorrect-place-type "Place type is not what it seemed to be")
               (:no-place-type "No place type here to align with"))
-     (:report (angle) (turned-text angle)))
+     (:report (angle) (turn-message angle)))
     "Turn ROBOT to the nearest canonical direction of the place where it is."
   (let ((type (sense-place-type robot)))
     (cond ((null type) (fail-with operation :no-place-type))
@@ -158,9 +159,9 @@ not notice the mistake (reading 103)."
 
 (defun corner-direction (robot type directions)
   "Return the heading for ROBOT to turn a corner: ROBOT comes along one wall and leaves along the
-other. At a convex corner it comes in one of DIRECTIONS and leaves opposite to the other direction;
-at a concave corner it is the reverse. If ROBOT already faces away from the corner, it turns to the
-other wall (reading 105)."
+other. At a convex corner ROBOT comes in one of DIRECTIONS and leaves opposite to the other
+direction; at a concave corner ROBOT comes opposite to one direction and leaves in the other. If
+ROBOT already faces away from the corner, it turns to the other wall (reading 105)."
   (let* ((opposite (mapcar (lambda (d) (+ d pi)) directions))
          (convex (same-name-p (place-type-name type) 'convex))
          (ways (if convex directions opposite))
@@ -174,7 +175,7 @@ other wall (reading 105)."
     ((angle "a reading of the angle turned"))
     ((:family :moving) (:section "3.5") (:delay robot-turn-delay*)
      (:errors (:no-corner "Robot is not at a corner"))
-     (:report (angle) (turned-text angle)))
+     (:report (angle) (turn-message angle)))
     "Turn ROBOT round the convex or concave corner where ROBOT is."
   (let ((type (sense-place-type robot)))
     (if (and type (member (place-type-name type) '(convex concave) :test #'same-name-p))

@@ -25,7 +25,7 @@ command is: :COMMAND, :TRACK or NIL" :export)))
   (and (operation-p operation)
        (eq continuation (operation-continuation operation))))
 
-(defun withdrawn-place (withdrawal)
+(defun withdrawn-command-kind (withdrawal)
   "Return :COMMAND if the command of WITHDRAWAL occupies its resource, :TRACK if it is a track of a
 camera, or NIL if it is not in progress."
   (destructuring-bind (resource &optional place) (request-arguments withdrawal)
@@ -38,13 +38,13 @@ camera, or NIL if it is not in progress."
 (defmethod request-entry ((withdrawal withdrawal))
   (list 'withdraw-command
         (first (request-arguments withdrawal))
-        (withdrawn-place withdrawal)))
+        (withdrawn-command-kind withdrawal)))
 
 (defmethod perform ((withdrawal withdrawal) timeline)
   (let* ((resource (first (request-arguments withdrawal)))
          (agenda (timeline-agenda timeline))
          (tick (1+ (agenda-tick agenda))))
-    (ecase (withdrawn-place withdrawal)
+    (ecase (withdrawn-command-kind withdrawal)
       (:command (let ((event (resource-event resource)))
                   (note-interruption event withdrawal tick)
                   (interrupt-event agenda event)))

@@ -107,7 +107,7 @@ TROUBLE, a text."
   "Draw the thing of IMAGE by its :draw-function (reading 211). Return true if the thing has a
 :draw-function that works."
   (let ((value (thing-image-draw-function image)))
-    (multiple-value-bind (function trouble) (drawing-code value)
+    (multiple-value-bind (function trouble) (resolve-draw-function value)
       (when trouble (note-undrawable image value trouble))
       (and function
            (or (draw-by-user canvas function (list "the :draw-function of " (subject-title image))

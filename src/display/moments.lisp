@@ -67,7 +67,7 @@ observations OLD and NEW."
 (defun failures-since (old new robot)
   (unless (eq (observation-failure new) (observation-failure old))
     (destructuring-bind (&key command error text &allow-other-keys) (last-failure robot)
-      (when (trouble-p error)
+      (when (failure-code-p error)
         (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
 (defun moments-between (old new robot tick)

@@ -8,4 +8,4 @@
   (:shadowing-import-from :cl #:equal)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.command #:under-way-text #:interruption-text #:last-failure
-                #:trouble-p))
+                #:failure-code-p))

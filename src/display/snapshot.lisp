@@ -235,7 +235,7 @@ DENOTATION is NIL."
      :designators (images #'image-of-designator (live-designators robot))
      :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
      :trail (points-of-trail robot)
-     :planned-way (robot-way-left robot) :notes (notes-of robot))))
+     :planned-way (robot-remaining-way robot) :notes (notes-of robot))))
 
 ;;; The whole.
 

@@ -86,7 +86,7 @@ images. It can be compared by EQUAL.")
   (:method ((image thing-image))
     (list (thing-image-thing image) (thing-image-attributes image)
           ;; A name may mean another function now.
-          (drawing-code (thing-image-draw-function image)))))
+          (resolve-draw-function (thing-image-draw-function image)))))
 
 (defmacro define-content (image (&rest slots) &rest parts)
   "Define the method of CONTENT for the image type IMAGE. It returns the values of SLOTS and the

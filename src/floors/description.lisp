@@ -6,7 +6,7 @@
 ;;; nav2_map_server after it. All but mode are required. Other keys are ignored, with a warning if
 ;;; they resemble one of these.
 
-(defconstant +most-octets+ 65536 "The largest size of a floor's description, in bytes.")
+(defconstant +most-description-octets+ 65536 "The largest size of a floor's description, in bytes.")
 
 (defstruct (description (:copier nil))
   "The description of a floor: its IMAGE, a pathname; RESOLUTION, the metres of a pixel; ORIGIN, the
@@ -86,7 +86,7 @@ exist."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
-    (merge-pathnames (file-called name) (uiop:pathname-directory-pathname file))))
+    (merge-pathnames (resolve-file-name name) (uiop:pathname-directory-pathname file))))
 
 (defun image-in (file entry)
   "Return the pathname of the image that ENTRY of FILE names. Signals UNUSABLE-FLOOR."
@@ -116,7 +116,8 @@ exist."
       (when (< occupied free)
         (reject-floor file (entry-line (entry "free_thresh"))
                       "free_thresh, ~A, is above occupied_thresh, ~A; exchange the two values: map ~
-                       savers write 0.196 and 0.65" (decimal free) (decimal occupied)))
+                       savers write 0.196 and 0.65" 
+                      (decimal-notation free) (decimal-notation occupied)))
       (make-description
        :file file
        :resolution (resolution-in file (entry "resolution"))
@@ -140,10 +141,10 @@ bytes."
   (let ((advice (file-advice file :floor)))
     (when advice (reject-floor file nil "~A" advice)))
   (let ((size (file-size file)))
-    (when (< +most-octets+ size)
+    (when (< +most-description-octets+ size)
       (reject-floor file nil "the file has ~D bytes, and the description of a floor has at most ~
                               ~D; give the .yaml file that names the image"
-                    size +most-octets+))))
+                    size +most-description-octets+))))
 
 (defun description-text (file)
   "Return the text in FILE. Signals UNUSABLE-FLOOR if it cannot be read."
@@ -156,7 +157,7 @@ bytes."
 
 (defun read-description (name)
   "Return the description in the file NAME, a string or pathname. Signals UNUSABLE-FLOOR."
-  (let ((file (file-called name)))
+  (let ((file (resolve-file-name name)))
     (check-description-file file)
     (let ((file (truename file)))
       (description-from file (read-entries file (description-text file))))))

@@ -50,7 +50,7 @@ writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
               (code-char (aref +shades+ (aref (grid-cells grid) (+ x (* y (grid-width grid))))))))
       (write-string row out))))
 
-(defun name-as-value (name)
+(defun yaml-file-name (name)
   "Return the file name NAME as a value in YAML, in quotes only if YAML requires quotes."
   (if (and (alpha-char-p (char name 0))
            (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name))
@@ -69,7 +69,7 @@ writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
   (destructuring-bind (size &rest origin) (map-frame map)
     (format out "image: ~A~%mode: trinary~%resolution: ~A~%origin: [~{~A~^, ~}]~%negate: 0~%~
                  occupied_thresh: 0.65~%free_thresh: 0.196~%"
-            (name-as-value image) (decimal size) (mapcar #'decimal origin))))
+            (yaml-file-name image) (decimal-notation size) (mapcar #'decimal-notation origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
   "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR if FILE cannot be
@@ -91,7 +91,7 @@ written."
                      "a name of printable characters only, because the .yaml file must contain the
 name")))
 
-(defun linked-file (path)
+(defun resolve-link (path)
   "Return the truename of the file PATH, which may be a link; PATH if there is no such file."
   (or (ignore-errors (existing-path path)) path))
 
@@ -101,7 +101,7 @@ NIL if FILE is no valid description."
   (ignore-errors
    (check-description-file file)
    (let ((entries (read-entries file (file-text file))))
-     (linked-file (image-path file (required-entry file "image" entries))))))
+     (resolve-link (image-path file (required-entry file "image" entries))))))
 
 (defun unused-name-p (path)
   "True if the file PATH does not exist or is empty."
@@ -109,7 +109,7 @@ NIL if FILE is no valid description."
     (or (null there)
         (ignore-errors (and (plain-file-p there) (zerop (file-size there)))))))
 
-(defun check-pair (path image)
+(defun check-files-replaceable (path image)
   "Signal UNUSABLE-FLOOR if the files PATH and IMAGE must not be replaced, because PATH does not
 describe IMAGE, or because IMAGE is no image."
   (let ((named (image-named-in path)))
@@ -120,7 +120,7 @@ describe IMAGE, or because IMAGE is no image."
              (unless (unused-name-p image)
                (reject image (format nil "the image of ~A" (native-name path)))))
             ((null named) (reject path "the description of a map"))
-            ((not (equal named (linked-file image)))
+            ((not (equal named (resolve-link image)))
              (reject path (format nil "the description of ~A" (native-name image))))
             ((foreign-file-p image :image) (reject image "a PGM or PNG image"))))))
 
@@ -140,12 +140,12 @@ UNKNOWN-NAME; then both files are unchanged."
   (check-argument export-map file (typep file '(or string pathname)) "the name of a file")
   (check-argument export-map unknown (substance-option-p unknown)
                   "the name of a substance, or a list of the name and a parameter, as in (glass 5)")
-  (let ((map (map-from 'export-map map)) (path (linked-file (file-called file))))
+  (let ((map (find-map-argument 'export-map map)) (path (resolve-link (resolve-file-name file))))
     (check-description-name file path)
     (let* ((grid (map-grid map unknown))
            (image (make-pathname :type "pgm" :defaults path))
            (written nil))
-      (check-pair path image)
+      (check-files-replaceable path image)
       (flet ((write-beside (description)
                (declare (ignore description))
                (setf written (write-floor-file image :latin-1

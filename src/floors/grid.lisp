@@ -20,10 +20,10 @@
   (height 1 :type (integer 1) :read-only t)
   (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
 
-(defun count-of (state grid)
+(defun count-cells (state grid)
   (count state (grid-cells grid)))
 
-(defun chance-of (description sample white)
+(defun occupied-probability (description sample white)
   "Return the probability that a pixel with the value SAMPLE is occupied, or NIL if the pixel is
 unknown."
   (let ((brightness (/ sample white)))
@@ -33,25 +33,25 @@ unknown."
           ((description-negated-p description) brightness)
           (t (- 1 brightness)))))
 
-(defun state-of (description sample white)
-  (let ((chance (chance-of description sample white)))
+(defun pixel-state (description sample white)
+  (let ((chance (occupied-probability description sample white)))
     (cond ((null chance) +unknown+)
           ((< (description-occupied description) chance) +occupied+)
           ((< chance (description-free description)) +free+)
           (t +unknown+))))
 
-(defun state-table (description white)
+(defun pixel-state-table (description white)
   "Return a vector of the states of pixels, indexed by the pixel's value from 0 to WHITE. The value
 WHITE + 1 stands for unknown."
   (let ((table (make-octets (+ 2 white))))
     (setf (aref table (1+ white)) +unknown+)
     (dotimes (sample (1+ white) table)
-      (setf (aref table sample) (state-of description sample white)))))
+      (setf (aref table sample) (pixel-state description sample white)))))
 
 ;;; Cells of several pixels. They start at the lower left corner, where the origin is. So the top
 ;;; row and the last column may have fewer pixels.
 
-(defun state-of-block (free occupied unknown share)
+(defun block-state (free occupied unknown share)
   "Return the state of a cell with these numbers of FREE, OCCUPIED and UNKNOWN pixels. The cell is
 occupied if at least one pixel and at least the share SHARE of all pixels are occupied, else unknown
 if more pixels are unknown than free."
@@ -79,7 +79,7 @@ values of pixels to states."
       (let* ((top (- (* y side) missing)) (bottom (+ top side)))
         (dotimes (x width)
           (setf (aref (grid-cells grid) (+ x (* y width)))
-                (multiple-value-call #'state-of-block
+                (multiple-value-call #'block-state
                   (count-states image table (* x side) (max 0 top)
                                 (min (image-width image) (* (1+ x) side)) bottom)
                   share)))))))
@@ -93,7 +93,7 @@ values of pixels to states."
         (setf (aref cells index) (aref table (aref samples index)))))))
 
 (defun image-grid (image description side share)
-  (let ((table (state-table description (image-white image))))
+  (let ((table (pixel-state-table description (image-white image))))
     (if (= 1 side)
         (pixel-grid image table)
         (block-grid image table side share))))
@@ -105,7 +105,7 @@ values of pixels to states."
 
 (deftype numbers () '(simple-array (signed-byte 32) (*)))
 
-(defun make-numbers (size &optional (initial -1))
+(defun make-number-vector (size &optional (initial -1))
   (make-array size :element-type '(signed-byte 32) :initial-element initial))
 
 (defstruct (runs (:constructor make-runs (step cells of)) (:copier nil))
@@ -114,10 +114,10 @@ neighbouring cells of a run. OF has the number of each cell's run, or -1. STARTS
 the first cell and the length of each run."
   (step 1 :type fixnum :read-only t)
   (cells (make-octets 0) :type octets :read-only t)
-  (of (make-numbers 0) :type numbers :read-only t)
+  (of (make-number-vector 0) :type numbers :read-only t)
   (count 0 :type fixnum)
-  (starts (make-numbers 0) :type numbers)
-  (lengths (make-numbers 0) :type numbers))
+  (starts (make-number-vector 0) :type numbers)
+  (lengths (make-number-vector 0) :type numbers))
 
 (defun number-runs (runs lines per-line line-step allowed)
   "Number the runs of cells whose state has its bit set in ALLOWED, and store the numbers in RUNS.
@@ -139,7 +139,8 @@ neighbouring lines."
     runs))
 
 (defun measure-runs (runs)
-  (let ((starts (make-numbers (runs-count runs))) (lengths (make-numbers (runs-count runs) 0)))
+  (let ((starts (make-number-vector (runs-count runs)))
+        (lengths (make-number-vector (runs-count runs) 0)))
     (loop for run across (runs-of runs) for index from 0
           unless (minusp run)
             do (when (minusp (aref starts run)) (setf (aref starts run) index))
@@ -156,7 +157,8 @@ neighbouring lines."
   "Return the runs of GRID along its rows or columns, as ALONG is :ROWS or :COLUMNS. The cells of
 runs are in a state of the list ALLOWED."
   (let* ((width (grid-width grid)) (height (grid-height grid)) (rows (eq along :rows))
-         (runs (make-runs (if rows 1 width) (grid-cells grid) (make-numbers (* width height)))))
+         (runs (make-runs (if rows 1 width) (grid-cells grid)
+                          (make-number-vector (* width height)))))
     (number-runs runs (if rows height width) (if rows width height) (if rows width 1)
                  (states-mask allowed))
     (measure-runs runs)))
@@ -188,15 +190,15 @@ mate, or -1 if there is no way; REACHED has for each row the number of its cells
   (rows nil :type runs :read-only t)
   (columns nil :type runs :read-only t)
   (needed 0 :type (unsigned-byte 8) :read-only t)
-  (row-mate (make-numbers 0) :type numbers :read-only t)
-  (column-mate (make-numbers 0) :type numbers :read-only t)
-  (layer (make-numbers 0) :type numbers :read-only t)
-  (reached (make-numbers 0) :type numbers :read-only t))
+  (row-mate (make-number-vector 0) :type numbers :read-only t)
+  (column-mate (make-number-vector 0) :type numbers :read-only t)
+  (layer (make-number-vector 0) :type numbers :read-only t)
+  (reached (make-number-vector 0) :type numbers :read-only t))
 
 (defun make-cover (rows columns needed)
   (%make-cover rows columns needed
-               (make-numbers (runs-count rows)) (make-numbers (runs-count columns))
-               (make-numbers (runs-count rows)) (make-numbers (runs-count rows) 0)))
+               (make-number-vector (runs-count rows)) (make-number-vector (runs-count columns))
+               (make-number-vector (runs-count rows)) (make-number-vector (runs-count rows) 0)))
 
 (declaim (inline tie-at))
 (defun tie-at (cover row place)
@@ -221,7 +223,7 @@ needed."
   "Compute the layers of all rows of COVER. Return true if a way leads to a column without a mate."
   (declare #.*hot*)
   (let* ((count (runs-count (cover-rows cover))) (layer (cover-layer cover))
-         (queue (make-numbers count)) (end 0) (found nil))
+         (queue (make-number-vector count)) (end 0) (found nil))
     (declare (type fixnum count end) (type numbers layer queue))
     (fill layer -1)
     (fill (cover-reached cover) 0)
@@ -280,7 +282,7 @@ which has found no way."
                (find-mate cover row))))
   cover)
 
-(defun columns-to-take (cover)
+(defun covering-columns (cover)
   "Return a bit vector with a bit for each column of COVER: 1 if a row that the last round reached
 is tied to the column."
   (let ((taken (make-array (runs-count (cover-columns cover))
@@ -296,7 +298,7 @@ list NEEDED, and only cells in a state of the list ALLOWED. Each line is a list 
 Lines along rows come first, from the top, then lines along columns."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (match-runs (make-cover rows columns (states-mask needed))))
-         (taken (columns-to-take cover)) (width (grid-width grid)))
+         (taken (covering-columns cover)) (width (grid-width grid)))
     (append (loop for row below (runs-count rows)
                   when (minusp (aref (cover-layer cover) row)) collect (run-ends rows row width))
             (loop for column below (runs-count columns)

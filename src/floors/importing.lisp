@@ -5,12 +5,12 @@
 ;;; A map's y grows downwards and its angles clockwise. In the frame, as in ROS, y grows upwards and
 ;;; angles counterclockwise. The map's lower left corner is the frame's origin, see MAP-FRAME.
 
-(defun map-from (operator map)
+(defun find-map-argument (operator map)
   (unless (typep map '(or map symbol string))
     (reject-argument operator 'map map "a map or the name of one"))
   (find-map map))
 
-(defun check-place (operator x y angle)
+(defun check-pose (operator x y angle)
   (loop for (name value) in `((x ,x) (y ,y) (angle ,angle))
         unless (within-reason-p value)
           do (reject-argument operator name value "a number from -1e9 to 1e9")))
@@ -20,8 +20,8 @@
   "Convert the point (X, Y) of MAP, a map or its name, and DIRECTION, radians clockwise, to the
 frame of MAP (see MAP-FRAME). Return x and y in metres and the angle in radians counterclockwise:
 three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
-  (check-place 'map-to-frame x y direction)
-  (let ((map (map-from 'map-to-frame map)))
+  (check-pose 'map-to-frame x y direction)
+  (let ((map (find-map-argument 'map-to-frame map)))
     (destructuring-bind (size left low yaw) (mapcar #'double (map-frame map))
       (let ((right (* size x)) (up (* size (- (map-height map) y))))
         (values (+ left (- (* right (cosine yaw)) (* up (sine yaw))))
@@ -34,8 +34,8 @@ three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 map or its name (see MAP-FRAME). Return x and y in MAP and the direction, radians clockwise: three
 double-floats. The point may be outside the map. Signals WRONG-ARGUMENT and
 UNKNOWN-NAME."
-  (check-place 'frame-to-map x y yaw)
-  (let ((map (map-from 'frame-to-map map)))
+  (check-pose 'frame-to-map x y yaw)
+  (let ((map (find-map-argument 'frame-to-map map)))
     (destructuring-bind (size left low turn) (mapcar #'double (map-frame map))
       (let ((right (- x left)) (up (- y low)))
         (values (/ (+ (* right (cosine turn)) (* up (sine turn))) size)
@@ -91,7 +91,7 @@ package made of the letters and digits of the name of FILE, with dashes for othe
                       "a symbol, because the name of the file has no letters"))
     (or name (intern own))))
 
-(defun side-in-pixels (description pixels cell)
+(defun cell-side-in-pixels (description pixels cell)
   "Return the width of a cell in pixels: PIXELS, or the width CELL in metres converted to pixels; 1
 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
@@ -104,7 +104,8 @@ if both are NIL."
              (exact (/ (rational cell) resolution)) (side (max 1 (round exact))))
         (check-option :cell (and (<= side 32767) (< (abs (- exact side)) 1/1000)) cell
                       (format nil "a multiple of ~A, the width of a pixel in metres, such as ~A"
-                              (decimal resolution) (decimal (* (min side 32767) resolution))))
+                              (decimal-notation resolution)
+                              (decimal-notation (* (min side 32767) resolution))))
         side)))
 
 ;;; The form.
@@ -114,7 +115,7 @@ if both are NIL."
 
 (defun grid-clauses (grid walls unknown)
   "Return clauses of DEFMAP for GRID: walls of WALLS for occupied cells, and walls of UNKNOWN for
-unknown cells. Both are lists (substance parameter)."
+unknown cells. WALLS and UNKNOWN are lists (substance parameter)."
   (flet ((clauses (sort needed &optional (allowed needed))
            (wall-clauses (fewest-lines grid needed allowed) sort)))
     (cond ((null unknown) (clauses walls (list +occupied+)))
@@ -135,17 +136,17 @@ unknown cells. Both are lists (substance parameter)."
 (defun warn-of-nothing-free (description grid)
   "Warn if no cell of GRID is free though DESCRIPTION has the mode :SCALE."
   (when (and (eq :scale (description-mode description))
-             (zerop (count-of +free+ grid)))
+             (zerop (count-cells +free+ grid)))
     (warn-of-definition "~A: no cell is free. In the mode scale a shade is the probability that ~
                          the pixel is occupied, and a pixel is free below ~A (free_thresh); if ~
                          light pixels should be free, give a higher free_thresh."
                         (native-name (description-file description))
-                        (decimal (description-free description)))))
+                        (decimal-notation (description-free description)))))
 
-(defun report-on (grid frame clauses)
+(defun import-report (grid frame clauses)
   (list :width (grid-width grid) :height (grid-height grid) :cell (first frame)
-        :free (count-of +free+ grid) :occupied (count-of +occupied+ grid)
-        :unknown (count-of +unknown+ grid) :walls (length clauses)))
+        :free (count-cells +free+ grid) :occupied (count-cells +occupied+ grid)
+        :unknown (count-cells +unknown+ grid) :walls (length clauses)))
 
 (addition imported-map-form)
 (defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
@@ -162,7 +163,7 @@ Define nothing. Signals the same errors as IMPORT-MAP."
                     (t (wall-substance :unknown unknown))))
          (description (read-description file))
          (name (map-name-for name (description-file description)))
-         (side (side-in-pixels description pixels cell))
+         (side (cell-side-in-pixels description pixels cell))
          (image (read-image (description-image description) limit (description-mode description))))
     (check-grid-size description image side)
     (let* ((grid (image-grid image description side (rational share)))
@@ -173,7 +174,7 @@ Define nothing. Signals the same errors as IMPORT-MAP."
       (values `(defmap ,name (,(grid-width grid) ,(grid-height grid) :frame ,frame
                               ,@(and cache (list :cache cache)))
                  ,@lines ,@clauses)
-              (report-on grid frame lines)))))
+              (import-report grid frame lines)))))
 
 (addition import-map)
 (defun import-map (file &rest options &key name pixels cell share substance unknown clauses cache

@@ -25,10 +25,10 @@
 (defun reject-image (input control &rest arguments)
   (reject-floor (input-file input) nil "~?" control arguments))
 
-(defparameter *conversion* "convert floor.png -colorspace gray -depth 8 floor.pgm"
+(defparameter *conversion-command* "convert floor.png -colorspace gray -depth 8 floor.pgm"
   "A shell command that converts an image into a PGM image, which IMPORT-MAP reads.")
 
-(defun check-pixels (input width height limit)
+(defun check-image-size (input width height limit)
   (unless (and (plusp width) (plusp height))
     (reject-image input "the image has ~D by ~D pixels; save an image that has ~
                          pixels" width height))
@@ -40,7 +40,7 @@
 (defun read-octets (file limit)
   "Return the bytes of FILE. Signals UNUSABLE-FLOOR if there are too many for LIMIT pixels."
   (with-open-file (in file :element-type '(unsigned-byte 8))
-    (when (< (+ +most-octets+ (* 8 limit)) (file-length in))
+    (when (< (+ +most-description-octets+ (* 8 limit)) (file-length in))
       (reject-floor file nil "the image has ~D bytes, too many for the limit of ~D pixels; cut out ~
                               what you need, or give IMPORT-MAP a higher :limit"
                     (file-length in) limit))
@@ -57,8 +57,8 @@
 
 ;;; Words of the head, and of what is written in text.
 
-(declaim (inline white-octet-p))
-(defun white-octet-p (octet)
+(declaim (inline blank-octet-p))
+(defun blank-octet-p (octet)
   "True if OCTET is a blank: a space, tab, line feed, vertical tab, form feed or return."
   (or (= octet 32) (<= 9 octet 13)))
 
@@ -68,7 +68,7 @@
     (declare (type octets octets) (type fixnum end position))
     (loop while (< position end)
           do (let ((octet (aref octets position)))
-               (cond ((white-octet-p octet) (incf position))
+               (cond ((blank-octet-p octet) (incf position))
                      ((= octet 35)
                       (setf position (or (position 10 octets :start position) end)))
                      (t (return)))))
@@ -92,7 +92,7 @@ errors."
                            size that a map can have" start what))
     (when (or (= start (input-position input))
               (and (< (input-position input) (length octets))
-                   (not (white-octet-p (aref octets (input-position input))))
+                   (not (blank-octet-p (aref octets (input-position input))))
                    (/= 35 (aref octets (input-position input)))))
       (reject-image input "the image is damaged: at byte ~D there is no number that could be ~A; ~
                            save it again as PGM" (input-position input) what))
@@ -159,7 +159,7 @@ WHITE is above 255, a pair of bytes."
   "Return the PGM image in INPUT, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
   (setf (input-position input) 2)
   (let ((width (next-number input "the width")) (height (next-number input "the height")))
-    (check-pixels input width height limit)
+    (check-image-size input width height limit)
     (let ((white (next-number input "the greatest value")) (count (* width height)))
       (unless (<= 1 white 65535)
         (reject-image input "the greatest value of a pixel is ~D; save the image with a greatest ~

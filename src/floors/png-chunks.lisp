@@ -33,7 +33,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
   "Signal UNUSABLE-FLOOR about the PNG file INPUT. The message says how to convert the file."
   (reject-image input "~?; convert the image, for example by: ~A, and name the converted image in ~
                        the .yaml file"
-                control arguments *conversion*))
+                control arguments *conversion-command*))
 
 (defun reject-damaged (input control &rest arguments)
   "Signal UNUSABLE-FLOOR with the message that the PNG file INPUT is damaged."
@@ -106,11 +106,11 @@ grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is a
     (reject-damaged input "compression, filter and interlace, ~D, ~D and ~D, do not exist in PNG"
                     compression filter interlace)))
 
-(defun png-of-head (input octets limit)
+(defun png-from-header (input octets limit)
   "Return a PNG for INPUT from OCTETS, the content of the chunk IHDR. Signals UNUSABLE-FLOOR if
 there are more than LIMIT pixels."
   (let ((width (number-at octets 0)) (height (number-at octets 4)))
-    (check-pixels input width height limit)
+    (check-image-size input width height limit)
     (destructuring-bind (depth colour . encoding) (coerce (subseq octets 8) 'list)
       (apply #'check-encoding input encoding)
       (destructuring-bind (&optional channels &rest depths) (rest (assoc colour +png-colours+))
@@ -120,14 +120,14 @@ there are more than LIMIT pixels."
         (make-png :input input :width width :height height :depth depth :channels channels
                   :palette-p (= 3 colour))))))
 
-(defun read-head (input limit)
+(defun read-header-chunk (input limit)
   "Return a PNG from the first chunk of INPUT. Signals UNUSABLE-FLOOR if the chunk is invalid or
 there are more than LIMIT pixels."
   (multiple-value-bind (name start end) (next-chunk input)
     (unless (and (string= "IHDR" name) (= 13 (- end start)))
       (reject-damaged input "the first chunk is ~A with ~D bytes, not IHDR with 13"
                       name (- end start)))
-    (png-of-head input (subseq (input-octets input) start end) limit)))
+    (png-from-header input (subseq (input-octets input) start end) limit)))
 
 ;;; The other chunks.
 
@@ -145,7 +145,7 @@ supported only for grey images and palettes"))
   (unless (or (png-palette-p png) (= 2 (length content)))
     (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
-(defun keep-chunk (png name content)
+(defun store-chunk (png name content)
   "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown and must not be
 ignored."
   (cond ((and (string= "PLTE" name) (png-palette-p png))
@@ -171,12 +171,12 @@ first."
 (defun read-chunks (input limit)
   "Return the PNG that INPUT holds, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
   (setf (input-position input) 8)
-  (let ((png (read-head input limit)) (octets (input-octets input)) (pieces '()))
+  (let ((png (read-header-chunk input limit)) (octets (input-octets input)) (pieces '()))
     (loop
       (multiple-value-bind (name start end) (next-chunk input)
         (cond ((string= "IDAT" name) (push (cons start end) pieces))
               ((string= "IEND" name) (return))
-              (t (keep-chunk png name (subseq octets start end))))))
+              (t (store-chunk png name (subseq octets start end))))))
     (when (and (png-palette-p png) (null (png-palette png)))
       (reject-damaged input "the palette, PLTE, is missing"))
     (setf (png-pixels png) (join-pieces octets pieces))

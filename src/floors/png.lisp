@@ -28,7 +28,7 @@ less than END only at the end of the data; NIL if the data are damaged."
 ;;; channel, STEP before. Here a row has STEP zeros in front, so that there always is one.
 ;;; (www.w3.org/TR/png-3, 9)
 
-(defun png-step (png)
+(defun png-pixel-octets (png)
   "Return the number of octets of a pixel of PNG, at least 1."
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))
 
@@ -38,8 +38,8 @@ less than END only at the end of the data; NIL if the data are damaged."
 
 ;;; Filters.
 
-(declaim (inline likeliest-of))
-(defun likeliest-of (left above corner)
+(declaim (inline paeth-predictor))
+(defun paeth-predictor (left above corner)
   "Return LEFT, ABOVE or CORNER, the octet above LEFT, whichever is nearest to LEFT + ABOVE -
 CORNER."
   (declare (type (unsigned-byte 8) left above corner))
@@ -49,7 +49,7 @@ CORNER."
           ((<= from-above from-corner) above)
           (t corner))))
 
-(defmacro add-to-row ((row above step left over corner) expected)
+(defmacro add-prediction-to-row ((row above step left over corner) expected)
   "Add the value of EXPECTED to each octet of ROW after the first STEP octets. LEFT is bound to the
 octet STEP to the left, OVER to the octet at the same index of the row ABOVE, and CORNER to the
 octet STEP to the left of OVER."
@@ -66,10 +66,10 @@ such filter."
   (declare (type octets row above) (type (integer 1 8) step) #.*hot*)
   (case filter
     (0)
-    (1 (add-to-row (row above step left over corner) left))
-    (2 (add-to-row (row above step left over corner) over))
-    (3 (add-to-row (row above step left over corner) (ash (+ left over) -1)))
-    (4 (add-to-row (row above step left over corner) (likeliest-of left over corner)))
+    (1 (add-prediction-to-row (row above step left over corner) left))
+    (2 (add-prediction-to-row (row above step left over corner) over))
+    (3 (add-prediction-to-row (row above step left over corner) (ash (+ left over) -1)))
+    (4 (add-prediction-to-row (row above step left over corner) (paeth-predictor left over corner)))
     (t (return-from undo-filter nil)))
   t)
 
@@ -102,7 +102,7 @@ pixels cannot be decompressed"))
 (defun call-with-row (function png buffer start y row above)
   "Copy the row of PNG at START of BUFFER into ROW, unfiltered, and call FUNCTION with Y and ROW."
   (declare (type octets buffer row above) (type function function) (type fixnum start))
-  (let ((step (png-step png)))
+  (let ((step (png-pixel-octets png)))
     (replace row buffer :start1 step :start2 (1+ start))
     (unless (undo-filter (aref buffer start) row above step)
       (reject-damaged (png-input png) "row ~D has the filter ~D, but filters are 0 to 4"
@@ -111,11 +111,11 @@ pixels cannot be decompressed"))
 
 (defun call-with-rows (function png)
   "Call FUNCTION for each row of PNG, from the top, with the number of the row and a vector that has
-the octets of its pixels after PNG-STEP other octets. Signals UNUSABLE-FLOOR."
+the octets of its pixels after PNG-PIXEL-OCTETS other octets. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
          (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))
-         (row (make-octets (+ (png-step png) size -1))) (above (make-octets (length row))))
+         (row (make-octets (+ (png-pixel-octets png) size -1))) (above (make-octets (length row))))
     (loop for top from 0 below height by most
           for count = (min most (- height top))
           do (fill-with-rows png inflater buffer (* count size))
@@ -136,15 +136,15 @@ the octets of its pixels after PNG-STEP other octets. Signals UNUSABLE-FLOOR."
 
 (defconstant +no-colour+ 65535 "The sample for an index that the palette lacks.")
 
-(defun alpha-rule (png mode)
+(defun alpha-treatment (png mode)
   "Return the rule for alpha in PNG, read in MODE: :IGNORED, :AVERAGED or :UNKNOWN."
   (cond ((not (or (evenp (png-channels png)) (png-transparency png))) :ignored)
         ((eq :trinary mode) :averaged)
         ((eq :scale mode) :unknown)
         (t :ignored)))
 
-(declaim (inline shade-of-colour))
-(defun shade-of-colour (red green blue alpha rule)
+(declaim (inline colour-sample))
+(defun colour-sample (red green blue alpha rule)
   "Return the sample for a pixel with the channels RED, GREEN, BLUE and ALPHA, from 0 to 255. RULE
 says how alpha counts."
   (declare (type (unsigned-byte 8) red green blue alpha))
@@ -157,7 +157,7 @@ says how alpha counts."
   "True if grey is the only channel of PNG."
   (not (or (< 1 (png-channels png)) (png-palette-p png) (png-transparency png))))
 
-(defun white-of (png rule)
+(defun greatest-sample (png rule)
   "Return the greatest possible sample of PNG. RULE says how alpha counts."
   (cond ((plain-grey-p png) (1- (ash 1 (png-depth png))))
         ((eq :averaged rule) 1020)
@@ -165,16 +165,16 @@ says how alpha counts."
 
 ;;; One channel: a table has the sample for each of its values.
 
-(defun shade-of-place (png place rule)
+(defun palette-sample (png place rule)
   "Return the sample for the colour at the index PLACE of the palette of PNG."
   (let ((palette (png-palette png)) (alphas (png-transparency png)) (start (* 3 place)))
     (if (< start (length palette))
-        (shade-of-colour (aref palette start) (aref palette (+ 1 start)) (aref palette (+ 2 start))
-                         (if (< place (length alphas)) (aref alphas place) 255)
-                         rule)
+        (colour-sample (aref palette start) (aref palette (+ 1 start)) (aref palette (+ 2 start))
+                       (if (< place (length alphas)) (aref alphas place) 255)
+                       rule)
         +no-colour+)))
 
-(defun shade-of-grey (png value rule)
+(defun grey-sample (png value rule)
   "Return the sample for a pixel with the value VALUE in the grey image PNG, in which one value may
 be transparent."
   (if (plain-grey-p png)
@@ -183,17 +183,17 @@ be transparent."
                       (ash value -8)
                       (floor (* 255 value) (1- (ash 1 (png-depth png))))))
             (alpha (if (= value (number-at (png-transparency png) 0 2)) 0 255)))
-        (shade-of-colour grey grey grey alpha rule))))
+        (colour-sample grey grey grey alpha rule))))
 
-(defun shade-table (png rule)
+(defun sample-table (png rule)
   (let ((table (make-array (ash 1 (png-depth png)) :element-type '(unsigned-byte 16)))
-        (shade (if (png-palette-p png) #'shade-of-place #'shade-of-grey)))
+        (shade (if (png-palette-p png) #'palette-sample #'grey-sample)))
     (dotimes (value (length table) table)
       (setf (aref table value) (funcall shade png value rule)))))
 
 (declaim (inline value-in-row))
 (defun value-in-row (row start x depth)
-  "Return the value of the pixel X in the octets of ROW from START on. Each value has DEPTH bits."
+  "Return the value, of DEPTH bits, of the pixel X in the octets of ROW from START on."
   (declare (type octets row) (type (unsigned-byte 30) start x) (type (integer 1 16) depth))
   (case depth
     (8 (aref row (+ start x)))
@@ -201,7 +201,7 @@ be transparent."
     (t (multiple-value-bind (octet bit) (floor (* x depth) 8)
          (ldb (byte depth 0) (ash (aref row (+ start octet)) (- (+ bit depth) 8)))))))
 
-(defun shade-row-by-table (row table depth step samples start width)
+(defun fill-samples-by-table (row table depth step samples start width)
   "Set WIDTH elements of SAMPLES, from START on, to the elements of TABLE for the values in ROW,
 which begin after STEP octets."
   (declare (type octets row) (type samples table samples) (type (unsigned-byte 30) start width)
@@ -209,7 +209,7 @@ which begin after STEP octets."
   (dotimes (x width)
     (setf (aref samples (+ start x)) (aref table (value-in-row row step x depth)))))
 
-(defun check-places (png samples)
+(defun check-palette-indices (png samples)
   "Signal UNUSABLE-FLOOR if a pixel of PNG has a colour that is not in its palette."
   (when (and (png-palette-p png) (find +no-colour+ (the samples samples)))
     (reject-damaged (png-input png) "a pixel has a colour that the palette, with ~D colours, does ~
@@ -218,7 +218,7 @@ which begin after STEP octets."
 
 ;;; Several channels. Of two octets the high one is the first.
 
-(defun shade-row-by-sums (row channels octets step samples start width rule)
+(defun fill-samples-by-sums (row channels octets step samples start width rule)
   "Set WIDTH elements of SAMPLES, from START on, by the pixels in ROW, which begin after STEP
 octets. A pixel has CHANNELS channels of OCTETS octets each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
@@ -229,35 +229,36 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
     (loop for place of-type fixnum from step by (* channels octets)
           for index of-type (unsigned-byte 31) from start below (+ start width)
           do (setf (aref samples index)
-                   (shade-of-colour (aref row place) (aref row (+ place green))
-                                    (aref row (+ place blue))
-                                    (if alpha-p (aref row (+ place alpha)) 255)
-                                    rule)))))
+                   (colour-sample (aref row place) (aref row (+ place green))
+                                  (aref row (+ place blue))
+                                  (if alpha-p (aref row (+ place alpha)) 255)
+                                  rule)))))
 
 ;;; The image.
 
-(defun row-shader (png samples rule)
+(defun row-sampler (png samples rule)
   "Return a function of a row number and a row of PNG that sets the samples of this row in SAMPLES.
 RULE says how alpha counts."
-  (let ((width (png-width png)) (depth (png-depth png)) (step (png-step png))
+  (let ((width (png-width png)) (depth (png-depth png)) (step (png-pixel-octets png))
         (channels (png-channels png)))
     (if (= 1 channels)
-        (let ((table (shade-table png rule)))
+        (let ((table (sample-table png rule)))
           (lambda (y row)
-            (shade-row-by-table row table depth step samples (* y width) width)))
+            (fill-samples-by-table row table depth step samples (* y width) width)))
         (lambda (y row)
-          (shade-row-by-sums row channels (floor depth 8) step samples (* y width) width rule)))))
+          (fill-samples-by-sums row channels (floor depth 8) step samples (* y width) width
+                                rule)))))
 
 (defun read-png (input limit mode)
   "Return the PNG image in INPUT, of at most LIMIT pixels, as a grey image. MODE says how alpha
 counts. Signals UNUSABLE-FLOOR."
-  (let* ((png (read-chunks input limit)) (rule (alpha-rule png mode)))
+  (let* ((png (read-chunks input limit)) (rule (alpha-treatment png mode)))
     (check-pixels-there png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))
                                :element-type '(unsigned-byte 16))))
-      (call-with-rows (row-shader png samples rule) png)
-      (check-places png samples)
-      (make-image (png-width png) (png-height png) (white-of png rule) samples))))
+      (call-with-rows (row-sampler png samples rule) png)
+      (check-palette-indices png samples)
+      (make-image (png-width png) (png-height png) (greatest-sample png rule) samples))))
 
 (defun read-image (file limit mode)
   "Return the image in FILE, of at most LIMIT pixels, read in MODE. The first bytes of FILE decide
@@ -267,4 +268,4 @@ whether it is PGM or PNG. Signals UNUSABLE-FLOOR."
           ((pgm-kind input) (read-pgm input limit))
           (t (reject-image input "the first bytes of the image are not those of a PGM file (P2 or ~
                                   P5) or PNG file; save it in such a format, for example by: ~
-                                  ~A" *conversion*)))))
+                                  ~A" *conversion-command*)))))

@@ -27,7 +27,7 @@
 says what is wrong and names the remedy."
   (error 'unusable-floor :file file :line line :reason (apply #'format nil control arguments)))
 
-(defun file-called (name)
+(defun resolve-file-name (name)
   "Return the pathname for NAME, a string or pathname, which may begin with ~/. Signals
 UNUSABLE-FLOOR for ~user."
   (when (and (stringp name) (starts-with-subseq "~" name) (not (starts-with-subseq "~/" name)))
@@ -60,7 +60,7 @@ there is no sign."
     (#\- (values -1 (1+ start)))
     (t (values 1 start))))
 
-(defun whole-between (text start end)
+(defun parse-digits (text start end)
   (if (< start end) (parse-integer text :start start :end end) 0))
 
 (defun exponent-at (text start)
@@ -70,7 +70,7 @@ is no valid exponent."
         ((char-equal #\e (char text start))
          (multiple-value-bind (sign digits) (sign-at text (1+ start))
            (when (and (< digits (length text)) (= (length text) (digits-end text digits)))
-             (let ((size (whole-between text digits (length text))))
+             (let ((size (parse-digits text digits (length text))))
                (and (<= size +largest-exponent+) (* sign size))))))))
 
 (defun decimal-at (text start)
@@ -82,8 +82,8 @@ number."
          (places (if pointed (- end point 1) 0))
          (exponent (exponent-at text end)))
     (when (and exponent (plusp (+ places (- point start))))
-      (* (+ (whole-between text start point)
-            (/ (whole-between text (1+ point) end) (expt 10 places)))
+      (* (+ (parse-digits text start point)
+            (/ (parse-digits text (1+ point) end) (expt 10 places)))
          (expt 10 exponent)))))
 
 (defun read-decimal (text)
@@ -94,7 +94,7 @@ number."
       (let ((number (decimal-at text start)))
         (and number (* sign number))))))
 
-(defun decimal (number)
+(defun decimal-notation (number)
   "Return the shortest text that READ-DECIMAL reads as NUMBER, rounded to a double-float."
   (let ((*read-default-float-format* 'double-float)
         (value (double number)))
@@ -129,7 +129,7 @@ number."
           return (trim (subseq text 0 start))
         finally (return (trim text))))
 
-(defun end-of-quoted (file line text)
+(defun closing-quote-position (file line text)
   "Return the position of the closing quote of TEXT, which begins with a quote. In single quotes a
 doubled quote, and in double quotes a quote after a backslash, belongs to the text."
   (loop with quote = (char text 0)
@@ -158,7 +158,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                (incf i)))))
 
 (defun read-quoted (file line text)
-  (let ((end (end-of-quoted file line text)))
+  (let ((end (closing-quote-position file line text)))
     (unless (string= "" (without-comment (concatenate 'string " " (subseq text (1+ end)))))
       (reject-floor file line "there is text after the closing quote; leave that text out"))
     (unquoted file line text end)))

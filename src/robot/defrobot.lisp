@@ -19,7 +19,7 @@ INITARG. PARSE-CAMERA is such a function for cameras."
       (funcall reject amount (argument-type-text 'amount)))
     (list kind initarg (double amount))))
 
-(defun maps-to-choose (name)
+(defun map-choices-text (name)
   "Return a text that lists the maps, for a message about the unknown NAME."
   (let ((names (mapcar #'map-name (all-maps))))
     (if names
@@ -27,15 +27,15 @@ INITARG. PARSE-CAMERA is such a function for cameras."
                 names (nearest-name name names))
         "a map; there is none yet")))
 
-(defun parse-place (environment position angle reject)
+(defun parse-start (environment position angle reject)
   (unless (typep environment '(or map symbol string))
     (funcall reject environment "a map or its name"))
   (let ((map (or (find-map environment nil)
-                 (funcall reject environment (maps-to-choose environment)))))
+                 (funcall reject environment (map-choices-text environment)))))
     (destructuring-bind (x y) position
       (unless (and (within-reason-p x) (within-reason-p y))
         (funcall reject position "a position (x y), two numbers from -1e9 to 1e9"))
-      (let ((trouble (start-trouble map x y)))
+      (let ((trouble (start-problem-text map x y)))
         (when trouble
           (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
                                            (map-name map) trouble))))
@@ -132,7 +132,7 @@ slots."
   "Return a blueprint. LISTS is a property list of options in *PART-OPTIONS* and their values."
   (flet ((reject (clause expected)
            (reject-clause (title "defrobot" name) clause expected)))
-    (let ((map (parse-place environment position angle #'reject)))
+    (let ((map (parse-start environment position angle #'reject)))
       (make-blueprint :name name :map (map-name map)
                       :x (double (first position)) :y (double (second position))
                       :angle (double angle)
@@ -150,9 +150,9 @@ initarg value ...). Return the robot."
   (check-robot-variable name)
   (let* ((blueprint (read-blueprint name environment position angle
                                     (list :cameras cameras :hands hands :bins bins :parts parts)))
-         (robot (settle-robot blueprint)))
+         (robot (ensure-resident-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
-    (doubt-angle (title "defrobot" name) (robot-world robot) angle)
+    (warn-of-angle (title "defrobot" name) (robot-world robot) angle)
     robot))
 
 (defun check-robot-name (definition name)

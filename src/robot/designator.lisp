@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(*robot-meant* designators-on *designator-limit* thing-space designator-local-p*
-          serial-designator make-designator add-designator))
+(export '(*default-robot-function* designators-of-thing *designator-limit* thing-enclosure
+          designator-truly-local-p designator-with-serial make-designator add-designator))
 
 ;;; A designator denotes a thing, a PLACE, or nothing: then it is false, and X, Y is where the robot
 ;;; seems to have seen something. Programs may read type, angle and data; the rest is for the
@@ -58,8 +58,8 @@ radians")
 ;;; A robot's designators by number.
 
 (defparameter *designator-limit* 1000
-  "The number of designators that a robot keeps. Then the oldest designator that no camera tracks is
-removed for a new one.")
+  "The number of designators that a robot keeps. For each further designator, the oldest designator
+that no camera tracks is removed.")
 
 (addition find-designator)
 (defun find-designator (robot number)
@@ -72,10 +72,10 @@ robot."
          (aref designators number))))
 
 ;; The prompt sets it: its lines command one of the robots.
-(defvar *robot-meant* (lambda () (and *world* (first (world-robots *world*))))
+(defvar *default-robot-function* (lambda () (and *world* (first (world-robots *world*))))
   "A function that returns the robot to use if no robot is given.")
 
-(defun designator (number &optional (robot (funcall *robot-meant*)))
+(defun designator (number &optional (robot (funcall *default-robot-function*)))
   "Return the designator of ROBOT with NUMBER. By default ROBOT is the robot that the prompt
 commands, or else the first robot of the world. An addition to manual 3.4.1, for use at the prompt
 and REPL. Signals WRONG-ARGUMENT if there is no such designator."
@@ -90,16 +90,16 @@ and REPL. Signals WRONG-ARGUMENT if there is no such designator."
   "Return a list of the valid designators of ROBOT, by number."
   (coerce (remove nil (robot-designators robot)) 'list))
 
-(defun designators-on (robot thing)
+(defun designators-of-thing (robot thing)
   "Return a list of the valid designators of ROBOT that denote THING, by number."
   (loop for designator across (robot-designators robot)
         when (and designator (eq (designator-denotation designator) thing))
           collect designator))
 
-(defun take-number (robot designator)
+(defun assign-number (robot designator)
   "Give DESIGNATOR the smallest number that no designator of ROBOT has, and a serial number (reading
 198)."
-  (unsettle robot)
+  (mark-world-unsettled robot)
   (let* ((designators (robot-designators robot))
          (number (or (position nil designators)
                      (vector-push-extend nil designators))))
@@ -109,7 +109,7 @@ and REPL. Signals WRONG-ARGUMENT if there is no such designator."
     (incf (robot-designators-made robot))
     designator))
 
-(defun free-number (designator)
+(defun release-number (designator)
   (let ((designators (robot-designators (designator-robot designator))))
     (setf (designator-valid-p designator) nil
           (aref designators (designator-number designator)) nil)
@@ -119,7 +119,7 @@ and REPL. Signals WRONG-ARGUMENT if there is no such designator."
 
 ;;; Where things are, as a robot sees it.
 
-(defun thing-space (thing)
+(defun thing-enclosure (thing)
   "Return the container or storage bin that THING is in, NIL if THING is in the open, or :NOWHERE. A
 thing in a hand is where the hand is."
   (let ((location (thing-location thing)))
@@ -128,14 +128,14 @@ thing in a hand is where the hand is."
           ((hand-p location) (part-location location))
           (t location))))
 
-(defun denotation-space (designator)
-  "Return the THING-SPACE of the thing that DESIGNATOR denotes. If another robot's hand holds the
-thing, return this hand."
+(defun denotation-enclosure (designator)
+  "Return the THING-ENCLOSURE of the thing that DESIGNATOR denotes. If another robot's hand holds
+the thing, return this hand."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))
         location
-        (thing-space thing))))
+        (thing-enclosure thing))))
 
 (addition designator-position)
 (defun designator-position (designator)
@@ -149,14 +149,14 @@ thing that is nowhere (reading 54)."
                (values (+ 0.5d0 (cell-x cell)) (+ 0.5d0 (cell-y cell)))))
       (null (values (designator-x designator) (designator-y designator))))))
 
-(defun designator-local-p* (designator)
+(defun designator-truly-local-p (designator)
   "True if what DESIGNATOR denotes is truly local now: within reach, and still in the container, the
 bin or the open space where it was seen. False for places."
   (let ((denotation (designator-denotation designator)))
     (and (designator-valid-p designator)
          (not (place-p denotation))
          (or (null denotation)
-             (eq (denotation-space designator) (designator-location designator)))
+             (eq (denotation-enclosure designator) (designator-location designator)))
          (multiple-value-bind (x y) (designator-position designator)
            (and x (within-reach-p (designator-robot designator) x y))))))
 
@@ -164,7 +164,7 @@ bin or the open space where it was seen. False for places."
 ;;; serial number may be in use again, so it is written as -1.
 
 (defmethod copy-plan-value ((designator designator) fork)
-  (copy-of-robots designator (designator-robot designator) fork))
+  (copy-robot-object designator (designator-robot designator) fork))
 
 (defmethod reference ((designator designator))
   (list :designator (string (robot-name (designator-robot designator)))
@@ -172,13 +172,13 @@ bin or the open space where it was seen. False for places."
         (designator-number designator)
         (designator-type designator)))
 
-(defun serial-designator (robot serial)
+(defun designator-with-serial (robot serial)
   "Return the valid designator of ROBOT with the serial number SERIAL, or NIL."
   (find serial (live-designators robot) :key #'designator-serial))
 
 ;;; Giving a robot a designator, and making room for it.
 
-(defun forget-oldest (robot)
+(defun drop-oldest-designator (robot)
   "Drop the oldest designator of ROBOT that no camera tracks."
   (let ((untracked (remove-if #'tracked-p (live-designators robot))))
     (when untracked
@@ -189,7 +189,7 @@ bin or the open space where it was seen. False for places."
   "Add a new designator to ROBOT and return it. DENOTATION is a THING or a PLACE, or NIL for a false
 designator at X, Y. The denotation was seen at DISTANCE metres and at ANGLE to the heading, with
 DATA as its description, in LOCATION, a container or NIL for the open."
-  (when (>= (length (robot-designators robot)) *designator-limit*) (forget-oldest robot))
+  (when (>= (length (robot-designators robot)) *designator-limit*) (drop-oldest-designator robot))
   (let ((designator (make-designator :type type :robot robot :data data :location location
                                      :denotation denotation
                                      :angle (double angle) :distance (double distance)
@@ -199,4 +199,4 @@ DATA as its description, in LOCATION, a container or NIL for the open."
         (setf (designator-x designator) (double x)
               (designator-y designator) (double y))))
     (pushnew #'watch-thing (world-move-watchers (robot-world robot)))
-    (take-number robot designator)))
+    (assign-number robot designator)))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(outer-location part-inside part-reaches-p part-reaches-bin-p set-down
-          move-part space-around settle-robots))
+(export '(outer-location part-in-bin part-reaches-p part-reaches-bin-p set-down
+          move-part outer-enclosure enforce-containment))
 
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
 ;;; the robot's storage bins. What a hand holds is where the hand is. Invariants:
@@ -31,7 +31,7 @@
   (loop for outer = (part-location part) then (outer-location outer)
         while outer collect outer))
 
-(defun part-inside (bin)
+(defun part-in-bin (bin)
   "Return the first camera or hand that is in the storage BIN, directly or not, or NIL."
   (let ((robot (storage-bin-robot bin)))
     (flet ((there-p (part) (member bin (outer-locations part))))
@@ -41,7 +41,7 @@
 (defun part-reaches-p (part thing)
   "True if PART can reach THING: both are in the same container or in the open, and THING is within
 the robot's reach."
-  (and (eq (thing-space thing) (part-location part))
+  (and (eq (thing-enclosure thing) (part-location part))
        (multiple-value-bind (x y) (thing-position thing)
          (and x (within-reach-p (part-robot part) x y)))))
 
@@ -78,17 +78,17 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
   (let ((old (part-location part)))
     (when (thing-p location)
       (pushnew #'watch-container (world-move-watchers (location-world part))))
-    (unsettle (part-robot part))
+    (mark-world-unsettled (part-robot part))
     (setf (part-location part) location)
-    (part-moved part old)))
+    (update-after-part-move part old)))
 
-(defun space-around (part)
+(defun outer-enclosure (part)
   "Return the location of PART after it is taken out of its container."
   (let* ((location (part-location part))
-         (space (and (thing-p location) (thing-space location))))
+         (space (and (thing-p location) (thing-enclosure location))))
     (if (eq space :nowhere) nil space)))
 
-(defun pull-out (part)
+(defun pull-out-part (part)
   (warning-set (format nil "~A was pulled out of ~A" part (location-name (part-location part))))
   (move-part part nil))
 
@@ -104,39 +104,39 @@ robot's bin."
                             (not (eq (part-robot part) (storage-bin-robot bin))))))))))
 
 ;; See reading 113.
-(defun settle-part (part)
-  (when (must-pull-out-p part) (pull-out part)))
+(defun pull-out-if-necessary (part)
+  (when (must-pull-out-p part) (pull-out-part part)))
 
-(defun settle-parts (robot)
+(defun enforce-robot-containment (robot)
   "Pull the parts of ROBOT out of things beyond its reach; make its hands drop all but one thing."
   (declare #.*hot* (type robot robot))  ; in each tick
   (loop for hand across (robot-hands robot)
-        do (when (hand-location hand) (settle-part hand))
+        do (when (hand-location hand) (pull-out-if-necessary hand))
            (loop while (rest (hand-contents hand))
                  do (set-down hand (first (last (hand-contents hand))))))
   (loop for camera across (robot-cameras robot)
-        do (when (camera-location camera) (settle-part camera))))
+        do (when (camera-location camera) (pull-out-if-necessary camera))))
 
-(defun break-circle (thing location)
+(defun break-containment-circle (thing location)
   "If THING, now in LOCATION, is inside itself because a hand in THING holds it, pull the hand out."
   (let ((hand nil))
     (loop for outer = (if (eq location :floor) nil location) then (outer-location outer)
           until (or (null outer) (eq outer thing))
           when (and (hand-p outer) (thing-p (hand-location outer)))
             do (setf hand outer)
-          finally (when outer (pull-out hand)))))
+          finally (when outer (pull-out-part hand)))))
 
 (defun watch-container (thing old-location new-location)
   "Pull parts of robots out of THING if THING has moved out of reach. A move watcher of a world."
   (declare (ignore old-location))
-  (break-circle thing new-location)
+  (break-containment-circle thing new-location)
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
-    (mapc #'settle-parts (world-robots (thing-world thing)))))
+    (mapc #'enforce-robot-containment (world-robots (thing-world thing)))))
 
 (note-lasting 'watch-container)
 
-(defun settle-robots (world)
+(defun enforce-containment (world)
   "Enforce the rules of containment in WORLD: pull robots' parts out of things that are out of
 reach."
   (dolist (robot (world-robots world))
-    (settle-parts robot)))
+    (enforce-robot-containment robot)))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(blueprint-robot make-robot start-trouble check-in-run retire-robot
-          close-robot settle-robot resident-p))
+(export '(blueprint-robot make-robot start-problem-text check-not-retired retire-robot
+          call-run-enders ensure-resident-robot current-resident-world-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
@@ -50,7 +50,7 @@ ERRORP is NIL."
         name
         (reject-use "No ~(~A~) can be made: there is no function make-~(~:*~A~)." kind))))
 
-(defun start-trouble (map x y)
+(defun start-problem-text (map x y)
   "Return a text that says why a robot cannot start at (X,Y) in MAP, or NIL if a robot can."
   (cond ((not (map-index map x y))
          (format nil "~A is outside the map, which is ~D by ~D metres"
@@ -58,7 +58,7 @@ ERRORP is NIL."
         ((wall-at-p map x y) (format nil "~A is inside a wall" (point-in-text x y)))))
 
 (defun check-start (blueprint map)
-  (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
+  (let ((trouble (start-problem-text map (blueprint-x blueprint) (blueprint-y blueprint))))
     (when trouble
       (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot again."
                   (blueprint-name blueprint) (map-name map) trouble))))
@@ -71,21 +71,21 @@ outside the map (reading 215)."
     (ensure-timeline world)
     (setf (robot-mind robot) (make-mind :robot robot)
           (robot-parts robot) (make-parts robot (blueprint-parts blueprint)))
-    (stand-at-start robot)
+    (put-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))
     robot))
 
-(defun stand-at-start (robot)
+(defun put-at-start (robot)
   (let ((blueprint (robot-blueprint robot)))
     (set-robot-pose robot (blueprint-x blueprint) (blueprint-y blueprint)
                     (blueprint-angle blueprint))
     (add-odometer robot 'main)))
 
 (defmethod reset :before ((robot robot))
-  (mapc #'free-number (live-designators robot)))
+  (mapc #'release-number (live-designators robot)))
 
 (defmethod reset :after ((robot robot))
-  (stand-at-start robot))
+  (put-at-start robot))
 
 ;;; A robot is retired when its definition, its map or its run is replaced. Its commands are
 ;;; interrupted; commands to it signal an error that says why.
@@ -94,11 +94,11 @@ outside the map (reading 215)."
   "Make ROBOT refuse further commands, for REASON, a sentence without its full stop."
   (setf (robot-retired robot) reason))
 
-(defun close-robot (robot)
+(defun call-run-enders (robot)
   "Call the functions that were registered for the end of the run of ROBOT."
   (call-each #'funcall (shiftf (robot-enders robot) '())))
 
-(defun check-in-run (resource operator)
+(defun check-not-retired (resource operator)
   "Signal MISUSE if the robot of RESOURCE, a robot or part, is retired."
   (let* ((robot (if (robot-p resource) resource (part-robot resource)))
          (newest (and (robot-retired robot) (find-robot (robot-name robot) nil))))
@@ -113,17 +113,17 @@ outside the map (reading 215)."
     (deferring-interrupts
       (in-any-case
         (retire-robot robot reason)
-        (close-robot robot)
+        (call-run-enders robot)
         (abandon (timeline-of robot) (robot-resources robot))
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
-(defun remove-robots-called (name reason)
+(defun remove-robots-named (name reason)
   "Remove all robots named NAME from the resident worlds of all maps."
   (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
       (asking ((ensure-timeline world)) (remove-robot robot reason)))))
 
-(defun find-robot-of (blueprint world)
+(defun find-robot-from-blueprint (blueprint world)
   (find-if (lambda (robot)
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
@@ -131,14 +131,14 @@ outside the map (reading 215)."
 (defun ensure-robot-in (world blueprint)
   "Return the robot in WORLD that was made from BLUEPRINT, or make it. Remove other robots of the
 same name. The calling thread must own WORLD."
-  (or (find-robot-of blueprint world)
+  (or (find-robot-from-blueprint blueprint world)
       (progn
         (dolist (robot (world-robots world))
           (when (eq (robot-name robot) (blueprint-name blueprint))
             (remove-robot robot "it has been defined anew")))
         (make-robot blueprint world))))
 
-(defun resident-p (world)
+(defun current-resident-world-p (world)
   "True if WORLD is the resident world of its map, and no other map has replaced this map."
   (let ((map (world-map world)))
     (and (eq world (map-resident map))
@@ -146,20 +146,20 @@ same name. The calling thread must own WORLD."
 
 ;; Another thread may do the same meanwhile: the thread that owns the world decides. If the world
 ;; has been replaced, repeat this for the new one.
-(defun settle-robot (blueprint)
+(defun ensure-resident-robot (blueprint)
   "Put a robot made from BLUEPRINT into the resident world of its map, instead of robots from
 earlier definitions of the same name. Return the robot, or the robot that is already there."
   (loop
     (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
       (check-start blueprint (world-map world))
-      (unless (find-robot-of blueprint world)
-        (remove-robots-called (blueprint-name blueprint) "it has been defined anew"))
+      (unless (find-robot-from-blueprint blueprint world)
+        (remove-robots-named (blueprint-name blueprint) "it has been defined anew"))
       (asking ((ensure-timeline world))
-        (when (resident-p world) (setf robot (ensure-robot-in world blueprint))))
+        (when (current-resident-world-p world) (setf robot (ensure-robot-in world blueprint))))
       (when robot (return robot)))))
 
 (defmethod take-back ((blueprint blueprint))
-  (remove-robots-called (blueprint-name blueprint) "its definition has been taken back"))
+  (remove-robots-named (blueprint-name blueprint) "its definition has been taken back"))
 
 (defmethod reinstate ((blueprint blueprint))
   (let ((robot (blueprint-robot blueprint)))

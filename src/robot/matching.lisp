@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(own-symbol reading-reliability reading-deviation read-attribute angle-error
-          specification-p specification-trouble notice-probability))
+(export '(symbol-of-package reading-reliability reading-deviation read-attribute angle-error
+          specification-p specification-problem-text notice-probability))
 
 ;;; A discrete attribute is read right with a probability that falls with distance. A wrong reading
 ;;; is any value of the domain, so it may be right by chance. A reading of a numeric attribute is
@@ -32,7 +32,7 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
 (defun noisy-number (attribute value distance dice)
   (roll-gaussian value (reading-deviation attribute distance) dice))
 
-(defun own-symbol (value package)
+(defun symbol-of-package (value package)
   "Return VALUE or, if VALUE is a symbol, the symbol of the same name in PACKAGE, the name of a
 package. So a misread value is a symbol of the package that the map was written in. If PACKAGE is
 NIL, return VALUE."
@@ -47,7 +47,7 @@ NIL, return VALUE."
 (defun noisy-choice (attribute value domain distance package dice)
   (if (chance (reading-reliability attribute distance) dice)
       value
-      (own-symbol (roll-element domain dice) package)))
+      (symbol-of-package (roll-element domain dice) package)))
 
 (defun noisy-substance (attribute value distance package dice)
   "Return a noisy reading of VALUE, a value of the :substance ATTRIBUTE: a number, a type, or a list
@@ -72,7 +72,7 @@ PACKAGE, the name of a package, if given."
         ((realp value) (noisy-number attribute value distance dice))
         (t value)))
 
-(defun sensing-chance (probability)
+(defun sensing-error-probability (probability)
   "Return PROBABILITY, that of a sensing error, or 0 while NO-SENSOR-ERROR* is true (reading 118)."
   (if no-sensor-error* 0d0 (double probability)))
 
@@ -97,8 +97,8 @@ when LOW is NIL, one of CHOICES."
 ;; See readings 123 to 125.
 (defun parse-demand (specification)
   (destructuring-bind (name value &optional threshold) specification
-    (let* ((key (attribute-key name)) (attribute (attribute-of key)))
-      (if (or (asks-range-p attribute value)
+    (let* ((key (attribute-key name)) (attribute (declared-attribute key)))
+      (if (or (specifies-range-p attribute value)
               (and (realp value) (not (discrete-p attribute))))
           (multiple-value-bind (low high) (value-limits value)
             (let ((threshold (or threshold standard-match-threshold*)))
@@ -125,14 +125,14 @@ attribute."
 (defun takes-range-p (attribute value)
   "True if VALUE, a list in a specification of ATTRIBUTE, must be a range. ATTRIBUTE is NIL for an
 undeclared attribute."
-  (or (asks-range-p attribute value)
+  (or (specifies-range-p attribute value)
       (not (or (null attribute)
                (discrete-p attribute)
                (eq (attribute-name attribute) :substance)))))
 
 (defun demand-form-p (form)
-  (and (asking-form-p form)
-       (let ((attribute (attribute-of (first form))) (value (second form)))
+  (and (specification-clause-p form)
+       (let ((attribute (declared-attribute (first form))) (value (second form)))
          (if (consp value)
              (and (or (range-p value)
                       (not (takes-range-p attribute value)))
@@ -145,14 +145,14 @@ undeclared attribute."
   (and (proper-list-p object)
        (every #'demand-form-p object)))
 
-(defun specification-trouble (object)
+(defun specification-problem-text (object)
   "Return a text that says why OBJECT is no valid descriptor specification, or NIL if no part of it
 is invalid."
   (let* ((form (and (proper-list-p object)
                     (find-if-not #'demand-form-p object)))
-         (attribute (and (consp form) (symbolp (first form)) (attribute-of (first form))))
+         (attribute (and (consp form) (symbolp (first form)) (declared-attribute (first form))))
          (domain (and attribute (attribute-domain attribute)))
-         (value (and domain (asking-form-p form)
+         (value (and domain (specification-clause-p form)
                      (find-if-not (lambda (value) (in-domain-p attribute value))
                                   (ensure-list (second form))))))
     (when form
@@ -161,7 +161,7 @@ is invalid."
 
 ;;; Fitting.
 
-(defun fits-p (demand reading)
+(defun reading-fits-p (demand reading)
   "True if READING of a thing's attribute is what DEMAND wants."
   (let ((key (demand-key demand)) (low (demand-low demand)))
     (if low
@@ -177,19 +177,20 @@ is invalid."
 (defun thing-map (thing)
   (world-map (thing-world thing)))
 
-(defun as-asked (demand reading thing)
+(defun reading-with-asked-symbols (demand reading thing)
   "Return READING of THING, which fits DEMAND, with the same symbols as DEMAND, or else with symbols
 of the package of the map."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
-               (own-symbol value (and (thing-world thing) (map-package (thing-map thing)))))))
+               (symbol-of-package value
+                                  (and (thing-world thing) (map-package (thing-map thing)))))))
     (cond ((realp reading) reading)
           ((and (consp reading) (eq :substance (demand-key demand)))
            (cons (asked (first reading)) (rest reading)))
           (t (asked reading)))))
 
-(declaim (inline thing-value))
-(defun thing-value (thing key)
+(declaim (inline thing-attribute-value))
+(defun thing-attribute-value (thing key)
   (second (assoc key (thing-attributes thing) :test #'eq)))
 
 (defun match-thing (thing demands distance dice)
@@ -198,12 +199,12 @@ an object descriptor, as a second value (reading 127)."
   (let ((readings '()))
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
-             (value (thing-value thing key)))
+             (value (thing-attribute-value thing key)))
         ;; See reading 122.
         (unless (or value (null attribute) (can-be-false-p attribute)) (return nil))
         (let ((reading (read-attribute attribute value distance dice)))
-          (unless (fits-p demand reading) (return nil))
-          (push (list key (as-asked demand reading thing)) readings))))))
+          (unless (reading-fits-p demand reading) (return nil))
+          (push (list key (reading-with-asked-symbols demand reading thing)) readings))))))
 
 ;;; Attributes noticed in addition.
 
@@ -241,6 +242,6 @@ attributes at all."
   "Return what a search reports of THING: noticed attributes, then READINGS (reading 128)."
   (append (notice-attributes (thing-map thing) (mapcar #'first readings)
                              (lambda (attribute)
-                               (values (thing-value thing (attribute-name attribute)) t))
+                               (values (thing-attribute-value thing (attribute-name attribute)) t))
                              distance dice)
           readings))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now standing-p
+(export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
           longest-step step-now robot-turn-angle-now begin-movement robot-last-move
           robot-last-move-estimate robot-cell-index))
 
@@ -11,8 +11,8 @@
 ;;; there cannot trap it. The world's flags say which cells block. If the robot would enter a cell
 ;;; by less than the contact gap, it only touches it and continues.
 
-(declaim (inline what-blocks))
-(defun what-blocks (flag)
+(declaim (inline cell-obstacle))
+(defun cell-obstacle (flag)
   "Return the obstacle, :WALL, :THING or NIL, that keeps a robot out of a cell with FLAG (reading
 101)."
   (declare (type (unsigned-byte 8) flag))
@@ -36,7 +36,7 @@ whether the obstacle is in another column."
                           (cond ((and (>= at distance)
                                       (or (> at distance) (if column back-x back-y)))
                                  (setf done t))
-                                ((setf block (what-blocks (aref flags index)))
+                                ((setf block (cell-obstacle (aref flags index)))
                                  (setf sideways column)
                                  t)
                                 (t (if column
@@ -57,9 +57,9 @@ whether the obstacle is in another column."
   "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past
 the corner. Return true if ROBOT moved."
   (let ((world (robot-world robot)))
-    (multiple-value-bind (beyond-x beyond-y) (beyond-corner world +blocking+ x y column row)
+    (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
       (unless (or (null beyond-x)
-                  (closed-cell-p world beyond-x beyond-y +blocking+))
+                  (blocked-cell-p world beyond-x beyond-y +blocking+))
         (setf (robot-x robot) beyond-x
               (robot-y robot) beyond-y)))))
 
@@ -79,8 +79,8 @@ moved over the nearest border of cells, because the robot moves towards or along
 (declaim (inline move-within-cell move-through-cells))
 (defun move-within-cell (robot dx dy moved cell-x cell-y)
   (declare (type robot robot) (type double-float dx dy moved))
-  (setf (robot-x robot) (within-cell (+ (robot-x robot) (* dx moved)) cell-x)
-        (robot-y robot) (within-cell (+ (robot-y robot) (* dy moved)) cell-y)
+  (setf (robot-x robot) (clip-to-cell (+ (robot-x robot) (* dx moved)) cell-x)
+        (robot-y robot) (clip-to-cell (+ (robot-y robot) (* dy moved)) cell-y)
         (robot-moved robot) moved))
 
 (defun move-through-cells (robot world dx dy distance)
@@ -103,17 +103,17 @@ obstacle that stops ROBOT, or NIL."
     (cond ((only-touches-p (if sideways dx dy) left)
            (move-within-cell robot dx dy moved cell-x cell-y)
            (if sideways
-               (move-on robot 0d0 dy left moved)
-               (move-on robot dx 0d0 left moved)))
+               (continue-move robot 0d0 dy left moved)
+               (continue-move robot dx 0d0 left moved)))
           ((and (if sideways
                     (may-cross-border-p y cell-y dy left)
                     (may-cross-border-p x cell-x dx left))
                 (pass-corner robot x y cell-x cell-y))
-           (move-on robot dx dy left moved))
+           (continue-move robot dx dy left moved))
           (t (move-within-cell robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
              block))))
 
-(defun move-on (robot dx dy distance moved)
+(defun continue-move (robot dx dy distance moved)
   "Call MOVE-THROUGH-CELLS for a ROBOT that has already moved MOVED metres, and add these to
 ROBOT-MOVED."
   (prog1 (move-through-cells robot (robot-world robot) dx dy distance)
@@ -135,26 +135,26 @@ robot outside the map does not move."
              (setf (robot-moved robot) (- (robot-moved robot)))))
           (t (move-through-cells robot world dx dy distance)))))
 
-(declaim (inline sweep))
-(defun sweep (robot distance)
+(declaim (inline move-along-heading))
+(defun move-along-heading (robot distance)
   "Move ROBOT along its heading by DISTANCE, backwards if negative, or to an obstacle. Store the
 metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL (reading 100)."
   (declare #.*hot* (type robot robot) (type double-float distance))
   (let* ((x (robot-x robot)) (y (robot-y robot))
-         (cell-x (whole-part x)) (cell-y (whole-part y))
+         (cell-x (floor-to-fixnum x)) (cell-y (floor-to-fixnum y))
          (new-x (+ x (* (robot-cos robot) distance)))
          (new-y (+ y (* (robot-sin robot) distance))))
     (declare (type double-float new-x new-y))
     (setf (robot-moved robot) distance)
-    (cond ((and (= (whole-part new-x) cell-x) (= (whole-part new-y) cell-y))
+    (cond ((and (= (floor-to-fixnum new-x) cell-x) (= (floor-to-fixnum new-y) cell-y))
            (setf (robot-x robot) new-x (robot-y robot) new-y)
            nil)
           (t (leave-cell robot)))))
 
 ;;; The heading, the pose and the speed.
 
-(declaim (inline component))
-(defun component (number)
+(declaim (inline heading-component))
+(defun heading-component (number)
   "Return NUMBER, a component of a heading, or 0 if NUMBER is as small as a rounding error. So a
 robot can drive along the border of two cells and stay in one cell."
   (declare (type double-float number))
@@ -168,8 +168,8 @@ robot can drive along the border of two cells and stay in one cell."
           when (and designator (designator-bearing-p designator))
             do (decf (designator-angle designator) (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
-          (robot-cos robot) (component (cosine angle))
-          (robot-sin robot) (component (sine angle))))
+          (robot-cos robot) (heading-component (cosine angle))
+          (robot-sin robot) (heading-component (sine angle))))
   robot)
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
@@ -189,7 +189,7 @@ robot can drive along the border of two cells and stay in one cell."
   "Return the index of the cell that ROBOT is in, or NIL if ROBOT is outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
-(declaim (inline robot-speed-now step-now standing-p))
+(declaim (inline robot-speed-now step-now speed-zero-p))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT, at most the current MAX-SPEED*, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
@@ -198,7 +198,7 @@ robot can drive along the border of two cells and stay in one cell."
   "Return the distance, in metres, that ROBOT drives in a tick at its speed, without noise."
   (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
 
-(defun standing-p (robot)
+(defun speed-zero-p (robot)
   "True if ROBOT cannot drive because its speed is 0 or almost 0."
   ;; Speeds this low are lost in the rounding of positions.
   (< (the double-float (robot-speed-now robot)) 1d-12))
@@ -230,8 +230,8 @@ radians per tick."
   "Return the robot's estimate of the distances of its last movement, in x and in y, in metres."
   (values (robot-estimate-x robot) (robot-estimate-y robot)))
 
-(declaim (inline count-distance))
-(defun count-distance (robot low high)
+(declaim (inline add-distance-to-odometers))
+(defun add-distance-to-odometers (robot low high)
   "Add a distance from LOW to HIGH metres, negative if backwards, to the odometers of ROBOT."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
@@ -252,7 +252,7 @@ interval that contains the distance (reading 96)."
          (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
          (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
                                                  1d0)))))
-         (block (sweep robot distance))
+         (block (move-along-heading robot distance))
          (moved (abs (robot-moved robot)))
          (expected (if block moved (abs nominal)))
          (dice (world-dice world :odometry))
@@ -261,8 +261,8 @@ interval that contains the distance (reading 96)."
     (declare (type double-float noise step nominal distance moved expected low high))
     (setf (robot-drove-tick robot) (world-tick world))
     (if (minusp nominal)
-        (count-distance robot (- high) (- low))
-        (count-distance robot low high))
+        (add-distance-to-odometers robot (- high) (- low))
+        (add-distance-to-odometers robot low high))
     block))
 
 (defun turn-tick (robot angle)

@@ -36,7 +36,7 @@
                  "the robot's true heading when the angle was last reset, in radians" :export)))
 
 (defmethod copy-plan-value ((odometer odometer) fork)
-  (copy-of-robots odometer (odometer-robot odometer) fork))
+  (copy-robot-object odometer (odometer-robot odometer) fork))
 
 (defmethod reference ((odometer odometer))
   (list :odometer (string (robot-name (odometer-robot odometer)))
@@ -81,30 +81,30 @@ know it."
             (values (odometer-sin-min odometer) (odometer-sin-max odometer))
             (bounds (sine low) (sine high) (/ pi 2) (/ pi -2))))))
 
-(declaim (inline rounding odometer-drive))
-(defun rounding (value)
+(declaim (inline rounding-bound odometer-drive))
+(defun rounding-bound (value)
   "Return an upper bound of the rounding error of a sum with the result VALUE."
   (declare (type double-float value))
   (+ 1d-14 (* 1d-15 (abs value))))
 
-(defmacro widen (low-place low high-place high)
+(defmacro widen-interval (low-place low high-place high)
   "Add the interval from LOW to HIGH to the interval whose bounds are in LOW-PLACE and HIGH-PLACE,
 rounding outwards."
   `(progn
-     (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding sum))))
-     (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding sum))))))
+     (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding-bound sum))))
+     (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding-bound sum))))))
 
 (defun odometer-drive (odometer low high)
-  "Add a drive of LOW to HIGH metres along the heading to ODOMETER. Both are negative if backwards
-(reading 97)."
+  "Add a drive of LOW to HIGH metres along the heading to ODOMETER. For a drive backwards, LOW and
+HIGH are negative (reading 97)."
   (declare (type odometer odometer) (type double-float low high))
   (labels ((least (factor) (* factor (if (minusp factor) high low)))
            (most (factor) (* factor (if (minusp factor) low high)))
            (count-by (least-cos most-cos least-sin most-sin)
-             (widen (odometer-x-min odometer) (least least-cos)
-                    (odometer-x-max odometer) (most most-cos))
-             (widen (odometer-y-min odometer) (least least-sin)
-                    (odometer-y-max odometer) (most most-sin))))
+             (widen-interval (odometer-x-min odometer) (least least-cos)
+                             (odometer-x-max odometer) (most most-cos))
+             (widen-interval (odometer-y-min odometer) (least least-sin)
+                             (odometer-y-max odometer) (most most-sin))))
     (declare (inline least most count-by))
     (let ((cos-min (odometer-cos-min odometer)) (cos-max (odometer-cos-max odometer))
           (sin-min (odometer-sin-min odometer)) (sin-max (odometer-sin-max odometer)))
@@ -114,7 +114,7 @@ rounding outwards."
 
 (defun odometer-turn (odometer low high)
   (declare (type double-float low high))
-  (widen (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
+  (widen-interval (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
   (refresh-bounds odometer))
 
 ;;; Functions for programs.

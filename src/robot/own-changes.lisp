@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-way-left))
+(export '(robot-remaining-way))
 
 ;;; The simulator sees single commands; only the program knows where they lead. The planned way
 ;;; affects nothing: it is not in a run's digest or journal. It belongs to the run, so forks copy
@@ -48,7 +48,7 @@ way, or if a command of ROBOT has been interrupted since."
 
 ;;; The remaining way.
 
-(defun foot-on (from to x y)
+(defun nearest-point-on-segment (from to x y)
   "Return the point (x y) nearest to X, Y on the line segment between FROM and TO, and its distance
 from X, Y."
   (destructuring-bind (x1 y1 x2 y2) (append from to)
@@ -60,20 +60,20 @@ from X, Y."
            (foot (list (+ x1 (* part dx)) (+ y1 (* part dy)))))
       (values foot (abs (complex (- x (first foot)) (- y (second foot))))))))
 
-(defun left-of-way (points x y)
+(defun remaining-points (points x y)
   "Return the rest of the way through POINTS, from its point nearest to (X,Y)."
   (let ((least nil) (left points))
     (loop for (from . after) on points
           while after
-          do (multiple-value-bind (foot distance) (foot-on from (first after) x y)
+          do (multiple-value-bind (foot distance) (nearest-point-on-segment from (first after) x y)
                (when (or (null least) (<= distance least))
                  (setf least distance
                        left (cons foot after)))))
     left))
 
-(defun robot-way-left (robot)
+(defun robot-remaining-way (robot)
   "Return the remaining points, lists (x y), of the planned way of ROBOT, from its position on."
-  (left-of-way (robot-planned-way robot) (robot-x robot) (robot-y robot)))
+  (remaining-points (robot-planned-way robot) (robot-x robot) (robot-y robot)))
 
 ;;; Odometers and positions of robots belong to their world. Programs change them by way of the
 ;;; world's owner, which records the changes in its journal.
@@ -132,7 +132,7 @@ WRONG-ARGUMENT (manual E). See reading 114."
   (check-of-type 'place-robot 'x x 'number)
   (check-of-type 'place-robot 'y y 'number)
   (check-of-type 'place-robot 'angle angle 'angle)
-  (doubt-angle 'place-robot (robot-world robot) angle)
+  (warn-of-angle 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
       (reject-argument "pos" "position" (list x y)

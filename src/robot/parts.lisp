@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(all-blueprints blueprint *robots* find-blueprint robot-resources mind-p
-          *part-vectors* parts-of-kind part unsettle ensure-timeline))
+          *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
 ;;; A blueprint does not change after DEFROBOT has read it. Any number of robots can be made from
 ;;; it, each in its own world.
@@ -94,7 +94,7 @@ radians" :export))
    (enders '() list "the functions to call when the robot's run is over" :export)))
 
 ;; Parts of another run are not copied.
-(defun copy-of-robots (object robot copier)
+(defun copy-robot-object (object robot copier)
   "Return the copy that COPIER makes of OBJECT, which is ROBOT or belongs to ROBOT. If ROBOT is in
 another run, return OBJECT."
   (if (eq (robot-world robot) (copier-option copier :world))
@@ -102,7 +102,7 @@ another run, return OBJECT."
       object))
 
 (defmethod copy-plan-value ((robot robot) fork)
-  (copy-of-robots robot robot fork))
+  (copy-robot-object robot robot fork))
 
 (addition part-p)
 (define-kind (part :include resource :constructor nil)
@@ -114,7 +114,7 @@ another run, return OBJECT."
    (location nil t "the container or storage bin that the part is inside of, or NIL" :addition)))
 
 (defmethod copy-plan-value ((part part) fork)
-  (copy-of-robots part (part-robot part) fork))
+  (copy-robot-object part (part-robot part) fork))
 
 (public camera)
 (addition camera-p)
@@ -243,9 +243,9 @@ the first vector whose element type fits.")
 parts and its mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
-(defun unsettle (robot)
-  "Make the next tick check the world of ROBOT. Call UNSETTLE before creating anything that
-WORLD-SETTLED-P excludes."
+(defun mark-world-unsettled (robot)
+  "Make the next tick check the world of ROBOT. Call MARK-WORLD-UNSETTLED before creating anything
+that WORLD-SETTLED-P excludes."
   (setf (world-settled-p (robot-world robot)) nil))
 
 (addition hand-holding)
@@ -253,7 +253,7 @@ WORLD-SETTLED-P excludes."
   "Return the thing that HAND holds, or NIL."
   (first (hand-contents hand)))
 
-(defun part-of (robot reader index operator)
+(defun indexed-part (robot reader index operator)
   (unless (robot-p robot)
     (reject-argument operator "robot" robot (argument-type-text 'robot robot)))
   (let ((parts (funcall reader robot)))
@@ -266,17 +266,17 @@ WORLD-SETTLED-P excludes."
 (public robot-camera)
 (defun robot-camera (robot index)
   "Return the camera of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.4)."
-  (part-of robot #'robot-cameras index 'robot-camera))
+  (indexed-part robot #'robot-cameras index 'robot-camera))
 
 (public robot-hand)
 (defun robot-hand (robot index)
   "Return the hand of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
-  (part-of robot #'robot-hands index 'robot-hand))
+  (indexed-part robot #'robot-hands index 'robot-hand))
 
 (public robot-storage-bin)
 (defun robot-storage-bin (robot index)
   "Return the storage bin of ROBOT with INDEX, from 0. Signals WRONG-ARGUMENT (manual 3.6)."
-  (part-of robot #'robot-bins index 'robot-storage-bin))
+  (indexed-part robot #'robot-bins index 'robot-storage-bin))
 
 (addition robot-part)
 (defun robot-part (robot kind index)
@@ -285,7 +285,7 @@ the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument robot-part kind (typep kind '(or symbol string)) "the name of a kind of part")
   (unless (find-kind-name kind 'part)
     (reject-name "kind of part" kind (mapcar #'kind-name (all-kinds 'part))))
-  (part-of robot (lambda (robot) (parts-of-kind robot kind)) index 'robot-part))
+  (indexed-part robot (lambda (robot) (parts-of-kind robot kind)) index 'robot-part))
 
 (defun parts-of-kind (robot kind)
   "Return a vector of the parts of ROBOT whose kind is named KIND."
@@ -306,7 +306,7 @@ the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (defmethod location-contents ((hand hand)) (hand-contents hand))
 (defmethod (setf location-contents) (contents (hand hand))
-  (unsettle (hand-robot hand))
+  (mark-world-unsettled (hand-robot hand))
   (setf (hand-contents hand) contents))
 (defmethod location-contents ((bin storage-bin)) (storage-bin-contents bin))
 (defmethod (setf location-contents) (contents (bin storage-bin))
@@ -324,5 +324,5 @@ the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defmethod location-full-p ((hand hand)) (hand-contents hand))
 (defmethod location-closed-p ((bin storage-bin)) (storage-bin-closed-p bin))
 (defmethod location-name ((part part)) (princ-to-string part))
-(defmethod location-words ((part part))
+(defmethod location-phrase ((part part))
   (format nil "~(~A~) of ~A" part (part-robot part)))

@@ -18,8 +18,8 @@
   "The difference of the indices of two neighbouring cells."
   '(signed-byte 16))
 
-(declaim (inline nonzero walk-to-corner walk-ray))
-(defun nonzero (component)
+(declaim (inline nonzero-component walk-to-corner walk-ray))
+(defun nonzero-component (component)
   "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if COMPONENT is almost 0, whatever its
 sign."
   (declare (type double-float component))
@@ -36,8 +36,8 @@ Return the point beyond the corner, as two values, or NIL if the ray has ended."
                  (let ((flag (aref flags index)))
                    (or (and (logtest flag +opaque+)
                             (setf (values beyond-x beyond-y)
-                                  (past-corner world +opaque+ (+ x (* dx at)) (+ y (* dy at))
-                                               dx dy)))
+                                  (line-past-corner world +opaque+ (+ x (* dx at)) (+ y (* dy at))
+                                                    dx dy)))
                        (funcall visit index flag))))
                (map-width map) (map-height map) x y dx dy +no-limit+)
     (values beyond-x beyond-y)))
@@ -47,7 +47,7 @@ Return the point beyond the corner, as two values, or NIL if the ray has ended."
 direction (DX,DY), until VISIT returns true or the map ends. At a corner the ray meets neither of
 the two cells beside the corner, if one of these cells lets the ray through (reading 100)."
   (declare (type function visit) (type double-float x y dx dy))
-  (let ((dx (nonzero dx)) (dy (nonzero dy)) (map (world-map world)))
+  (let ((dx (nonzero-component dx)) (dy (nonzero-component dy)) (map (world-map world)))
     (loop
       (multiple-value-bind (beyond-x beyond-y) (walk-to-corner visit world x y dx dy)
         (unless beyond-x (return))
@@ -60,7 +60,7 @@ the two cells beside the corner, if one of these cells lets the ray through (rea
   "If an opaque cell stops a ray in direction (DX,DY) at (X,Y), but the ray only touches a corner
 there, continue the ray. Return a list of the cells with things that the continued ray meets."
   (let ((cells '()))
-    (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
+    (multiple-value-bind (beyond-x beyond-y) (line-past-corner world +opaque+ x y dx dy)
       (when beyond-x
         (flet ((visit (index flag)
                  (when (logtest flag +occupied+) (push index cells))
@@ -70,8 +70,8 @@ there, continue the ray. Return a list of the cells with things that the continu
               (walk-ray #'visit world beyond-x beyond-y dx dy))))))
     (nreverse cells)))
 
-(defmacro do-fan ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
-                  &body body)
+(defmacro do-rays ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
+                   &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
 ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. The values for a
 direction are computed before BODY runs for the previous direction, so that the processor divides
@@ -80,8 +80,8 @@ while BODY walks."
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))
             (,cos (cosine ,spacing)) (,sin (sine ,spacing))
-            (,next-x (cosine ,first)) (,next-per-x (/ (nonzero ,next-x)))
-            (,next-y (sine ,first)) (,next-per-y (/ (nonzero ,next-y))))
+            (,next-x (cosine ,first)) (,next-per-x (/ (nonzero-component ,next-x)))
+            (,next-y (sine ,first)) (,next-per-y (/ (nonzero-component ,next-y))))
        (declare (type double-float ,spacing ,first ,cos ,sin
                       ,next-x ,next-y ,next-per-x ,next-per-y))
        (loop repeat ,count
@@ -90,8 +90,8 @@ while BODY walks."
                   (declare (ignorable ,per-x ,per-y))
                   (setf ,next-x (- (* ,dx ,cos) (* ,dy ,sin))
                         ,next-y (+ (* ,dx ,sin) (* ,dy ,cos))
-                        ,next-per-x (/ (nonzero ,next-x))
-                        ,next-per-y (/ (nonzero ,next-y)))
+                        ,next-per-x (/ (nonzero-component ,next-x))
+                        ,next-per-y (/ (nonzero-component ,next-y)))
                   ,@body)))))
 
 ;;; Scans are most of the cost of a robot that looks, so they have a separate walk, which meets
@@ -124,7 +124,7 @@ direction and length."
          (most (or reach 0))
          (left-behind-x (min most cell-x)) (left-ahead-x (min most (- width cell-x 1)))
          (left-behind-y (min most cell-y)) (left-ahead-y (min most (- height cell-y 1))))
-    (do-fan (dx dy inverse-x inverse-y) (angle fan count)
+    (do-rays (dx dy inverse-x inverse-y) (angle fan count)
       (let ((index (+ cell-x (* cell-y width)))
             (per-x (abs inverse-x)) (per-y (abs inverse-y)))
         (declare (type cell-index index) (type double-float per-x per-y))

@@ -10,8 +10,8 @@
 ;;; may all miss it: their direction must be in the field of view. A camera inside a container or
 ;;; storage bin sees what is directly in it, at distance 0. What a hand holds is where the hand is.
 
-(declaim (inline mark-seen walls-around-p))
-(defun mark-seen (flags index)
+(declaim (inline toggle-seen walls-around-p))
+(defun toggle-seen (flags index)
   "Replace +OCCUPIED+ by +SEEN+, or the reverse, in the element of FLAGS at INDEX."
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
@@ -26,7 +26,7 @@
 (defun unmark-seen (flags cells)
   (declare #.*hot* (type flag-vector flags) (type list cells))
   (dolist (index cells)
-    (mark-seen flags index)))
+    (toggle-seen flags index)))
 
 (defun occupied-cells (world x y angle width count reach)
   "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
@@ -38,14 +38,14 @@
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
              (when (logtest flag +occupied+)
-               (mark-seen flags index)
+               (toggle-seen flags index)
                (push index found))
              (logtest flag +opaque+))
            (corner (dx dy at)
              (declare (type double-float dx dy at))
              (dolist (index (cells-past-corner world (+ x (* dx at)) (+ y (* dy at)) dx dy))
                (when (logtest (aref flags index) +occupied+)
-                 (mark-seen flags index)
+                 (toggle-seen flags index)
                  (push index found)))))
       (declare (inline visit corner))
       (macrolet ((walk (reach)
@@ -67,11 +67,11 @@ COUNT rays from (X,Y) meets, WIDTH radians wide around ANGLE."
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
              (when (and (= (aref places index) number) (not (logtest flag +seen+)))
-               (mark-seen flags index)
+               (toggle-seen flags index)
                (push index found))
              (logtest flag +opaque+)))
       (declare (inline visit))
-      (do-fan (dx dy) (angle width count)
+      (do-rays (dx dy) (angle width count)
         (walk-ray #'visit world x y dx dy)))
     (unmark-seen flags found)
     (nreverse found)))
@@ -91,7 +91,7 @@ meet within REACH columns and rows."
                                 (camera-heading camera) (camera-field-of-view camera)
                                 scan-density* reach)))))
 
-(defun faced-p (camera thing)
+(defun in-close-view-p (camera thing)
   "True if THING, on the floor within reach, is in the field of view of CAMERA and not hidden, or is
 at the position of CAMERA."
   (let ((robot (camera-robot camera)) (x (thing-x thing)) (y (thing-y thing)))
@@ -126,7 +126,7 @@ out of reach."
                       (remove-if (lambda (index) (member index cells))
                                  (cells-around (camera-robot camera))))))
     (append (things-in-cells cells camera local)
-            (remove-if-not (lambda (thing) (faced-p camera thing))
+            (remove-if-not (lambda (thing) (in-close-view-p camera thing))
                            (things-in-cells others camera t)))))
 
 (defun things-in-view (camera type)
@@ -142,13 +142,13 @@ out of reach."
 
 (defun phantom-count (probability all dice)
   "Return how many false designators a search finds by chance, at most 8 if ALL, else at most 1."
-  (loop with probability = (sensing-chance probability)
+  (loop with probability = (sensing-error-probability probability)
         while (and (< count 8) (chance probability dice))
         count t into count
         while all
         finally (return count)))
 
-(defun some-of (finds all dice)
+(defun all-or-random-one (finds all dice)
   "Return FINDS if ALL, else a list of one element of FINDS, chosen at random; () if FINDS is empty
 (reading 133)."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
@@ -156,15 +156,15 @@ out of reach."
 (defun matching-things (camera type demands dice)
   "Return a list of pairs (thing . readings) for the things of TYPE that CAMERA has in view and does
 not miss by chance, and whose readings fit DEMANDS (reading 129)."
-  (loop with missing = (sensing-chance miss-thing-prob*)
+  (loop with missing = (sensing-error-probability miss-thing-prob*)
         for thing in (things-in-view camera type)
-        for distance = (seen-from camera thing)
+        for distance = (viewing-distance camera thing)
         unless (chance missing dice)
           append (multiple-value-bind (matches readings)
                      (match-thing thing demands distance dice)
                    (and matches (list (cons thing readings))))))
 
-(defun seen-from (camera thing)
+(defun viewing-distance (camera thing)
   (if (camera-location camera)
       0d0
       (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing))))
@@ -172,7 +172,7 @@ not miss by chance, and whose readings fit DEMANDS (reading 129)."
 (defun thing-sighting (camera type thing readings dice)
   (multiple-value-bind (x y) (thing-position thing)
     (make-sighting type thing x y
-                   (describe-thing thing readings (seen-from camera thing) dice))))
+                   (describe-thing thing readings (viewing-distance camera thing) dice))))
 
 (defun look-for-things (camera type specification &key all)
   "Return a list of CAMERA's sightings of things of TYPE that fit SPECIFICATION: all sightings if
@@ -185,8 +185,8 @@ ALL, else one. The list may contain false sightings."
                        0
                        (phantom-count false-thing-prob* all dice))))
     (loop for demand in demands
-          unless (demand-attribute demand) do (note-strange-name (demand-key demand) world))
-    (loop for find in (some-of (append finds (make-list phantoms)) all dice)
+          unless (demand-attribute demand) do (warn-of-strange-attribute (demand-key demand) world))
+    (loop for find in (all-or-random-one (append finds (make-list phantoms)) all dice)
           collect (if find
                       (thing-sighting camera type (first find) (rest find) dice)
                       (false-sighting camera type (false-description world demands dice) dice)))))
@@ -208,11 +208,11 @@ ALL, else one. The list may contain false sightings."
 if ALL, else one. The list may contain false sightings. The data of each sighting are NAME, the
 symbol by which the caller asked for TYPE (reading 74)."
   (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
-         (missing (sensing-chance miss-place-prob*))
+         (missing (sensing-error-probability miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
                            (places-in-view camera type)))
          (phantoms (phantom-count (place-type-confusion type) all dice)))
-    (loop for place in (some-of (append finds (make-list phantoms)) all dice)
+    (loop for place in (all-or-random-one (append finds (make-list phantoms)) all dice)
           collect (if place
                       (let ((cell (place-cell place)))
                         (make-sighting :non-local place
@@ -265,9 +265,9 @@ VALUE, or occasionally any number from the least to the greatest parameter of th
 
 (defun open-view (camera)
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (pixels '()))
-    (do-fan (dx dy) ((camera-heading camera)
-                     (camera-field-of-view camera)
-                     (camera-resolution camera))
+    (do-rays (dx dy) ((camera-heading camera)
+                      (camera-field-of-view camera)
+                      (camera-resolution camera))
       (push (true-pixel world (robot-x robot) (robot-y robot) dx dy) pixels))
     (nreverse pixels)))
 

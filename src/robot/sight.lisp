@@ -2,19 +2,19 @@
 
 (in-package :ars-magna.robot)
 
-(export '(line-clear-p in-sight-p within-reach-p in-same-cell-p reached-p))
+(export '(line-clear-p in-sight-p within-reach-p in-same-cell-p arrived-at-point-p))
 
 ;;; Many things have whole coordinates, so lines often pass exactly where four cells meet. Rounding
 ;;; would then decide which of the two cells beside the corner a line meets. So it meets neither: it
 ;;; passes if one of the two lets it through. If both block, it stops, so oblique walls have no
 ;;; holes. Motion and sight follow the same rule (manual 2.1).
 
-(declaim (inline whole-part within-cell))
-(defun whole-part (x)
+(declaim (inline floor-to-fixnum clip-to-cell))
+(defun floor-to-fixnum (x)
   (declare (type double-float x))
   (the fixnum (floor (the (double-float -1d9 1d9) x))))
 
-(defun within-cell (coordinate cell)
+(defun clip-to-cell (coordinate cell)
   "Return COORDINATE or, if rounding moved it out of CELL, the nearest coordinate inside CELL."
   (declare (type double-float coordinate) (type fixnum cell))
   ;; The number before the far border is the greatest that is less.
@@ -28,13 +28,13 @@ farther than this from a corner, along both axes, passes through the corner.")
 (define-constant +blocking+ (logior +wall+ +obsmove+)
   :documentation "The flags of a cell that keeps robots out.")
 
-(defun closed-cell-p (world x y mask)
+(defun blocked-cell-p (world x y mask)
   "True if the cell of WORLD that holds (X,Y) has a flag of MASK, or is outside the map."
   (let ((index (map-index (world-map world) x y)))
     (or (null index)
         (logtest mask (aref (world-flags world) index)))))
 
-(defun beyond-corner (world mask x y column row)
+(defun point-beyond-corner (world mask x y column row)
   "If (X,Y) is at a corner of the cell at COLUMN and ROW, and the two cells beside the corner do not
 both stop a line, return the point just beyond the corner, in the cell opposite, as two values; else
 NIL. Cells with a flag of MASK stop the line."
@@ -43,19 +43,19 @@ NIL. Cells with a flag of MASK stop the line."
       (let ((other-column (other column corner-x)) (other-row (other row corner-y)))
         (unless (or (> (abs (- x corner-x)) +contact-gap+)
                     (> (abs (- y corner-y)) +contact-gap+)
-                    (and (closed-cell-p world other-column row mask)
-                         (closed-cell-p world column other-row mask)))
-          (values (within-cell (double corner-x) other-column)
-                  (within-cell (double corner-y) other-row)))))))
+                    (and (blocked-cell-p world other-column row mask)
+                         (blocked-cell-p world column other-row mask)))
+          (values (clip-to-cell (double corner-x) other-column)
+                  (clip-to-cell (double corner-y) other-row)))))))
 
-(defun past-corner (world mask x y dx dy)
+(defun line-past-corner (world mask x y dx dy)
   "If a line in direction (DX,DY), stopped at (X,Y), only touches a corner there and may pass,
 return the point just beyond the corner, as two values; else NIL. Cells with a flag of MASK stop the
 line."
   (flet ((before (position direction)
            (if (plusp direction) (1- (round position)) (round position))))
     (unless (or (zerop dx) (zerop dy))
-      (beyond-corner world mask x y (before x dx) (before y dy)))))
+      (point-beyond-corner world mask x y (before x dx) (before y dy)))))
 
 ;;; Sight passes from cell to cell until a wall, or a cell where something on the floor obstructs
 ;;; it. The cells at both ends do not. The walk ends after as many borders as lie between them:
@@ -68,10 +68,10 @@ line."
 (defun corner-clear-p (world x y dx dy to-x to-y)
   "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only touches a corner
 there and reaches its end."
-  (multiple-value-bind (beyond-x beyond-y) (past-corner world +opaque+ x y dx dy)
+  (multiple-value-bind (beyond-x beyond-y) (line-past-corner world +opaque+ x y dx dy)
     (and beyond-x
          (or (same-cell-p beyond-x beyond-y to-x to-y)
-             (and (not (closed-cell-p world beyond-x beyond-y +opaque+))
+             (and (not (blocked-cell-p world beyond-x beyond-y +opaque+))
                   (line-clear-p world beyond-x beyond-y to-x to-y))))))
 
 (defun line-clear-p (world x y to-x to-y)
@@ -79,8 +79,8 @@ there and reaches its end."
   (declare #.*hot* (type world world) (type double-float x y to-x to-y))
   (let* ((flags (world-flags world)) (map (world-map world))
          (dx (- to-x x)) (dy (- to-y y))
-         (left (+ (abs (- (whole-part to-x) (whole-part x)))
-                  (abs (- (whole-part to-y) (whole-part y)))))
+         (left (+ (abs (- (floor-to-fixnum to-x) (floor-to-fixnum x)))
+                  (abs (- (floor-to-fixnum to-y) (floor-to-fixnum y)))))
          (clear t)
          (at (walk-grid (lambda (index at column)
                           (declare (ignore at column))
@@ -120,7 +120,7 @@ at the cell: the contact gap, and an allowance for rounding.")
   "True if (X,Y), in metres, is in the cell of ROBOT."
   (same-cell-p x y (robot-x robot) (robot-y robot)))
 
-(defun at-cell-p (robot x y)
+(defun touching-cell-p (robot x y)
   "True if ROBOT is in the cell of (X,Y), or no farther from the cell than the contact gap."
   (flet ((gap (position start)
            (max (- start position) (- position (1+ start)))))
@@ -136,15 +136,15 @@ cell that blocks ROBOT and that ROBOT touches (reading 108)."
          (<= (abs dy) +farthest-reach+)
          (or (< (+ (* dx dx) (* dy dy)) 1d0)
              (in-same-cell-p robot x y)
-             (and (at-cell-p robot x y)
-                  (closed-cell-p (robot-world robot) x y +blocking+))))))
+             (and (touching-cell-p robot x y)
+                  (blocked-cell-p (robot-world robot) x y +blocking+))))))
 
-(defun reached-p (robot x y last-step block)
+(defun arrived-at-point-p (robot x y last-step block)
   "True if ROBOT has arrived at (X,Y) by its drive in this tick. LAST-STEP is true if ROBOT could
 reach (X,Y) in the tick; BLOCK is true if an obstacle blocked ROBOT. Nothing may hide (X,Y) from
 ROBOT (reading 108)."
   (or (in-same-cell-p robot x y)
       (and (within-reach-p robot x y)
            (or last-step
-               (and block (at-cell-p robot x y)))
+               (and block (touching-cell-p robot x y)))
            (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) (double x) (double y)))))

@@ -97,21 +97,22 @@ value of a random thing in WORLD."
                                                     (thing-of-rank (roll-index count dice)
                                                                    world))))
                                    (values (and thing
-                                                (thing-value thing (attribute-name attribute)))
+                                                (thing-attribute-value
+                                                 thing (attribute-name attribute)))
                                            thing)))
                                0d0 dice)
             readings)))
 
 ;;; Designators.
 
-(defun unchanged-p (sighting camera)
+(defun sighting-unchanged-p (sighting camera)
   "True if CAMERA and the thing that SIGHTING denotes are still where they were at the time of
 SIGHTING."
   (let ((thing (sighting-denotation sighting))
         (robot (camera-robot camera)) (x (sighting-x sighting)) (y (sighting-y sighting)))
     (and (or (not (thing-p thing))
              (and (thing-alive-p thing)
-                  (eq (thing-space thing) (camera-location camera))
+                  (eq (thing-enclosure thing) (camera-location camera))
                   (multiple-value-bind (now-x now-y) (thing-position thing)
                     (and (= x now-x) (= y now-y)))))
          (or (eq (sighting-type sighting) :non-local)
@@ -130,7 +131,7 @@ DESIGNATOR to an estimate of this direction, without jumps of a full turn."
 
 (defun designate (sighting camera)
   "Return a new designator for SIGHTING, seen by CAMERA, or NIL if its thing is no longer there."
-  (when (unchanged-p sighting camera)
+  (when (sighting-unchanged-p sighting camera)
     (let* ((robot (camera-robot camera))
            (dice (world-dice (robot-world robot) :looking))
            (x (sighting-x sighting)) (y (sighting-y sighting))

@@ -67,7 +67,7 @@
                   (robot-main-odometer robot))
              "the odometers of ~A do not belong to it" robot))
 
-(defun check-stance (robot)
+(defun check-pose (robot)
   "Signal CONTRADICTION unless the position, heading and speeds of ROBOT are valid in its map."
   (must-hold (every #'within-reason-p
                     (list (robot-x robot) (robot-y robot) (robot-angle robot)
@@ -88,7 +88,7 @@ a state that a run can reach."
                   (eq (robot-name robot) (blueprint-name (robot-blueprint robot))))
              "a robot does not belong to its world")
   (check-occupant robot)
-  (check-stance robot)
+  (check-pose robot)
   (loop for (nil reader type) in *part-vectors*
         do (check-parts robot (funcall reader robot) type))
   (loop for camera across (robot-cameras robot)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(tend-tracks tracks-busy-p start-track trackable-p out-of-sight-p end-on-arrival))
+(export '(update-tracks tracks-in-progress-p start-track trackable-p out-of-sight-p
+          end-track-on-arrival))
 
 ;;; Whether a camera that points at something sees it (manual 2.2, 3.4.3). A search sends rays and
 ;;; does not find what no ray reaches. The same holds for tracks.
@@ -25,7 +26,7 @@ start of the ray."
       (walk-ray #'visit world x y (cosine angle) (sine angle)))
     reached))
 
-(defun sight-by-rays (world x y to-x to-y heading width count)
+(defun ray-visibility (world x y to-x to-y heading width count)
   "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around HEADING. Return :CLEAR if a
 ray reaches the cell of (TO-X,TO-Y), :OBSTRUCTED if all rays towards the cell are stopped before it,
 or NIL if no ray is directed at the cell."
@@ -56,11 +57,11 @@ During an approach a free line to a corner of the cell is enough."
     (or (null (designator-denotation designator))
         (in-same-cell-p robot x y)
         (line-clear-p world own-x own-y x y)
-        (and (or (approached-p camera) (within-reach-p robot x y))
+        (and (or (camera-approached-p camera) (within-reach-p robot x y))
              (in-sight-p world own-x own-y x y))
-        (ecase (sight-by-rays world own-x own-y x y
-                              (+ (robot-angle robot) (designator-angle designator))
-                              (camera-field-of-view camera) scan-density*)
+        (ecase (ray-visibility world own-x own-y x y
+                               (+ (robot-angle robot) (designator-angle designator))
+                               (camera-field-of-view camera) scan-density*)
           (:clear t)
           (:obstructed nil)
           ((nil) (in-sight-p world own-x own-y x y))))))
@@ -79,7 +80,7 @@ During an approach a free line to a corner of the cell is enough."
 
 ;;; Refreshing.
 
-(defun drift (designator dice)
+(defun drift-false-designator (designator dice)
   "Move the false DESIGNATOR at random, unless it is local: nearer or farther, and to a side
 (reading 143)."
   (let* ((robot (designator-robot designator))
@@ -99,7 +100,7 @@ During an approach a free line to a corner of the cell is enough."
   "Update the tracked DESIGNATOR, and store the change of its direction in DESIGNATOR-SWING (reading
 226)."
   (let ((robot (designator-robot designator)) (before (designator-distance designator)))
-    (unless (designator-denotation designator) (drift designator dice))
+    (unless (designator-denotation designator) (drift-false-designator designator dice))
     (multiple-value-bind (x y) (designator-position designator)
       (setf (designator-x designator) x
             (designator-y designator) y
@@ -133,14 +134,14 @@ of its denotation."
     (setf (designator-refreshed designator) tick)
     (refresh-designator designator dice)))
 
-(defun followable-p (designator)
+(defun denotation-in-open-p (designator)
   "True if DESIGNATOR denotes something in the open, not in a container or bin."
   (let ((denotation (designator-denotation designator)))
     (and (null (designator-location designator))
          (or (not (thing-p denotation))
-             (null (denotation-space designator))))))
+             (null (denotation-enclosure designator))))))
 
-(defun arrived-p (designator)
+(defun robot-at-denotation-p (designator)
   "True if the robot of the non-local DESIGNATOR is in the cell of what DESIGNATOR denotes."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
@@ -148,20 +149,20 @@ of its denotation."
 (defun trackable-p (designator camera)
   "True if CAMERA, in the open, can track the non-local DESIGNATOR now, wherever CAMERA points."
   (and (designator-valid-p designator)
-       (followable-p designator)
-       (not (arrived-p designator))
+       (denotation-in-open-p designator)
+       (not (robot-at-denotation-p designator))
        (visible-p designator camera)))
 
 (defun out-of-sight-p (designator camera)
   "True if DESIGNATOR denotes something in the open that is hidden from CAMERA."
-  (and (followable-p designator)
+  (and (denotation-in-open-p designator)
        (not (visible-p designator camera))))
 
 (defun cannot-follow-p (camera designator)
   "True if CAMERA cannot follow the non-local DESIGNATOR any longer. The arrival at the end of an
 approach does not count, because the approach itself reports it (reading 112)."
-  (if (arrived-p designator)
-      (not (approached-p camera))
+  (if (robot-at-denotation-p designator)
+      (not (camera-approached-p camera))
       (or (not (trackable-p designator camera))
           ;; See reading 141.
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
@@ -176,20 +177,20 @@ approach does not count, because the approach itself reports it (reading 112)."
       (lose-track camera)
       (setf (camera-angle camera) (designator-angle designator))))
 
-(defun tend-local-track (camera designator dice)
-  (let ((local (designator-local-p* designator)))
-    (cond ((not (or local (followable-p designator)))
+(defun update-local-track (camera designator dice)
+  (let ((local (designator-truly-local-p designator)))
+    (cond ((not (or local (denotation-in-open-p designator)))
            (drop-designator designator))
           (t (unless local (setf (designator-type designator) :non-local))
              (if (out-of-sight-p designator camera)
                  (lose-track camera)
                  (keep-or-lose-track camera designator dice))))))
 
-(defun tend-track (camera designator tick dice)
+(defun update-track (camera designator tick dice)
   "Update the track of DESIGNATOR by CAMERA in TICK."
   (refresh-once designator tick dice)
   (cond ((eq (designator-type designator) :local)
-         (tend-local-track camera designator dice))
+         (update-local-track camera designator dice))
         ((cannot-follow-p camera designator) (lose-track camera))
         (t (keep-or-lose-track camera designator dice))))
 
@@ -203,29 +204,29 @@ approach does not count, because the approach itself reports it (reading 112)."
           do (let ((designator (aref designators number)))
                (when (and designator
                           (eq (designator-type designator) :local)
-                          (not (designator-local-p* designator))
+                          (not (designator-truly-local-p designator))
                           (not (tracked-p designator)))
                  (drop-designator designator))))))
 
 ;; See readings 87 and 112.
-(defun tend-robot (robot tick)
+(defun update-robot-tracks (robot tick)
   (when (plusp (length (robot-designators robot)))
     (loop with dice = (world-dice (robot-world robot) :tracking)
           for camera across (robot-cameras robot)
           for designator = (camera-tracks camera)
           when designator
-            do (tend-track camera designator tick dice))
+            do (update-track camera designator tick dice))
     (drop-out-of-reach robot))
   (when (robot-ended-tracks robot)
     (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
-          do (tell-track-ended track code))))
+          do (report-track-end track code))))
 
-(defun tend-tracks (world)
+(defun update-tracks (world)
   "Update all tracks and designators in WORLD for this tick."
   (dolist (robot (world-robots world))
-    (tend-robot robot (world-tick world))))
+    (update-robot-tracks robot (world-tick world))))
 
-(defun tracks-busy-p (world)
+(defun tracks-in-progress-p (world)
   "True if WORLD must run ticks because a camera tracks or a track has ended."
   (loop for robot in (world-robots world)
           thereis (or (robot-ended-tracks robot)
@@ -242,7 +243,7 @@ approach does not count, because the approach itself reports it (reading 112)."
   (setf (camera-angle camera) (designator-angle designator)
         (camera-tracking camera) (make-track designator operation)))
 
-(defun end-on-arrival (camera)
+(defun end-track-on-arrival (camera)
   "End the track of CAMERA, because the robot has arrived. Before that, point CAMERA at what it
 tracks (reading 108)."
   (let ((designator (camera-tracks camera)))

@@ -52,14 +52,14 @@ NIL" :export)))
   (loop for camera across (robot-cameras (designator-robot designator))
           thereis (tracking-p camera designator)))
 
-(defun approached-p (camera)
+(defun camera-approached-p (camera)
   "True if the robot of CAMERA is driving to what CAMERA tracks."
   (let ((event (resource-event (camera-robot camera))))
     (and event (approaching-p event camera))))
 
 ;;; Ending.
 
-(defun tell-track-ended (track code)
+(defun report-track-end (track code)
   "Report the end of TRACK with CODE to its command, if any."
   (when (track-operation track)
     (track-ended (track-operation track) code (track-designator track))))
@@ -79,9 +79,9 @@ had no track. See reading 161."
               (*robot-told-of* (robot-name (camera-robot camera))))
           (warning-set warning)))
       (if (eq code :interrupt)
-          (tell-track-ended track code)
+          (report-track-end track code)
           (let ((robot (camera-robot camera)))
-            (unsettle robot)
+            (mark-world-unsettled robot)
             (push (cons track code) (robot-ended-tracks robot))))
       (track-designator track))))
 
@@ -96,7 +96,7 @@ warnings unless SILENTLY."
       (stop-track camera :lost-track
                   (unless silently
                     (format nil "~A no longer valid. ~A lost track" designator camera))))
-    (free-number designator)))
+    (release-number designator)))
 
 (defun end-track (camera code &optional warning)
   "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If the
@@ -124,23 +124,23 @@ track is lost and no other camera tracks the designator, drop the designator."
   (let ((by-hand (or (hand-p old-location) (hand-p new-location))))
     (dolist (robot (world-robots (thing-world thing)))
       (when (plusp (length (robot-designators robot)))
-        (dolist (designator (designators-on robot thing))
-          (unless (and new-location (survives-move-p designator by-hand))
+        (dolist (designator (designators-of-thing robot thing))
+          (unless (and new-location (valid-after-move-p designator by-hand))
             (drop-designator designator)))))))
 
 (note-lasting 'watch-thing)
 
-(defun survives-move-p (designator by-hand)
+(defun valid-after-move-p (designator by-hand)
   "True if DESIGNATOR stays valid although its denotation has moved. A tracked designator stays
 valid if the camera can follow it; an untracked designator does if a hand grasped the thing or set
 it down (BY-HAND), and the thing was local and still is (reading 139)."
   (if (tracked-p designator)
-      (eq (denotation-space designator) (designator-location designator))
+      (eq (denotation-enclosure designator) (designator-location designator))
       (and by-hand
            (eq (designator-type designator) :local)
-           (designator-local-p* designator))))
+           (designator-truly-local-p designator))))
 
-(defun part-moved (part old-location)
+(defun update-after-part-move (part old-location)
   "Update tracks and designators after PART, a camera or hand, has moved from OLD-LOCATION to
 PART-LOCATION: a camera loses its track, and what a hand holds has moved. Warnings are queued."
   (unless (eq old-location (part-location part))

@@ -273,7 +273,7 @@ task, a fluent or a valve"))))
 
 (defmethod counterpart-in-current-run ((designator designator))
   (let ((robot (counterpart-in-current-run (designator-robot designator))))
-    (and robot (serial-designator robot (designator-serial designator)))))
+    (and robot (designator-with-serial robot (designator-serial designator)))))
 
 (defmethod counterpart-in-current-run ((thing thing))
   (find-thing (thing-serial thing) *world*))

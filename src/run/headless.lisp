@@ -56,7 +56,7 @@ forks the run keeps, see KEEP-FORKS. The run is over at the end."
          (*simulation* simulation)
          (*world* (simulation-world simulation))
          (*tick-dice* nil)
-         (*asked-with* '())
+         (*recorded-bindings* '())
          (*outer-globals* (list :around))
          (robots (simulation-robots simulation)))
     (setf (simulation-variables simulation)
@@ -105,7 +105,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
                    (not (simulation-forked-p simulation))
                    (text-at-end simulation))))
     (unless (or left-p (zerop (simulation-tick simulation)))
-      (doubt-idle-kickers (simulation-world simulation)))
+      (warn-of-idle-kickers (simulation-world simulation)))
     (when text
       (queue-message (make-message :warning (list text) :notable-p t)
                      (simulation-messages simulation)))))
@@ -172,7 +172,7 @@ command."
   (map-calls (lambda (form)
                (let ((call (find-if (lambda (used)
                                       (and (typep used '(cons symbol))
-                                           (get (first used) 'command-shape)))
+                                           (get (first used) 'command-signature)))
                                     (values-used-in form))))
                  (when call
                    (doubt-definition "~(~A~) returns nothing: it only begins the command. The ~

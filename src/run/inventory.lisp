@@ -47,7 +47,7 @@ such object."
                   (:kicker (find-kicker argument))
                   (:place-type (find-place-type argument))
                   (:command (find-command argument))
-                  (:manipulation (command-for (find-manipulation argument)))
+                  (:manipulation (command-of-manipulation (find-manipulation argument)))
                   (:method (method-at more argument))))
         (integer (case kind
                    (:character (code-char (the (integer 0 (#.char-code-limit)) argument)))

@@ -262,7 +262,7 @@ again."
         (let ((simulation (world-simulation world)))
           (unless (simulation-over simulation)
             (note simulation operator arguments)))
-        (writing (world) (funcall function)))
+        (permitting-changes (world) (funcall function)))
       (let ((by-itself-p (goes-on-in-forks-p)))
         (asking (timeline)
           (let ((*goes-on-in-forks-p* by-itself-p))

@@ -16,7 +16,7 @@
 (defun elsewhere-remedy (simulation)
   "Return a text with a remedy if requests to SIMULATION were made inside another simulation since
 its last tick; or NIL."
-  (and (asked-elsewhere-p (simulation-world simulation))
+  (and (requested-elsewhere-p (simulation-world simulation))
        (one-line "That was asked for inside of another with-simulation, and only ticks of that one
 passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
 
@@ -38,7 +38,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
 
 (defun lines-typed-p (simulation)
   "True if SIMULATION belongs to a prompt, whose user types lines instead of WITH-SIMULATION."
-  (said-p '(:lines-typed) (simulation-world simulation)))
+  (warning-given-p '(:lines-typed) (simulation-world simulation)))
 
 (defun note-lines-typed (simulation)
   "Record that SIMULATION belongs to a prompt, so that warnings at its end suggest lines to type."
@@ -74,7 +74,7 @@ NIL."
 (defun cut-off-texts (simulation)
   "Return a list of texts about work that the end of SIMULATION cuts off. Return NIL if the program
 has checked itself which work was in progress; checks made by a prompt do not count."
-  (when (or (lines-typed-p simulation) (not (looked-after-p (simulation-world simulation))))
+  (when (or (lines-typed-p simulation) (not (progress-checked-p (simulation-world simulation))))
     (loop for participant in (simulation-participants simulation)
           append (participant-cut-off participant))))
 

@@ -74,7 +74,7 @@ and run. Return the run."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
     (deferring-interrupts
-      (writing (world) (reset-world world :seed seed))
+      (permitting-changes (world) (reset-world world :seed seed))
       (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)
             (simulation-variables (world-simulation world)) variables)))
   (world-simulation world))
@@ -144,7 +144,7 @@ meanwhile."
     (call-starting world (lambda ()
                            ;; Its map may have been replaced while it was made.
                            (when (and (eq world (map-resident (world-map world)))
-                                      (not (resident-p world)))
+                                      (not (current-resident-world-p world)))
                              (retire-robot robot "its map has been defined anew"))
                            (unless (robot-retired robot)
                              (start-world world rate seed journal keep thinking everywhere))))))
@@ -206,5 +206,5 @@ See reading 89."
     (asking (simulation)
       (when (plusp (simulation-tick simulation))
         (let ((*message-queue* (simulation-messages simulation)))
-          (doubt-idle-kickers (simulation-world simulation))))))
+          (warn-of-idle-kickers (simulation-world simulation))))))
   (values))

@@ -101,7 +101,7 @@ restart CONTINUE passes the remaining ticks."
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
   (check-passable simulation)
-  (when *asked-with* (doubt-asked-with (simulation-world simulation)))
+  (when *recorded-bindings* (warn-of-recorded-bindings (simulation-world simulation)))
   (loop with last = (+ (simulation-tick simulation) count)
         do (pass-ticks-when-free simulation (- last (simulation-tick simulation)))
         while (signal-trouble (simulation-messages simulation))
@@ -111,7 +111,7 @@ restart CONTINUE passes the remaining ticks."
 (defun note-run-until-result (answer limit-p limit simulation)
   "Record that RUN-UNTIL has ended in SIMULATION with ANSWER. If ANSWER is NIL and LIMIT is the
 default, that is, LIMIT-P is false, warn once in the run."
-  (cond (answer (note-looked-after (simulation-world simulation)))
+  (cond (answer (record-progress-checked (simulation-world simulation)))
         ((not (or limit-p (simulation-over simulation)))
          (warn-once '(:limit :run-until) (simulation-world simulation)
                     (format nil "run-until returned NIL, because its test was still false after ~D ~

@@ -128,7 +128,7 @@ reference, and SIMULATION to the simulation."
 ;; The designator may have been dropped; then a stand-in is made.
 (define-dereference :designator (name serial number type)
   (let ((robot (robot-in simulation name)))
-    (or (serial-designator robot serial)
+    (or (designator-with-serial robot serial)
         (make-designator :robot robot :serial serial :number number :type type :valid-p nil))))
 
 ;;;; Memorizing arguments

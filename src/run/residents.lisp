@@ -51,10 +51,10 @@ returned."
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)
-  "Call SETTLE-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return the
+  "Call ENSURE-RESIDENT-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return the
 result."
   (loop
-    (let ((robot (settle-robot blueprint)))
+    (let ((robot (ensure-resident-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.
       (asking (robot)
         (unless (robot-retired robot) (bind-robot-name blueprint robot)))
@@ -93,7 +93,7 @@ result."
 (defun move-robots (map)
   "Make the robots that are defined in MAP, a new map, and retire those that do not fit into it."
   (dolist (blueprint (blueprints-in map))
-    (let ((trouble (start-trouble map (blueprint-x blueprint) (blueprint-y blueprint))))
+    (let ((trouble (start-problem-text map (blueprint-x blueprint) (blueprint-y blueprint))))
       (if trouble
           (retire-named-robot
            (blueprint-name blueprint)

@@ -159,11 +159,11 @@ robots."
 
 (defun take-over-state (new old from)
   "Give NEW the variables, world and errors of OLD, which had reached the tick FROM."
-  (let ((resident-p (not (headless-p old)))
+  (let ((current-resident-world-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (note-rewound from new)
     (when current-p (set-variables new old))
-    (when resident-p (make-resident new))
+    (when current-resident-world-p (make-resident new))
     (unless (fork-p old)
       (setf (simulation-environment new) '()
             (simulation-variables new) (simulation-variables old)

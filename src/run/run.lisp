@@ -234,7 +234,7 @@ rate :FREE, kickers wait for a request, too: otherwise millions of ticks would p
 is made."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
-             (not (or (world-has-kickers-p world) (tracks-busy-p world))))
+             (not (or (world-has-kickers-p world) (tracks-in-progress-p world))))
          (settled-p simulation))))
 
 ;;; Chance.
@@ -281,7 +281,7 @@ the next tick. Runs in the modes :FREE and :CHARGED are the same on every machin
 (defun tell-of-end (simulation)
   "Notify the robots and participants of SIMULATION that the run is over. Interrupts are deferred."
   (in-any-case
-    (call-each #'close-robot (simulation-robots simulation))
+    (call-each #'call-run-enders (simulation-robots simulation))
     (call-each (lambda (participant)
                  (participant-end participant simulation))
                (simulation-participants simulation))))

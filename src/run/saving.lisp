@@ -160,7 +160,7 @@ cannot be saved. Return the truename of FILE."
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
   (when (eq simulation *simulation*) (record-settings simulation))
-  (note-looked-after (simulation-world simulation))
+  (record-progress-checked (simulation-world simulation))
   (let ((programs (programs-head simulation)))
     (call-with-savable
      (lambda (simulation journal)

@@ -78,8 +78,8 @@ the repeated journal."
 
 (defun settle (world)
   "Update in WORLD which parts are inside of things, and the tracks and grips."
-  (settle-robots world)
-  (tend-tracks world)
+  (enforce-containment world)
+  (update-tracks world)
   (check-grips world)
   (setf (world-settled-p world) (every #'settled-robot-p (world-robots world))))
 

@@ -36,7 +36,7 @@
                      (typep (second entry) '(real 1 1000))))
               costs)))
 
-(defun map-of (operator map)
+(defun find-map-argument (operator map)
   (cond ((map-p map) map)
         ((or (stringp map) (and map (symbolp map))) (find-map map))
         (t (reject-argument operator 'map map "a map, or the name of one"))))
@@ -51,8 +51,8 @@ UNKNOWN-NAME."
                   "a number of metres, from 0 to 10")
   (check-argument make-chart costs (costs-p costs)
                   "a list such as ((doorway 2)), of place types and costs from 1 to 1000")
-  (%make-chart (terrain-of (map-of 'make-chart map) (rational clearance)
-                           (loop for (name cost) in costs collect (list name (double cost))))))
+  (%make-chart (terrain-for-map (find-map-argument 'make-chart map) (rational clearance)
+                                (loop for (name cost) in costs collect (list name (double cost))))))
 
 ;;; Points.
 
@@ -175,11 +175,11 @@ fields.")
     (setf (chart-changed chart) (mapcar #'car (chart-barred chart))
           (chart-field chart) own)))
 
-(defun field-to (chart goal)
+(defun field-for-goal (chart goal)
   "Return the field with its goal in the node GOAL, for CHART as it is now."
   (cond ((null (chart-barred chart)) (shared-field (chart-terrain chart) goal))
         (t (unless (and (chart-field chart) (= goal (field-goal (chart-field chart))))
              (copy-shared-field chart goal))
            (dolist (node (shiftf (chart-changed chart) '()))
-             (change-cell (chart-field chart) node (cost-of-node chart node)))
+             (set-cell-cost (chart-field chart) node (cost-of-node chart node)))
            (chart-field chart))))

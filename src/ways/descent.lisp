@@ -109,8 +109,8 @@ goal."
      (* (field-columns (descent-field descent))
         (1+ (truncate (the (double-float 0d0 32768d0) (descent-y descent)))))))
 
-(declaim (inline best-on-side))
-(defun best-on-side (ahead aside drop cost)
+(declaim (inline best-point-on-side))
+(defun best-point-on-side (ahead aside drop cost)
   "Return the position, from 0 to 1, of the best point of a side of a square, for a start that is
 AHEAD metres in front of the side and ASIDE metres along it. A metre on the way to the side costs
 COST. The cost to the goal is lower by DROP at the end of the side than at its beginning."
@@ -168,7 +168,7 @@ COST. The cost to the goal is lower by DROP at the end of the side than at its b
                    ;; If only the corner is low enough, nothing is known of the points before it.
                    (when (and (< square +barred+) (<= end limit))
                      (if (<= start limit)
-                         (let ((part (best-on-side ahead aside (- start end) square)))
+                         (let ((part (best-point-on-side ahead aside (- start end) square)))
                            (propose square part (+ start (* part (- end start)))))
                          (propose square 1d0 end)))))))
         (look 1 0 0 1) (look 1 0 0 -1) (look -1 0 0 1) (look -1 0 0 -1)
@@ -182,7 +182,7 @@ COST. The cost to the goal is lower by DROP at the end of the side than at its b
 
 ;;;; Drawing a way
 
-(defconstant +dearer-if-straight+ 1.02d0
+(defconstant +straight-cost-ratio+ 1.02d0
   "The largest ratio of the cost of a straight piece to the cost of the steps that it replaces.
 Straight pieces save turns.")
 
@@ -234,7 +234,7 @@ good."
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let ((since (+ (polyline-since polyline) cost)))
     (unless (or (zerop (polyline-since polyline))
-                (go-straight-p polyline field x y (* since +dearer-if-straight+) last))
+                (go-straight-p polyline field x y (* since +straight-cost-ratio+) last))
       (add-vertex polyline)
       (setf since cost))
     (setf (polyline-since polyline) since
@@ -242,7 +242,7 @@ good."
           (polyline-end-y polyline) y)
     nil))
 
-(defun extend-to (polyline field x y cost &optional last)
+(defun extend-by-step (polyline field x y cost &optional last)
   "Extend POLYLINE to (X,Y) by a step that costs COST at most. LAST is true for the last step."
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let* ((from-x (polyline-end-x polyline)) (from-y (polyline-end-y polyline))
@@ -264,8 +264,8 @@ true, or until POLYLINE has TURNS vertices."
     (loop until (or (= node goal)
                     (and turns (nthcdr (1- turns) (polyline-points polyline)))
                     (not (step-down descent)))
-          do (extend-to polyline field
-                        (descent-x descent) (descent-y descent) (descent-step descent))
+          do (extend-by-step polyline field
+                             (descent-x descent) (descent-y descent) (descent-step descent))
              (let ((next (descent-node descent)))
                (when (and until (/= node next))
                  (multiple-value-bind (row column) (floor (the node next) (field-columns field))
@@ -278,6 +278,6 @@ true, or until POLYLINE has TURNS vertices."
   "Extend POLYLINE by the last step, within the cell of the goal, to (X,Y)."
   (let ((field (descent-field descent))
         (dx (- x (descent-x descent))) (dy (- y (descent-y descent))))
-    (extend-to polyline field x y
-               (* (sqrt (+ (* dx dx) (* dy dy))) (aref (field-cells field) (field-goal field)))
-               t)))
+    (extend-by-step polyline field x y
+                    (* (sqrt (+ (* dx dx) (* dy dy))) (aref (field-cells field) (field-goal field)))
+                    t)))

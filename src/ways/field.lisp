@@ -10,7 +10,7 @@
 
 (defstruct (queue (:constructor make-queue ()) (:copier nil))
   "A priority queue of nodes with their keys, double-floats. The least key comes first."
-  (keys (make-amounts 64 0d0) :type amounts)
+  (keys (make-cost-vector 64 0d0) :type amounts)
   (nodes (make-array 64 :element-type '(unsigned-byte 31)) :type nodes)
   (count 0 :type (unsigned-byte 40)))
 (declaim-final queue)
@@ -23,8 +23,8 @@
     (setf (queue-keys queue) (enlarged (queue-keys queue))
           (queue-nodes queue) (enlarged (queue-nodes queue)))))
 
-(declaim (inline put-in-place))
-(defun put-in-place (keys nodes place key node)
+(declaim (inline store-in-heap))
+(defun store-in-heap (keys nodes place key node)
   "Store NODE and KEY at PLACE of the arrays KEYS and NODES of a queue."
   (declare (type amounts keys) (type nodes nodes))
   (setf (aref keys place) key
@@ -39,12 +39,12 @@
     (loop while (plusp place)
           do (let ((parent (ash (1- place) -1)))
                (when (<= (aref keys parent) key) (return))
-               (put-in-place keys nodes place (aref keys parent) (aref nodes parent))
+               (store-in-heap keys nodes place (aref keys parent) (aref nodes parent))
                (setf place parent)))
-    (put-in-place keys nodes place key node)
+    (store-in-heap keys nodes place key node)
     nil))
 
-(defun queue-drop (queue)
+(defun queue-pop (queue)
   "Remove the node with the least key from QUEUE."
   (declare #.*hot*)
   (let* ((keys (queue-keys queue)) (nodes (queue-nodes queue))
@@ -59,9 +59,9 @@
         (when (and (< (1+ child) count) (< (aref keys (1+ child)) (aref keys child)))
           (incf child))
         (when (>= (aref keys child) key) (return))
-        (put-in-place keys nodes place (aref keys child) (aref nodes child))
+        (store-in-heap keys nodes place (aref keys child) (aref nodes child))
         (setf place child)))
-    (put-in-place keys nodes place key node)
+    (store-in-heap keys nodes place key node)
     nil))
 
 (defun copy-into-queue (queue other)
@@ -85,8 +85,8 @@
 
 (defconstant +diagonal+ (sqrt 2d0) "The length of a square's diagonal, in metres.")
 
-(declaim (inline crossing-by))
-(defun crossing-by (straight diagonal edge square)
+(declaim (inline cost-through-side))
+(defun cost-through-side (straight diagonal edge square)
   "Return the cost to the goal from a node through the opposite side of a square. STRAIGHT and
 DIAGONAL are the costs to the goal from the first and the second end of that side. EDGE is the cost
 of a metre on the line to the first end, SQUARE the cost of a metre in the square. The result
@@ -110,10 +110,10 @@ exceeds each cost that it depends on by at least a third."
 ;;; neighbours' totals make it now. Nodes whose two values differ wait in a queue, by the lesser
 ;;; value. When all that is less than a node's total has been processed, that total is final.
 ;;;
-;;; Totals depend on cells and goal alone, to the bit: a total depends on lesser ones only (see
-;;; CROSSING-BY), and a draft that might have to rise is computed anew. So earlier queries, cells
-;;; that were barred before, and the order of the queue have no influence. Without a heuristic a
-;;; field serves all starts.
+;;; Totals depend on cells and goal alone, to the bit: a total depends on lesser totals only (see
+;;; COST-THROUGH-SIDE), and a draft that might have to rise is computed anew. So earlier queries,
+;;; cells that were barred before, and the order of the queue have no influence. Without a heuristic
+;;; a field serves all starts.
 
 (defstruct (field (:constructor %make-field (goal columns cells totals drafts)) (:copier nil))
   "A field: the costs from all nodes to the node GOAL. If there is a LOCK, threads share the field,
@@ -130,17 +130,17 @@ and CELLS are the cells of the terrain, which must not change."
 (defun make-field (terrain goal)
   "Return a new field of TERRAIN with its goal in the node GOAL. No total of another node is known
 yet."
-  (ensure-room (length (terrain-cells terrain)) 16)
+  (ensure-memory (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
-                             (make-amounts size +barred+) (make-amounts size +barred+))))
+                             (make-cost-vector size +barred+) (make-cost-vector size +barred+))))
     (setf (aref (field-drafts field) goal) 0d0)
     (queue-push (field-queue field) goal 0d0)
     field))
 
 (defun copy-field (field)
   "Return an unshared copy of FIELD."
-  (ensure-room (length (field-cells field)) 24)
+  (ensure-memory (length (field-cells field)) 24)
   (let ((copy (%make-field (field-goal field) (field-columns field) (copy-seq (field-cells field))
                            (copy-seq (field-totals field)) (copy-seq (field-drafts field)))))
     (copy-into-queue (field-queue copy) (field-queue field))
@@ -176,8 +176,9 @@ yet."
                 (let* ((straight (+ node side)) (diagonal (+ straight across))
                        (edge (max (cell node) (cell straight))))
                   (declare (type node straight diagonal))
-                  (crossing-by (total straight) (total diagonal) edge
-                               (max edge (cell diagonal) (cell (the node (+ node across))))))))
+                  (cost-through-side (total straight) (total diagonal) edge
+                                     (max edge (cell diagonal)
+                                          (cell (the node (+ node across))))))))
        (declare (inline cell total edge by-side)
                 (ignorable #'cell #'total #'edge #'by-side))
        ,@body)))
@@ -195,8 +196,8 @@ yet."
              (by-side node columns 1) (by-side node columns -1)
              (by-side node (- columns) 1) (by-side node (- columns) -1)))))
 
-(declaim (inline note-draft))
-(defun note-draft (field node draft)
+(declaim (inline set-draft))
+(defun set-draft (field node draft)
   "Set the draft of NODE to DRAFT, and queue NODE if its total differs."
   (declare (type field field) (type node node) (type double-float draft))
   (let ((total (aref (field-totals field) node)))
@@ -208,7 +209,7 @@ yet."
   (declare #.*hot* (type field field) (type node node))
   (when (< (aref (field-cells field) node) +barred+)
     (let ((draft (best-draft field node)))
-      (unless (= draft (aref (field-drafts field) node)) (note-draft field node draft)))))
+      (unless (= draft (aref (field-drafts field) node)) (set-draft field node draft)))))
 
 (defun lower-neighbours (field node)
   "Update the drafts of the neighbours of NODE, after the total of NODE has become known."
@@ -217,7 +218,7 @@ yet."
     (flet ((lower (other draft)
              (declare (type node other) (type double-float draft))
              (when (< draft (aref drafts other))
-               (note-draft field other draft))))
+               (set-draft field other draft))))
       (declare (inline lower))
       (macrolet ((straight (side across)
                    `(let ((other (- node ,side)))
@@ -256,7 +257,7 @@ yet."
 
 ;;; Totals.
 
-(defun settle-node (field node)
+(defun process-node (field node)
   "Update the total of NODE, the first node in the queue of FIELD, by its draft."
   (declare #.*hot* (type field field) (type node node))
   (let* ((totals (field-totals field))
@@ -269,9 +270,9 @@ yet."
                (update-neighbours field node draft)))
           (t (setf (aref totals node) +barred+)
              (update-neighbours field node total)
-             (note-draft field node draft)))))
+             (set-draft field node draft)))))
 
-(defun settle (field node)
+(defun compute-total (field node)
   "Compute the total of NODE in FIELD, and all lesser totals. Return the total of NODE, +BARRED+ if
 there is no way."
   (declare #.*hot* (type field field) (type node node))
@@ -281,25 +282,25 @@ there is no way."
                    (key (aref (queue-keys queue) 0)))
                (when (and (= total draft) (>= key total) (< total +barred+)) (return))
                (let ((first (aref (queue-nodes queue) 0)))
-                 (queue-drop queue)
+                 (queue-pop queue)
                  (when (= key (min (aref totals first) (aref drafts first)))
-                   (settle-node field first)))))
+                   (process-node field first)))))
     (aref totals node)))
 
 (defun find-total (field node)
   "Return the cost to the goal of FIELD from NODE, computing it if necessary."
   (let ((lock (field-lock field)))
     (if lock
-        (with-lock (lock) (settle field node))
-        (settle field node))))
+        (with-lock (lock) (compute-total field node))
+        (compute-total field node))))
 
 ;;; Changes.
 
-(defun change-cell (field node cost)
+(defun set-cell-cost (field node cost)
   "Set the cost of the cell NODE of FIELD, which is unshared, to COST."
   (let ((columns (field-columns field)))
     (setf (aref (field-cells field) node) cost)
-    (when (>= cost +barred+) (note-draft field node +barred+))
+    (when (>= cost +barred+) (set-draft field node +barred+))
     (loop for row in (list (- columns) 0 columns)
           do (loop for offset from (1- row) to (1+ row)
                    do (update-draft field (+ node offset))))))

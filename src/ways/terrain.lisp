@@ -20,8 +20,8 @@ way.")
 (deftype node () '(unsigned-byte 31))
 (deftype amounts () '(simple-array double-float (*)))
 
-(declaim (inline make-amounts))
-(defun make-amounts (size amount)
+(declaim (inline make-cost-vector))
+(defun make-cost-vector (size amount)
   (make-array size :element-type 'double-float :initial-element amount))
 
 (addition terrain-p)
@@ -56,17 +56,17 @@ never modified" :writable)
 (defconstant +terrains-kept+ 8
   "The number of terrains of one map, with different clearances and costs, that are kept.")
 
-(defun forget-fields ()
+(defun discard-all-fields ()
   "Discard the fields of all terrains. Fields can be computed again."
   (dolist (terrains (hash-table-values **terrains**))
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
-(defun ensure-room (cells octets)
+(defun ensure-memory (cells octets)
   "Signal MISUSE unless there is memory for OCTETS bytes for each of CELLS cells. Discard all fields
 if this frees enough memory."
   (let ((all (* cells octets)))
     (unless (or (room-p all)
-                (progn (forget-fields) (room-p all)))
+                (progn (discard-all-fields) (room-p all)))
       (reject-use "Ways on a map of ~D cells need ~D MB, more memory than this Lisp has; start ~
                    SBCL with a larger --dynamic-space-size."
                   cells (ceiling all 1000000)))))
@@ -93,10 +93,10 @@ if this frees enough memory."
 
 ;;; Making one.
 
-(defun open-ground (map columns)
+(defun free-cell-costs (map columns)
   "Return a vector of costs for the cells of MAP and a margin around it: 1 for free cells, +BARRED+
 for walls."
-  (let ((cells (make-amounts (* columns (+ 2 (map-height map))) +barred+)) (index 0))
+  (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))
         (unless (logtest +wall+ (aref (map-flags map) index))
@@ -113,7 +113,7 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
                        when (< (+ (expt (gap dx) 2) (expt (gap dy) 2)) (expt clearance 2))
                          collect (list dx (+ dx (* dy columns)))))))
 
-(defun beside-free-p (cells columns node)
+(defun next-to-free-p (cells columns node)
   "True if any of the eight cells around NODE is free."
   (declare (type amounts cells))
   (loop for row in (list (- columns) 0 columns)
@@ -121,12 +121,12 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
                       for other = (+ node offset)
                       thereis (and (< -1 other (length cells)) (< (aref cells other) +barred+)))))
 
-(defun mark-near-walls (cells columns clearance)
+(defun raise-costs-near-walls (cells columns clearance)
   "Raise the cost of free CELLS that are nearer to a wall than CLEARANCE."
   (declare (type amounts cells))
   (let ((offsets (offsets-within clearance columns)))
     (dotimes (node (length cells))
-      (when (and (= +barred+ (aref cells node)) (beside-free-p cells columns node))
+      (when (and (= +barred+ (aref cells node)) (next-to-free-p cells columns node))
         (loop for (dx offset) in offsets
               for other = (+ node offset)
               when (and (< -1 other (length cells))
@@ -135,7 +135,7 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
                 do (setf (aref cells other) +close-to-wall+))))
     cells))
 
-(defun mark-places (cells columns map costs)
+(defun set-place-costs (cells columns map costs)
   "Set the cost of CELLS that are places of a type in COSTS, a list of (name cost)."
   (let ((factors (cl:map 'vector
                          (lambda (type)
@@ -150,11 +150,11 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
         (incf index)))))
 
 (defun make-terrain (map clearance costs)
-  (ensure-room (* (map-width map) (map-height map)) 8)
+  (ensure-memory (* (map-width map) (map-height map)) 8)
   (let* ((columns (+ 2 (map-width map)))
-         (cells (open-ground map columns)))
-    (mark-near-walls cells columns clearance)
-    (mark-places cells columns map costs)
+         (cells (free-cell-costs map columns)))
+    (raise-costs-near-walls cells columns clearance)
+    (set-place-costs cells columns map costs)
     (%make-terrain map (map-places map) clearance costs columns cells)))
 
 (defun known-terrain (map clearance costs)
@@ -172,7 +172,7 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
           (cons terrain (subseq others 0 (min (length others) (1- +terrains-kept+)))))
     terrain))
 
-(defun terrain-of (map clearance costs)
+(defun terrain-for-map (map clearance costs)
   "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
 cost), in which the cost is a double-float. Equal arguments return the same terrain, as long as it
 is kept."

@@ -4,8 +4,9 @@
 
 ;;; Points in walls.
 
-(defconstant +near+ 5 "The largest distance, in columns or rows, from a point in a wall to the free
-cell that replaces it.")
+(defconstant +free-point-distance+ 5
+  "The largest distance, in columns or rows, from a point in a wall to the free cell that replaces
+it.")
 
 (defun free-node-p (chart x y)
   "True if the cell (X Y) is on the map of CHART and can be crossed."
@@ -14,28 +15,29 @@ cell that replaces it.")
 
 (defun nearest-free-middle (chart x y)
   "Return, as two values, the middle of the cell nearest to (X,Y) that can be crossed; NIL if there
-is no such cell within +NEAR+ columns and rows."
+is no such cell within +FREE-POINT-DISTANCE+ columns and rows."
   (loop with least = nil and best-x = nil and best-y = nil
-        for column from (- (floor x) +near+) to (+ (floor x) +near+)
-        do (loop for row from (- (floor y) +near+) to (+ (floor y) +near+)
+        for column from (- (floor x) +free-point-distance+) to (+ (floor x) +free-point-distance+)
+        do (loop for row from (- (floor y) +free-point-distance+)
+                   to (+ (floor y) +free-point-distance+)
                  for square = (+ (expt (- (+ column 0.5d0) x) 2) (expt (- (+ row 0.5d0) y) 2))
                  when (and (or (null least) (< square least)) (free-node-p chart column row))
                    do (setf least square best-x (+ column 0.5d0) best-y (+ row 0.5d0)))
         finally (return (and least (values best-x best-y)))))
 
-(defun free-coordinates (chart x y)
+(defun nearest-free-coordinates (chart x y)
   "Return X and Y if the cell at (X,Y) can be crossed, or else the middle of the nearest cell that
 can be crossed, or NIL."
   (if (free-node-p chart (floor x) (floor y))
       (values x y)
       (nearest-free-middle chart x y)))
 
-(defun chart-from (operator chart)
+(defun ensure-chart (operator chart)
   "Return CHART, an argument of OPERATOR, if it is a chart, or a new chart if CHART is a map or the
 name of a map."
   (if (chart-p chart)
       chart
-      (make-chart (map-of operator chart))))
+      (make-chart (find-map-argument operator chart))))
 
 (addition nearest-free-point)
 (defun nearest-free-point (chart point)
@@ -43,19 +45,19 @@ name of a map."
 nearest such cell, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
 map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
   (check-argument nearest-free-point point (point-p point) "a PT or a list (x y)")
-  (multiple-value-bind (x y) (free-coordinates (chart-from 'nearest-free-point chart)
-                                               (point-x point) (point-y point))
+  (multiple-value-bind (x y) (nearest-free-coordinates (ensure-chart 'nearest-free-point chart)
+                                                       (point-x point) (point-y point))
     (and x (make-pt x y))))
 
-(defun end-of-way (operator chart point)
+(defun free-endpoint (operator chart point)
   "Return the coordinates of POINT or, if POINT is in a wall, of a free point near it. Signals
 WRONG-ARGUMENT."
   (node-of-point operator chart point)
-  (multiple-value-bind (x y) (free-coordinates chart (point-x point) (point-y point))
+  (multiple-value-bind (x y) (nearest-free-coordinates chart (point-x point) (point-y point))
     (unless x
       (reject-argument operator 'point point
                        (format nil "a point of ~A within ~D cells of a cell that can be crossed"
-                               (map-name (chart-map chart)) +near+)))
+                               (map-name (chart-map chart)) +free-point-distance+)))
     (values x y)))
 
 ;;; Ways between points that are free.
@@ -73,7 +75,7 @@ named NAME."
 (defun points-of-way (chart x y goal-x goal-y until turns)
   "Return a list of the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without
 its first point; () if there is no way. UNTIL and TURNS are arguments of TRACE-WAY."
-  (let* ((field (field-to chart (node-at chart goal-x goal-y)))
+  (let* ((field (field-for-goal chart (node-at chart goal-x goal-y)))
          (total (find-total field (node-at chart x y))))
     (when (< total +barred+)
       (let ((polyline (make-polyline x y)))
@@ -82,10 +84,10 @@ its first point; () if there is no way. UNTIL and TURNS are arguments of TRACE-W
 
 ;;; What users call.
 
-(defmacro with-ends ((operator chart start goal) &body body)
+(defmacro with-free-endpoints ((operator chart start goal) &body body)
   "Run BODY with the coordinates X, Y, GOAL-X and GOAL-Y of START and GOAL on CHART."
-  `(multiple-value-bind (x y) (end-of-way ',operator ,chart ,start)
-     (multiple-value-bind (goal-x goal-y) (end-of-way ',operator ,chart ,goal)
+  `(multiple-value-bind (x y) (free-endpoint ',operator ,chart ,start)
+     (multiple-value-bind (goal-x goal-y) (free-endpoint ',operator ,chart ,goal)
        ,@body)))
 
 (addition find-way)
@@ -98,9 +100,9 @@ that of START, that is a place of the type named UNTIL, or for whose column and 
 UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
-  (let* ((chart (chart-from 'find-way chart))
+  (let* ((chart (ensure-chart 'find-way chart))
          (until (if (and until (symbolp until)) (place-test chart until) until)))
-    (with-ends (find-way chart start goal)
+    (with-free-endpoints (find-way chart start goal)
       (let ((points (points-of-way chart x y goal-x goal-y until nil)))
         (and points (cons (make-pt x y) points))))))
 
@@ -108,8 +110,8 @@ UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defun next-point (chart start goal)
   "Return the first point after START, a PT, on the way from START to GOAL on CHART: the point where
 the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. See FIND-WAY."
-  (let ((chart (chart-from 'next-point chart)))
-    (with-ends (next-point chart start goal)
+  (let ((chart (ensure-chart 'next-point chart)))
+    (with-free-endpoints (next-point chart start goal)
       (first (points-of-way chart x y goal-x goal-y nil 1)))))
 
 (addition way-cost)
@@ -117,9 +119,9 @@ the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. Se
   "Return the cost of the way from START to GOAL on CHART, between the middles of their cells: the
 sum of its metres, each times the cost of a metre in its cell. Return NIL if there is no way.
 Signals WRONG-ARGUMENT. See FIND-WAY."
-  (let ((chart (chart-from 'way-cost chart)))
-    (with-ends (way-cost chart start goal)
-      (let ((total (find-total (field-to chart (node-at chart goal-x goal-y))
+  (let ((chart (ensure-chart 'way-cost chart)))
+    (with-free-endpoints (way-cost chart start goal)
+      (let ((total (find-total (field-for-goal chart (node-at chart goal-x goal-y))
                                (node-at chart x y))))
         (and (< total +barred+) total)))))
 
@@ -139,8 +141,8 @@ Signals WRONG-ARGUMENT. See FIND-WAY."
 times the cost of a metre in its cell. Return NIL if the line is not free, because it comes nearer
 than half a metre to a wall or goes through a cell that cannot be crossed. Signals WRONG-ARGUMENT.
 See FIND-WAY."
-  (let ((chart (chart-from 'straight-cost chart)))
-    (with-ends (straight-cost chart start goal)
-      (let ((cost (free-line-cost (field-to chart (node-at chart goal-x goal-y))
+  (let ((chart (ensure-chart 'straight-cost chart)))
+    (with-free-endpoints (straight-cost chart start goal)
+      (let ((cost (free-line-cost (field-for-goal chart (node-at chart goal-x goal-y))
                                   x y goal-x goal-y (/ +barred+ 2) t)))
         (and (< cost +barred+) cost)))))

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.world)
 
-(export '(attribute define-attribute attribute-of built-in-attribute-p attribute-key *attributes*
-          asking-form-p range-p value-limits discrete-p in-domain-p can-be-false-p asks-range-p))
+(export '(attribute define-attribute declared-attribute built-in-attribute-p attribute-key
+          *attributes* specification-clause-p range-p value-limits discrete-p in-domain-p
+          can-be-false-p specifies-range-p))
 
 ;;; An attribute is discrete, with a list of possible values, or numeric. Undeclared attributes may
 ;;; be stored and matched, but are only sensed when asked for. Manual 3.3, 3.4.2 and 5.4.
@@ -28,11 +29,11 @@
 
 (declaim (inline attribute-key))
 (defun attribute-key (name)
-  "Return the keyword for the attribute called NAME, a symbol."
+  "Return the keyword for the attribute named NAME, a symbol."
   (if (keywordp name) name (make-keyword (name-string name))))
 
-(defun attribute-of (name)
-  "Return the attribute called NAME, a symbol, or NIL if it is undeclared."
+(defun declared-attribute (name)
+  "Return the attribute named NAME, a symbol, or NIL if NAME is undeclared."
   (loop with key = (attribute-key name)
         for attribute in (registry-objects *attributes*)
         when (eq key (attribute-name attribute)) return attribute))
@@ -40,7 +41,7 @@
 (defun declared-name-like (name)
   "Return the declared name that NAME, an undeclared name, is probably a misspelling of; or NIL."
   (let ((key (attribute-key name)))
-    (unless (or (attribute-of key) (eq key :draw-function))
+    (unless (or (declared-attribute key) (eq key :draw-function))
       (find-if (lambda (other) (resembles-p key other))
                (cons :draw-function (defined-names *attributes*))))))
 
@@ -75,7 +76,7 @@
 (defun check-kind-of-built-in (definition name domain)
   "Signal MALFORMED-DEFINITION if NAME is a built-in attribute and DOMAIN is of the other kind,
 discrete or numeric."
-  (let ((old (attribute-of name)))
+  (let ((old (declared-attribute name)))
     (when (and old (built-in-attribute-p old)
                (not (eq (attribute-kind old) (if (consp domain) :discrete :numeric))))
       (reject-clause definition domain
@@ -93,7 +94,7 @@ discrete or numeric."
   "Define or redefine the attribute NAME. DEFATTRIBUTE expands to a call of this function. Return
 NAME (reading 120)."
   (let ((definition (title "defattribute" name))
-        (old (attribute-of name)))
+        (old (declared-attribute name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
     (when (eq (attribute-key name) :draw-function)
       (reject-clause definition name
@@ -115,10 +116,10 @@ give this attribute to things: (set-attribute thing :draw-function 'name)")))
                      :noticed (check-probability definition :noticed noticed)
                      :supporters (mapcar #'attribute-key supported-by)))
     (clrhash *likenesses*)
-    (when old (attribute-redefined (attribute-of name)))
+    (when old (attribute-redefined (declared-attribute name)))
     name))
 
-(defun doubt-attribute-options (definition domain options)
+(defun warn-of-attribute-options (definition domain options)
   "Warn if OPTIONS give an attribute of DOMAIN only options for the other kind of attribute, numeric
 or discrete."
   (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
@@ -140,7 +141,7 @@ or discrete."
     (check-domain definition domain)
     (check-options definition options
                    '(:success :base :max-mult :noticed :support :supported-by :documentation))
-    (doubt-attribute-options definition domain options)
+    (warn-of-attribute-options definition domain options)
     (destructuring-bind (&key (success 1) (base 0) (max-mult 1) (support 0) (noticed support)
                            supported-by &allow-other-keys)
         options
@@ -165,20 +166,20 @@ Signals MALFORMED-DEFINITION. Return the name."
 ;;; manipulations (5.5.1) use the same lists (attribute value [threshold]). A robot compares them
 ;;; with what it senses, a manipulation with the true values.
 
-(defun asking-form-p (form)
+(defun specification-clause-p (form)
   "True if FORM is a list (attribute value) or (attribute value threshold). The value is an atom or
 a proper list, and is not compared with the attribute's domain. The threshold is NIL or a number not
 below 0. Numbers are from -1e15 to 1e15."
   (and (proper-list-p form)
        (<= 2 (length form) 3)
        (first form) (symbolp (first form))
-       (askable-p (second form))
+       (specifiable-value-p (second form))
        (or (null (third form)) (amount-p (third form)))))
 
-(defun askable-p (value)
+(defun specifiable-value-p (value)
   "True if VALUE, an atom or a proper list, contains no number beyond +-1e15."
   (if (consp value)
-      (and (proper-list-p value) (every #'askable-p value))
+      (and (proper-list-p value) (every #'specifiable-value-p value))
       (or (not (realp value)) (quantity-p value))))
 
 (defun range-p (value)
@@ -206,7 +207,7 @@ other values."
 undeclared attribute."
   (and attribute (member nil (attribute-domain attribute)) t))
 
-(defun asks-range-p (attribute value)
+(defun specifies-range-p (attribute value)
   "True if VALUE, a value in a specification of ATTRIBUTE, is a range rather than a list of
 alternatives. ATTRIBUTE is NIL for an undeclared attribute."
   (and (number-pair-p value) (not (discrete-p attribute))))

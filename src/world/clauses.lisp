@@ -45,9 +45,9 @@ MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
       (reject-clause definition clause
                      (format nil "~A (~A~@[; there is ~A~])" expected
                              (string-right-trim "." (text-of-condition condition))
-                             (namesake (missing-name condition)))))))
+                             (exported-variable-named (missing-name condition)))))))
 
-(defun namesake (name)
+(defun exported-variable-named (name)
   "Return the text PACKAGE:NAME of a variable named NAME that some package exports, or NIL."
   (dolist (symbol (and (symbolp name) name (find-all-symbols name)))
     (let ((package (symbol-package symbol)))
@@ -57,14 +57,14 @@ MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
 
 ;;; Clauses one by one.
 
-(defvar *path* '()
+(defvar *clause-path* '()
   "A list of positions, the path from the current definition to the current clause.")
 
 (defun call-with-clause (function clause path)
   "Call FUNCTION with CLAUSE, at PATH of the current definition. Restarts leave the clause out and
 return NIL, read the clause again from its file, or use a typed clause. A typed definition replaces
 the whole current definition."
-  (restart-case (let ((*path* path)) (funcall function clause))
+  (restart-case (let ((*clause-path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
       nil)
@@ -86,4 +86,4 @@ the whole current definition."
 are the elements of the current definition from the position FIRST on."
   (loop for clause in clauses
         for position from first
-        append (call-with-clause function clause (append *path* (list position)))))
+        append (call-with-clause function clause (append *clause-path* (list position)))))

@@ -9,7 +9,7 @@
 ;;; (name form), with the name of a thing that is drawn. Code of clauses that were typed in a
 ;;; restart, or that come from another clause, is not in the list.
 
-(defvar *code* '() "The compiled code of the map that is being defined.")
+(defvar *compiled-code* '() "The compiled code of the map that is being defined.")
 
 (defun code-form (code)
   `(list ,@(loop for (key form) in (remove-duplicates code :key #'first :test #'equal)
@@ -18,18 +18,18 @@
 (defun code-value (name source form)
   "Return the value of FORM, which is made from SOURCE, code for the thing named NAME, or for a
 prototype if NAME is NIL. Use the compiled code if there is any."
-  (let ((compiled (second (find (list name source) *code* :key #'first :test #'equal))))
+  (let ((compiled (second (find (list name source) *compiled-code* :key #'first :test #'equal))))
     (if compiled (funcall compiled) (eval form))))
 
 (defun descriptor-value (name descriptor)
   (loop for (key value) in descriptor
-        collect (list key (if (code-p key value)
+        collect (list key (if (contains-code-p key value)
                               (code-value name value (draw-function-form name value))
                               value))))
 
 ;;; Checking.
 
-(defun check-head (definition clause head)
+(defun check-thing-head (definition clause head)
   (let ((head (if (consp head) head (list head))))
     (unless (and (proper-list-p head) (first head) (symbolp (first head)))
       (reject-clause definition clause "a name, or (name :prototype thing)"))
@@ -40,7 +40,7 @@ prototype if NAME is NIL. Use the compiled code if there is any."
 
 (defun check-thing-clause (definition clause head descriptor)
   "Return true. Signals MALFORMED-DEFINITION if HEAD or DESCRIPTOR, parts of CLAUSE, are invalid."
-  (check-head definition clause head)
+  (check-thing-head definition clause head)
   (or (descriptor-p descriptor)
       (reject-clause definition clause
                      "an object descriptor ((attribute value) ...), each attribute once")))
@@ -66,7 +66,7 @@ MALFORMED-DEFINITION for invalid contents."
   (destructuring-bind (name &key prototype &allow-other-keys) (ensure-list head)
     (append (and prototype (list (list (list nil prototype) prototype)))
             (loop for (key value) in descriptor
-                  when (code-p key value)
+                  when (contains-code-p key value)
                     collect (list (list name value) (draw-function-form name value)))
             (loop for inside in contents
                   do (check-content definition inside)
@@ -76,7 +76,7 @@ MALFORMED-DEFINITION for invalid contents."
 ;;; Recipes.
 
 (defun clause-recipe (definition clause name descriptor &rest options)
-  (warn-of-slips definition name descriptor :clause clause)
+  (warn-of-misspellings definition name descriptor :clause clause)
   (handler-case (apply #'write-recipe 'defmap name descriptor options)
     ((or wrong-argument unknown-name) (condition)
       (reject-clause definition clause
@@ -124,7 +124,7 @@ unless PATH is NIL."
     (unless (and path (restore-from-cache map path (cache-key map)))
       (clear-walls map)
       (dolist (clause (map-clauses map)) (clause-value :cells map clause))
-      (find-places (note-walls map) path))))
+      (find-places (record-wall-facts map) path))))
 
 (addition rebuild-map)
 (defun rebuild-map (map)
@@ -135,7 +135,7 @@ cache. Worlds of MAP see the change at once. Return the map."
 
 ;;; Warnings.
 
-(defun doubt-clause (map clause control &rest arguments)
+(defun warn-of-clause (map clause control &rest arguments)
   (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-place clause) control arguments))
 
 (defun warn-of-walls (map clause walls)
@@ -143,28 +143,28 @@ cache. Worlds of MAP see the change at once. Return the map."
                 thereis (loop for (x y) in (clause-value :corners map wall)
                                 thereis (not (and (<= 0 x (map-width map))
                                                   (<= 0 y (map-height map))))))
-    (doubt-clause map clause "~S goes beyond the map, which is ~D by ~D metres; the part outside ~
-                              is drawn at the map's edge."
-                  clause (map-width map) (map-height map)))
+    (warn-of-clause map clause "~S goes beyond the map, which is ~D by ~D metres; the part outside ~
+                                is drawn at the map's edge."
+                    clause (map-width map) (map-height map)))
   (dolist (name (substances-of map walls))
     (let ((like (unless (find-substance name nil)
                   (find-if (lambda (other) (resembles-p name other))
                            (defined-names *substances*)))))
       (when like
-        (doubt-clause map clause "the substance ~(~A~) is not defined; did you mean ~(~A~)?"
-                      name like)))))
+        (warn-of-clause map clause "the substance ~(~A~) is not defined; did you mean ~(~A~)?"
+                        name like)))))
 
 (defun warn-of-things-in-walls (map)
   (dolist (recipe (map-things map))
     (let ((x (recipe-x recipe)) (y (recipe-y recipe)) (name (recipe-name recipe)))
       (when (wall-at-p map x y)
-        (doubt-clause map name "~(~A~) at ~A is inside a wall, where robots may not see or reach ~
-                                it."
-                      name (point-in-text x y))))))
+        (warn-of-clause map name "~(~A~) at ~A is inside a wall, where robots may not see or reach ~
+                                  it."
+                        name (point-in-text x y))))))
 
 ;;; Making it.
 
-(defun without-text (clauses)
+(defun without-docstring (clauses)
   "Return CLAUSES without the documentation of the map, a string before them."
   (if (stringp (first clauses)) (rest clauses) clauses))
 
@@ -174,7 +174,7 @@ cache. Worlds of MAP see the change at once. Return the map."
            (let ((parts (parts-of-clause map clause)))
              (warn-of-walls map clause (remove-if #'recipe-p parts))
              parts)))
-    (let ((parts (parts-of-clauses #'parts (without-text clauses)
+    (let ((parts (parts-of-clauses #'parts (without-docstring clauses)
                                    (if (stringp (first clauses)) 4 3))))
       (setf (map-things map) (remove-if-not #'recipe-p parts)
             (map-attribute-names map) (attribute-names (map-things map))
@@ -187,11 +187,11 @@ MAP-FRAME, CODE the value of a form made by CODE-FORM, and PACKAGE the package t
 writes in. Return the map."
   (unless (typep cache '(or null string pathname))
     (reject-clause (title "defmap" name) (list :cache cache) "the name of a file"))
-  (check-room (title "defmap" name) width height)
+  (check-map-memory (title "defmap" name) width height)
   (let ((map (%make-map :name name :width width :height height
                         :cache (and cache (cache-path cache))
                         :frame frame :package (package-name (find-package package))))
-        (*code* code))
+        (*compiled-code* code))
     (fill-map map clauses)
     (build-map map)
     (warn-of-things-in-walls map)
@@ -222,7 +222,7 @@ writes in. Return the map."
     (let ((map (%make-map :name name :width width :height height)))
       `((define-map ',name ,width ,height
           :cache ,cache :frame ',frame :clauses ',clauses
-          :code ,(code-form (loop for clause in (without-text clauses)
+          :code ,(code-form (loop for clause in (without-docstring clauses)
                                   append (code-in-clause map clause)))
           :package ,(package-name *package*))))))
 

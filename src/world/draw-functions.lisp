@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(drawing-code))
+(export '(resolve-draw-function))
 
 ;;; A value is a function, or a symbol that names one, which can be redefined. It must come from
 ;;; code: a definition, or a program that sets the attribute. Only names from code are called, so a
@@ -14,7 +14,7 @@
 (defvar *from-code-p* t
   "True where values of attributes come from code; false where they are data, as in a journal.")
 
-(defun call-with-data (function &rest arguments)
+(defun call-without-code (function &rest arguments)
   (let ((*from-code-p* nil)) (apply function arguments)))
 
 (defun names-function-p (value)
@@ -28,7 +28,7 @@
     (symbol (or (not *from-code-p*)
                 (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
 
-(defun draw-function-words (value)
+(defun draw-function-advice (value)
   "Return a text that says what to write instead of VALUE, which is no valid value of
 :draw-function."
   (format nil "a function of ~A, or the name of a function that is defined already: (defun ~(~A~) ~
@@ -45,7 +45,7 @@
     (when (and value (symbolp value) *from-code-p*) (setf (get value 'from-code-p) t))
     value))
 
-(defun drawing-code (value)
+(defun resolve-draw-function (value)
   "Return the function that VALUE of :draw-function stands for now, or NIL. If VALUE is a name
 without a function, a second value, a text, says why, and what to do."
   (cond ((null value) nil)
@@ -62,7 +62,7 @@ without a function, a second value, a text, says why, and what to do."
 
 ;;; In definitions a descriptor is not evaluated, except (lambda ...), #'name and name here.
 
-(defun call-of-p (name form)
+(defun call-named-p (name form)
   (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))
 
 (defun name-for-lambda (thing-name form)
@@ -88,19 +88,19 @@ FUNCTION instead."
            name)))
 
 (defun draw-function-form (thing-name value)
-  (let ((meant (if (and (call-of-p 'function value) (= 2 (length value))) (second value) value)))
-    (cond ((call-of-p 'lambda meant)
+  (let ((meant (if (and (call-named-p 'function value) (= 2 (length value))) (second value) value)))
+    (cond ((call-named-p 'lambda meant)
            `(draw-function-called ',(name-for-lambda thing-name meant)
                                  (function ,(with-ignorable-arguments meant))))
           ((symbolp meant) `',meant)
           (t `',value))))
 
-(defun code-p (key value)
+(defun contains-code-p (key value)
   "True if VALUE, of the attribute KEY, contains code to evaluate."
   (and (consp value) (same-name-p key :draw-function)))
 
 (defun descriptor-form (thing-name descriptor)
   `(list ,@(loop for (key value) in descriptor
-                 collect `(list ',key ,(if (code-p key value)
+                 collect `(list ',key ,(if (contains-code-p key value)
                                            (draw-function-form thing-name value)
                                            `',value)))))

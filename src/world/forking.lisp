@@ -83,8 +83,8 @@ function that copies attachments."
                   collect (funcall copied attachment twin))))
     twin))
 
-(declaim (inline by-itself-p))
-(defun by-itself-p (thing)
+(declaim (inline unattached-thing-p))
+(defun unattached-thing-p (thing)
   (declare (type thing thing))
   (and (symbolp (thing-location thing))
        (null (thing-contents thing))))
@@ -114,7 +114,7 @@ function that copies attachments."
       (let ((thing (svref old rank)))
         (when thing
           (setf (svref new rank) (copy-thing thing world copied))
-          (unless (by-itself-p thing) (push thing others)))))
+          (unless (unattached-thing-p thing) (push thing others)))))
     (setf (copier-objects copier) (cons old new))
     (dolist (thing others) (complete-thing thing old new copier))))
 

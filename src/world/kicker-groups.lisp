@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(seed-world world-has-kickers-p some-kicker run-kickers))
+(export '(seed-world world-has-kickers-p some-kicker-p run-kickers))
 
 ;;; Each kicker on each thing is tried with its probability on every tick. Kickers of equal
 ;;; probability form a group: a row of trials, tick after tick. Instead of drawing for each trial we
@@ -44,7 +44,7 @@ NIL"))
 
 ;;; Chance.
 
-(defun refresh-rate (group dice)
+(defun redraw-gap-if-needed (group dice)
   "Draw the next gap of GROUP again if TICK-QUANTUM* has changed."
   (unless (eql (group-quantum group) tick-quantum*)
     (let ((p (per-tick-probability (group-probability group))))
@@ -67,7 +67,7 @@ NIL"))
       (let* ((group (ensure-group world probability))
              (index (group-count group)))
         (when (= (* 3 index) (length (group-row group)))
-          (setf (group-row group) (resize (group-row group) (* 6 index))))
+          (setf (group-row group) (enlarge-vector (group-row group) (* 6 index))))
         (incf (group-count group))
         (setf (attachment-group attachment) group)
         (put-member group index attachment)))))
@@ -121,7 +121,7 @@ NIL"))
     (when (or (null test) (test-holds-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
 
-(defun kick-again (origin)
+(defun rerun-member (origin)
   "Run the attachment in ORIGIN once more, after an error."
   (let ((attachment (origin-attachment origin)))
     (setf self attachment)
@@ -139,8 +139,8 @@ GROUP. Return the index of the first success for which nothing was read."
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
          (gaps (outlook-gaps outlook))
-         (index (group-skip group)) (batch (make-array +batch+))
-         (ahead (foresee outlook index end (group-scale group) dice)))
+         (index (group-skip group)) (batch (make-array +batch-size+))
+         (ahead (draw-gaps-ahead outlook index end (group-scale group) dice)))
     (declare (dynamic-extent batch) (type (unsigned-byte 50) index) (type outlook outlook))
     (dotimes (i (outlook-count outlook))
       (let ((place (* 3 index)))
@@ -150,7 +150,7 @@ GROUP. Return the index of the first success for which nothing was read."
     (read-ahead batch (outlook-count outlook) *world*)
     ahead))
 
-(defun run-and-see (kicker thing)
+(defun run-member-noting-move (kicker thing)
   "Call RUN-MEMBER with KICKER and THING. Return true if THING has moved."
   (let ((x (thing-x thing)) (y (thing-y thing)))
     (run-member kicker thing)
@@ -165,14 +165,14 @@ it is retried. In a large group, memory is read ahead if the first member to run
   (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
         (outlook nil))
     (declare (type (unsigned-byte 50) ahead))
-    (when (origin-attachment origin) (kick-again origin))
+    (when (origin-attachment origin) (rerun-member origin))
     (loop for index of-type (unsigned-byte 50) = (group-skip group)
           while (< index end)
           do (when (>= index ahead)
                (setf ahead (read-group-ahead group end dice)
                      outlook (group-outlook group)))
              (setf (group-skip group)
-                   (+ index 1 (draw-foreseen-gap outlook (group-scale group) dice)))
+                   (+ index 1 (draw-gap-from-outlook outlook (group-scale group) dice)))
              (let* ((row (group-row group))
                     (attachment (svref row (* 3 index)))
                     (thing (svref row (+ 1 (* 3 index))))
@@ -182,7 +182,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
                  (setf (origin-attachment origin) attachment
                        self attachment)
                  (if (shiftf curious nil)
-                     (when (run-and-see kicker thing) (setf ahead 0))
+                     (when (run-member-noting-move kicker thing) (setf ahead 0))
                      (run-member kicker thing)))))
     (setf (origin-attachment origin) nil))
   t)
@@ -200,7 +200,7 @@ error."
       (run-row group end dice tick))))
 
 (defun run-group (group dice tick)
-  (refresh-rate group dice)
+  (redraw-gap-if-needed group dice)
   (let ((end (group-count group)))
     (unwind-protect (run-row group end dice tick)
       (decf (group-skip group) end)
@@ -267,7 +267,7 @@ that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 17
   (or (world-due-kickers world)
       (some (lambda (group) (plusp (group-count group))) (world-kicker-groups world))))
 
-(defun some-kicker (test world)
+(defun some-kicker-p (test world)
   "True if TEST, a function of a kicker, returns true for a kicker on some thing in WORLD."
   (loop for group in (world-kicker-groups world)
         thereis (loop with last = nil

@@ -3,7 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(*kickers* kicker define-kicker attachment *kicker-generation* call-put-kicker
-          find-attachment detached-kicker doubt-idle-kickers))
+          find-attachment detached-kicker warn-of-idle-kickers))
 
 ;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
 ;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
@@ -73,7 +73,7 @@ attachment" :writable))
   (incf *kicker-generation*)
   kicker)
 
-(defun fill-kicker (kicker definition prob test body)
+(defun set-kicker-code (kicker definition prob test body)
   (setf (kicker-prob kicker) (check-probability definition :prob prob)
         (kicker-test kicker) test
         (kicker-body kicker) body)
@@ -82,7 +82,7 @@ attachment" :writable))
 (defun define-kicker (name &key (prob 1) test (body (constantly nil)) test-attributes)
   "Define or redefine the kicker NAME. DEFKICKER expands to a call of this function. TEST and BODY
 are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker."
-  (let ((new (fill-kicker (make-kicker name) (title "defkicker" name) prob test body))
+  (let ((new (set-kicker-code (make-kicker name) (title "defkicker" name) prob test body))
         (old (definition-to-replace name *kickers*)))
     (setf (kicker-test-attributes new) test-attributes)
     (when old
@@ -188,8 +188,8 @@ reading 171."
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Attach a kicker NAME to THING only, as PUT-KICKER does. Without a BODY, remove the kicker NAME."
   (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
-  (let ((kicker (and body (fill-kicker (make-kicker name) (title "put-kicker" name)
-                                       prob test body))))
+  (let ((kicker (and body (set-kicker-code (make-kicker name) (title "put-kicker" name)
+                                           prob test body))))
     (changing ((world-of-living thing) call-put-kicker thing name
                         :prob prob :test test :body body)
       (if kicker
@@ -217,7 +217,7 @@ in test and body. Return the attached kicker, if any."
 ;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
 ;;; direction only, by single writes, so a race can at most repeat a warning.
 
-(defun code-names-p (name package)
+(defun code-refers-to-p (name package)
   "True if the code of another kicker, or of a user's function in PACKAGE, refers to NAME."
   (flet ((names-it-p (function) (member name (code-references function))))
     (or (loop for kicker in (all-kickers)
@@ -230,7 +230,7 @@ in test and body. Return the attached kicker, if any."
                           (names-it-p (fdefinition symbol)))
                  (return t)))))))
 
-(defun perhaps-used-p (entry world)
+(defun kicker-maybe-used-p (entry world)
   "True if the kicker of ENTRY may be in use: a function refers to it, its name is more than once in
 the file of WORLD's map, or the kicker is from another file."
   (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
@@ -239,27 +239,27 @@ the file of WORLD's map, or the kicker is from another file."
         (not (and map-entry
                   (equal file (source-file (entry-source map-entry)))
                   (eql 1 (count-in-file (name-string name) file))))
-        (code-names-p name (symbol-package name)))))
+        (code-refers-to-p name (symbol-package name)))))
 
-(defun doubt-unused-kicker (entry world)
+(defun warn-of-unused-kicker (entry world)
   "Warn if the kicker of ENTRY is new, and no program, thing or map seems to use it."
   (let ((kicker (entry-object entry)))
     (unless (or (shiftf (kicker-checked-p kicker) t)
-                (perhaps-used-p entry world)
-                (some (lambda (map) (on-map-p kicker map)) (all-maps)))
+                (kicker-maybe-used-p entry world)
+                (some (lambda (map) (kicker-on-map-p kicker map)) (all-maps)))
       (warn-once (list :kicker (kicker-name kicker)) world
                  (format nil "No thing has the kicker ~(~A~), so it never ran. Attach it: ~
                               (obj (NAME :kickers (~:*~(~A~))) ...) in the map, or ~
                               (set-kicker THING '~:*~(~A~))."
                          (kicker-name kicker))))))
 
-(defun doubt-untrue-kicker (kicker world)
+(defun warn-of-untrue-test (kicker world)
   "Warn if KICKER is on a thing of WORLD and its test was never true and reads an unknown
 attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
-                  (some-kicker (lambda (each) (eq each kicker)) world)
+                  (some-kicker-p (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)
-                                 (or (attribute-of name) (attribute-present-p name world)))
+                                 (or (declared-attribute name) (attribute-present-p name world)))
                                (kicker-test-attributes kicker)))))
     (when key
       (warn-once (list :kicker (kicker-name kicker)) world
@@ -267,15 +267,15 @@ attribute."
                               which no thing here has and no DEFATTRIBUTE declares."
                          (kicker-name kicker) key)))))
 
-(defun doubt-idle-kickers (world)
+(defun warn-of-idle-kickers (world)
   "At the end of a run in WORLD, warn of kickers that most likely could never run."
   (dolist (entry (registry-entries *kickers*))
-    (doubt-unused-kicker entry world)
-    (doubt-untrue-kicker (entry-object entry) world)))
+    (warn-of-unused-kicker entry world)
+    (warn-of-untrue-test (entry-object entry) world)))
 
 ;;; Remedies for a kicker that fails again and again.
 
-(defun where-to-mend (attachment)
+(defun where-to-correct (attachment)
   (let* ((kicker (attachment-kicker attachment))
          (file (function-file (kicker-body kicker))))
     (cond (file (format nil "in ~A, and load the file again" file))
@@ -289,7 +289,7 @@ attribute."
   (let ((name (attachment-name attachment)))
     (format nil "Correct the kicker ~A ~A; or remove it: (put-kicker ~(~A~) (thing (find-thing ~
                  \"~A\")))."
-            name (where-to-mend attachment) name (attachment-thing attachment))))
+            name (where-to-correct attachment) name (attachment-thing attachment))))
 
 (define-facts (kicker kicker)
   "Chance in a tick" (kicker-prob kicker)

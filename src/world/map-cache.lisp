@@ -11,7 +11,7 @@
 ;;; not the magic one, if it is not a file of bytes, or if this cannot be determined.
 
 (defconstant +cache-magic+ #x4152534D41503031
-  "The first word of a cache, ARSMAP01 in ASCII. It changes with the layout of the file.")
+  "The first word of a cache, ARSMAP01 in ASCII, which changes with the layout of the file.")
 (defconstant +cache-header+ 5 "How many words come before the cells.")
 
 (deftype words () '(simple-array (unsigned-byte 64) (*)))
@@ -25,7 +25,7 @@
                            collect (list (place-type-name type) (place-type-key type)
                                          (place-type-rules type)))))))
 
-(defun words-sum (words)
+(defun words-checksum (words)
   "Return a check sum of WORDS without the first word and without the check sum itself, the last
 word of the header."
   (declare (type words words))
@@ -52,7 +52,7 @@ word of the header."
       (loop for number across (map-places map) for index from 0
             when (plusp number) do (add number index (aref (map-directions map) index))))
     (replace words (list +cache-magic+ key walls places))
-    (setf (aref words (1- +cache-header+)) (words-sum words))
+    (setf (aref words (1- +cache-header+)) (words-checksum words))
     words))
 
 (defun write-words (words path)
@@ -82,11 +82,11 @@ no file."
         (read-sequence words in)
         words))))
 
-(defun words-trouble (words key)
+(defun cache-problem (words key)
   (cond ((or (< (length words) +cache-header+) (/= (aref words 0) +cache-magic+)) "is damaged")
         ((/= (aref words 1) key) "is stale")
         ((or (/= (length words) (+ +cache-header+ (* 2 (+ (aref words 2) (aref words 3)))))
-             (/= (aref words 4) (words-sum words)))
+             (/= (aref words 4) (words-checksum words)))
          "is damaged")))
 
 (defun restore-cell (map wall-p index number value)
@@ -110,7 +110,7 @@ no file."
                            (ldb (byte 32 0) (aref words position))
                            (ldb (byte 32 32) (aref words position))
                            (bits-to-double (aref words (1+ position))))))
-  (note-walls map))
+  (record-wall-facts map))
 
 (defun begins-as-cache-p (path)
   "True if the file PATH is empty or begins like a map cache."
@@ -136,7 +136,7 @@ determined."
       ;; Each cell is a wall, or a place, or both.
       (let ((words (read-words path (+ +cache-header+ (* 4 (map-width map) (map-height map))))))
         (when words
-          (let ((trouble (words-trouble words key)))
+          (let ((trouble (cache-problem words key)))
             (if trouble
                 (warn-of-cache map path trouble)
                 (restore-map map words)))))

@@ -31,8 +31,9 @@
   (height 1 (integer 1 32767) "how many cells the map is high" :addition)
   (flags (make-octets 0) octets
          "the flags of the map's cells by index: +WALL+ where filled" :writable :export)
-  (parameters (make-doubles 0) doubles "the substance parameters of the map's cells by index, 0
-where empty" :writable :export)
+  (parameters (make-double-vector 0) doubles
+              "the substance parameters of the map's cells by index, 0 where
+empty" :writable :export)
   (substances (make-array 0 :element-type '(unsigned-byte 16)) indices
               "the substances of the map's cells, by cell index, as indices into
 MAP-SUBSTANCE-TYPES" :writable :export)
@@ -41,7 +42,8 @@ MAP-SUBSTANCE-TYPES" :writable :export)
   (places (make-octets 0) octets
           "the place types of the map's cells, by cell index, as indices into
 MAP-PLACE-TYPES" :writable :export)
-  (directions (make-doubles 0) doubles "the basic canonical directions of the map's cells by index,
+  (directions (make-double-vector 0) doubles
+              "the basic canonical directions of the map's cells by index, in
 radians" :writable :export)
   (place-types #(nil) simple-vector
                "a vector of the place types known to the map; element 0 is NIL" :writable :export)
@@ -69,12 +71,12 @@ metres, and the counterclockwise rotation of the map's x axis in the frame, in r
 the first use" :writable :export))
 
 (defun make-octets (size) (make-array size :element-type '(unsigned-byte 8) :initial-element 0))
-(defun make-doubles (size) (make-array size :element-type 'double-float :initial-element 0d0))
+(defun make-double-vector (size) (make-array size :element-type 'double-float :initial-element 0d0))
 
 (defun clear-grid (map)
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-flags map) (make-octets size)
-          (map-parameters map) (make-doubles size)
+          (map-parameters map) (make-double-vector size)
           (map-substances map) (make-array size :element-type '(unsigned-byte 16)))))
 
 (defmethod print-object ((map map) stream)
@@ -105,10 +107,10 @@ map; NEW is NIL if OLD was undefined. The layer above ends the runs of OLD.")
 value is no map, such as ROOM, is the name of a map."
   (cond ((or (null form) (not (symbolp form))) form)
         ((local-variable-p form environment) form)
-        ((known-variable-p form environment) `(map-meant ',form))
+        ((known-variable-p form environment) `(variable-map-or-name ',form))
         (t `',form)))
 
-(defun map-meant (name)
+(defun variable-map-or-name (name)
   "Return the value of the variable NAME if the value can be a map or its name; otherwise return
 NAME, the name of a map."
   (let ((value (and (boundp name) (symbol-value name))))
@@ -234,7 +236,7 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   "A number of columns or rows of a grid."
   '(unsigned-byte 15))
 
-(declaim (inline cell-number border-spacing to-border walk-grid))
+(declaim (inline cell-number border-spacing distance-to-border walk-grid))
 (defun cell-number (coordinate)
   "Return the column or row of a grid that COORDINATE, in metres, is in."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
@@ -245,7 +247,7 @@ that of the line's direction on this axis."
   (declare (type double-float component))
   (if (zerop component) +endless+ (abs (/ component))))
 
-(defun to-border (start cell back)
+(defun distance-to-border (start cell back)
   "Return the distance on one axis from START, in the column or row CELL, to the lower border of
 CELL if BACK, else to the upper border."
   (declare (type double-float start) (type grid-size cell))
@@ -265,8 +267,8 @@ constant COLUMN-FIRST is true, the cell in the next column."
          (step-x (if back-x -1 1)) (step-y (if back-y (- width) width))
          (left-x (min reach (if back-x cell-x (- width cell-x 1))))
          (left-y (min reach (if back-y cell-y (- height cell-y 1))))
-         (per-x (border-spacing dx)) (at-x (* per-x (to-border x cell-x back-x)))
-         (per-y (border-spacing dy)) (at-y (* per-y (to-border y cell-y back-y)))
+         (per-x (border-spacing dx)) (at-x (* per-x (distance-to-border x cell-x back-x)))
+         (per-y (border-spacing dy)) (at-y (* per-y (distance-to-border y cell-y back-y)))
          (index (+ cell-x (* cell-y width))))
     (declare (type grid-size left-x left-y) (type fixnum step-x step-y)
              (type double-float per-x per-y at-x at-y) (type cell-index index))

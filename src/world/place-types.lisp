@@ -20,7 +20,7 @@ is a place that faces DIRECTION."
   (dx 0 :type fixnum :read-only t)
   (dy 0 :type fixnum :read-only t))
 
-(defun normal-entry (entry)
+(defun parse-match-entry (entry)
   "Return T, NIL or :ANY for ENTRY, an entry of a match form, or :BAD if ENTRY is invalid (reading
 75)."
   (cond ((matchvar-p entry) :any)
@@ -30,7 +30,7 @@ is a place that faces DIRECTION."
         ((same-name-p entry "X") :any)
         (t :bad)))
 
-(defun normal-form (form definition)
+(defun parse-match-form (form definition)
   "Return the match form FORM with entries T, NIL and :ANY. Signals MALFORMED-DEFINITION."
   (flet ((reject (expected) (reject-clause definition form expected)))
     (unless (and (proper-list-p form) form (every #'consp form) (every #'proper-list-p form))
@@ -38,23 +38,23 @@ is a place that faces DIRECTION."
     (unless (and (oddp (length form)) (oddp (length (first form)))
                  (apply #'= (mapcar #'length form)))
       (reject "an odd number of rows, all of the same odd length"))
-    (let ((rows (loop for row in form collect (mapcar #'normal-entry row))))
+    (let ((rows (loop for row in form collect (mapcar #'parse-match-entry row))))
       (dolist (row rows rows)
         (when (member :bad row)
           (reject "entries NIL or - (empty), T or * (wall), x or ?() (either)"))))))
 
-(defun form-size (form)
+(defun match-form-size (form)
   (values (length (first form)) (length form)))
 
-(defun small-form-p (form)
+(defun small-match-form-p (form)
   "True if FORM, a match form, concerns only a cell and its neighbours."
-  (multiple-value-bind (width height) (form-size form)
+  (multiple-value-bind (width height) (match-form-size form)
     (and (<= width 3) (<= height 3))))
 
-(defun form-bits (form)
+(defun match-form-bits (form)
   "Return a mask and a value: FORM matches the neighbourhoods whose masked code is the value."
   (let ((mask 0) (value 0))
-    (multiple-value-bind (width height) (form-size form)
+    (multiple-value-bind (width height) (match-form-size form)
       (loop for row in form for dy from (- (floor height 2))
             do (loop for entry in row for dx from (- (floor width 2))
                      for bit = (ash 1 (+ (* 3 (- 1 dx)) (- 1 dy)))
@@ -68,7 +68,7 @@ is a place that faces DIRECTION."
 code, or 0. The match forms of RULES are small."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
-          do (multiple-value-bind (mask value) (form-bits (rule-form rule))
+          do (multiple-value-bind (mask value) (match-form-bits (rule-form rule))
                (dotimes (code 512)
                  (when (= value (logand code mask))
                    (setf (aref table code) number)))))
@@ -76,7 +76,7 @@ code, or 0. The match forms of RULES are small."
 
 (defun form-matches-p (form map x y)
   "True if the walls around the cell X, Y of MAP are as in FORM, a match form of any size."
-  (multiple-value-bind (width height) (form-size form)
+  (multiple-value-bind (width height) (match-form-size form)
     (loop for row in form for cy from (- y (floor height 2))
           always (loop for entry in row for cx from (- x (floor width 2))
                        always (or (eq entry :any)
@@ -187,7 +187,7 @@ messages (reading 72)."
     (reject-clause definition matcher
                    "(match-form direction), or (match-form direction dx dy) for a place beside it"))
   (destructuring-bind (form direction &optional (dx 0) (dy 0)) matcher
-    `(make-rule ',(normal-form form definition)
+    `(make-rule ',(parse-match-form form definition)
                 (checked-direction ,definition ',matcher ,direction) ,dx ,dy)))
 
 ;; As reading 76 says.
@@ -267,7 +267,7 @@ Return NAME."
           (place-type-invisible-p new) (and invisible t)
           (place-type-rules new) rules
           (place-type-table new) (and rules
-                                      (every #'small-form-p (mapcar #'rule-form rules))
+                                      (every #'small-match-form-p (mapcar #'rule-form rules))
                                       (rules-table rules))
           (place-type-checker new) checker
           (place-type-directions new) directions
@@ -276,7 +276,7 @@ Return NAME."
     (try-place-type new)
     (register *place-types* name (if old (overwrite-object old new) new)
               :before (and (not (eq next old)) next))
-    (warn-of-vain-rules definition (find-place-type name))
+    (warn-of-useless-rules definition (find-place-type name))
     name))
 
 (define-facts (place-type type)

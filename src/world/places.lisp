@@ -77,7 +77,7 @@ the row below."
           (classify-cell map number (+ x (rule-dx rule)) (+ y (rule-dy rule))
                          (rule-direction rule)))))))
 
-(defun definition-of (type)
+(defun definition-of-type (type)
   "Return a value for *DEFINITION*: the current definition of TYPE, or else a definition made from
 the registry's entry of TYPE."
   (let ((operator "def-place-type")
@@ -87,19 +87,21 @@ the registry's entry of TYPE."
         (make-defining (and entry (entry-source entry))
                        (list operator (place-type-name type))))))
 
-(defun blame-type (type option expected)
-  (let* ((*definition* (definition-of type))
+(defun reject-type-option (type option expected)
+  (let* ((*definition* (definition-of-type type))
          (rest (member option (defining-form *definition*))))
     (reject-clause (title "def-place-type" (place-type-name type))
                    (if rest (subseq rest 0 2) option)
                    expected)))
 
-(defun call-blaming-type (function cell type option)
+(defun call-place-type-code (function cell type option)
   "Call FUNCTION, which runs the code of OPTION of TYPE for CELL. Report errors in the code as
 mistakes in the definition of TYPE."
   (flet ((blame (condition)
-           (blame-type type option (format nil "code that runs without an error; at ~A: ~A" cell
-                                           (string-right-trim "." (text-of-condition condition))))))
+           (reject-type-option
+            type option
+            (format nil "code that runs without an error; at ~A: ~A" cell
+                    (string-right-trim "." (text-of-condition condition))))))
     (handler-case
         (handler-bind ((error (lambda (condition)
                                 (unless (typep condition '(or malformed-definition
@@ -109,14 +111,14 @@ mistakes in the definition of TYPE."
       ;; There is room to report it once the stack is unwound.
       (storage-condition (condition) (blame condition)))))
 
-(defun check-checked (type cell values)
+(defun check-checker-values (type cell values)
   (destructuring-bind (dx dy direction) values
     (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
                  (within-reason-p direction))
-      (blame-type type :checker
-                  (format nil "four values at ~A: a boolean, two integers, a direction (after the ~
-                               first came~{ ~S~})"
-                          cell values)))))
+      (reject-type-option type :checker
+                          (format nil "four values at ~A: a boolean, two integers, a direction ~
+                                       (the values after the first were~{ ~S~})"
+                                  cell values)))))
 
 (defun classify-by-checker (map type number)
   (let ((cell (make-cell map 0 0)) (checker (place-type-checker type)))
@@ -128,9 +130,9 @@ mistakes in the definition of TYPE."
                  (setf (cell-x cell) x)
                  (multiple-value-bind (found dx dy direction) (funcall checker cell)
                    (when found
-                     (check-checked type cell (list dx dy direction))
+                     (check-checker-values type cell (list dx dy direction))
                      (classify-cell map number (+ x dx) (+ y dy) (double direction))))))))
-      (call-blaming-type #'classify cell type :checker))))
+      (call-place-type-code #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
   "Make the cells of MAP that fit TYPE and are not places yet places of TYPE, whose number is
@@ -147,19 +149,19 @@ of TYPE in MAP."
     (when (and index function)
       (multiple-value-bind (y x) (floor index (map-width map))
         (let* ((cell (make-cell map x y))
-               (directions (call-blaming-type
+               (directions (call-place-type-code
                             (lambda () (multiple-value-list (funcall function cell)))
                             cell type :directions)))
           (unless (and (= 2 (length directions)) (every #'within-reason-p directions))
-            (blame-type type :directions
-                        (format nil "two values at ~A, both angles in radians, not~{ ~S~}"
-                                cell directions))))))))
+            (reject-type-option type :directions
+                                (format nil "two values at ~A, both angles in radians, not~{ ~S~}"
+                                        cell directions))))))))
 
 (defun clear-places (map)
   "Remove all places from MAP, and give MAP the current place types."
   (let ((size (* (map-width map) (map-height map))))
     (setf (map-places map) (make-octets size)
-          (map-directions map) (make-doubles size)
+          (map-directions map) (make-double-vector size)
           (map-place-types map) (coerce (cons nil (registry-objects *place-types*))
                                         'simple-vector))))
 
@@ -183,7 +185,7 @@ and true if no type was left out (reading 70)."
 ;;; maps made of their own match forms. What the code needs may be defined later in its file, so a
 ;;; missing function or variable is no error yet.
 
-(defparameter *sample*
+(defparameter *sample-map-rows*
   '("###########"
     "#.........#"
     "#.#.###.#.#"
@@ -213,9 +215,9 @@ true."
   "True if the match FORM has a wall at COLUMN and ROW, counted from its upper left corner."
   (and (<= 0 column) (<= 0 row) (eq t (nth column (nth row form)))))
 
-(defun rule-map (rule)
+(defun make-rule-map (rule)
   "Return a small map with the walls in the match form of RULE, and free cells around them."
-  (multiple-value-bind (width height) (form-size (rule-form rule))
+  (multiple-value-bind (width height) (match-form-size (rule-form rule))
     (let ((margin (1+ (max (abs (rule-dx rule)) (abs (rule-dy rule))))))
       (small-map (+ width (* 2 margin)) (+ height (* 2 margin))
                  (lambda (x y) (form-wall-p (rule-form rule) (- x margin) (- y margin)))))))
@@ -227,9 +229,9 @@ true."
               (classify-by-type map type 1 (neighbourhood-codes map))
               (check-directions map type 1))
             (if (place-type-checker type)
-                (list (small-map (length (first *sample*)) (length *sample*)
-                                 (lambda (x y) (char= #\# (char (nth y *sample*) x)))))
-                (mapcar #'rule-map (place-type-rules type))))
+                (list (small-map (length (first *sample-map-rows*)) (length *sample-map-rows*)
+                                 (lambda (x y) (char= #\# (char (nth y *sample-map-rows*) x)))))
+                (mapcar #'make-rule-map (place-type-rules type))))
     ((or undefined-function unbound-variable) () nil)))
 
 ;;; Warnings of match forms that can never make a place.
@@ -237,9 +239,9 @@ true."
 ;;; A place is an empty cell, and has the type that was defined first. So a match form with a wall
 ;;; in its centre never applies, nor does a type all of whose forms fit only cells of earlier types.
 
-(defun walled-p (rule)
+(defun rule-needs-wall-p (rule)
   "True if the match form of RULE requires a wall in the cell that RULE makes a place."
-  (multiple-value-bind (width height) (form-size (rule-form rule))
+  (multiple-value-bind (width height) (match-form-size (rule-form rule))
     (form-wall-p (rule-form rule)
                  (+ (rule-dx rule) (floor width 2))
                  (+ (rule-dy rule) (floor height 2)))))
@@ -251,7 +253,7 @@ true."
                 collect (loop for entry in row
                               collect (case entry ((t) "*") ((nil) "-") (t "x"))))))
 
-(defun warn-of-walled (definition rule)
+(defun warn-of-walled-rule (definition rule)
   (let ((dx (rule-dx rule)) (dy (rule-dy rule)))
     (warn-of-definition "~A: the match form ~A can never fit a place, because ~A is a wall, and ~
                          only free cells are places; write - there, or give the offset of a free ~
@@ -263,13 +265,13 @@ true."
 
 ;;; Cells of earlier types.
 
-(defun free-codes (rule)
+(defun codes-of-rule (rule)
   "Return the codes of all neighbourhoods of a free cell that fit RULE, whose match form is small."
-  (multiple-value-bind (mask value) (form-bits (rule-form rule))
+  (multiple-value-bind (mask value) (match-form-bits (rule-form rule))
     (loop for code below 512
           when (and (= value (logand code mask)) (not (logbitp 4 code))) collect code)))
 
-(defun taker (code types)
+(defun first-type-for-code (code types)
   "Return the first of TYPES that makes a cell with the neighbourhood CODE a place, or NIL."
   (find-if (lambda (type)
              (let ((number (if (place-type-table type) (aref (place-type-table type) code) 0)))
@@ -278,21 +280,21 @@ true."
                       (= 0 (rule-dx rule) (rule-dy rule))))))
            types))
 
-(defun takers (rules types)
+(defun covering-types (rules types)
   "Return the types in TYPES that classify the cells that fit RULES, if they classify all these
 cells; else NIL."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))
-      (dolist (code (free-codes rule))
-        (pushnew (or (taker code types) (return-from takers '())) takers)))))
+      (dolist (code (codes-of-rule rule))
+        (pushnew (or (first-type-for-code code types) (return-from covering-types '())) takers)))))
 
-(defun warn-of-taken (definition type)
+(defun warn-if-covered (definition type)
   "Warn if types defined before TYPE classify all cells that fit TYPE."
   (let* ((types (registry-objects *place-types*))
-         (rules (remove-if #'walled-p (place-type-rules type)))
+         (rules (remove-if #'rule-needs-wall-p (place-type-rules type)))
          (takers (and (place-type-table type)
-                      (takers rules (ldiff types (member type types))))))
+                      (covering-types rules (ldiff types (member type types))))))
     (when takers
       (doubt-definition "~A: all cells that fit are of the type ~{~(~A~)~^ or ~} already; the type ~
                          that was defined earlier wins; to let this type win, write :before ~(~A~)"
@@ -300,8 +302,8 @@ cells; else NIL."
                         (place-type-name (find-if (lambda (other) (member other takers))
                                                   types))))))
 
-(defun warn-of-vain-rules (definition type)
+(defun warn-of-useless-rules (definition type)
   "Warn of rules of TYPE, a registered place type, that can never make a place."
-  (mapc (lambda (rule) (warn-of-walled definition rule))
-        (remove-if-not #'walled-p (place-type-rules type)))
-  (warn-of-taken definition type))
+  (mapc (lambda (rule) (warn-of-walled-rule definition rule))
+        (remove-if-not #'rule-needs-wall-p (place-type-rules type)))
+  (warn-if-covered definition type))

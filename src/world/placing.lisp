@@ -8,7 +8,7 @@
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
 ;;; Everything that moves a thing goes through PLACE-THING.
 
-(declaim (inline thing-flags refresh-cell-flags set-mark add-flags))
+(declaim (inline thing-flags refresh-cell-flags record-thing-flags add-flags))
 (defun thing-flags (thing)
   (logior +occupied+
           (if (thing-obsmove-p thing) +obsmove+ 0)
@@ -21,7 +21,7 @@
     (setf (aref flags index) (logior (logand +wall+ (aref flags index))
                                      (marks-of-cell index (world-stock world))))))
 
-(defun set-mark (thing stock)
+(defun record-thing-flags (thing stock)
   "Record in STOCK the flags that THING causes in its cell."
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
@@ -41,11 +41,11 @@
   (declare #.*hot* (type thing thing) (type double-float x y))
   (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
   (let* ((world (thing-world thing)) (stock (world-stock world)) (index (thing-index thing)))
-    (set-mark thing stock)
+    (record-thing-flags thing stock)
     (append-to-cell (thing-rank thing) index stock)
     (add-flags (thing-rank thing) index world)))
 
-(defun change-cell (rank world from to)
+(defun move-between-cells (rank world from to)
   "Move the thing with RANK from the cell FROM of WORLD to the end of the list of things in the cell
 TO. Conses nothing."
   (declare #.*hot* (type cell-index rank from to) (type world world))
@@ -61,9 +61,9 @@ TO. Conses nothing."
   (declare (type double-float x y))
   (let ((from (thing-index thing)))
     (setf (thing-x thing) x (thing-y thing) y)
-    (change-cell (thing-rank thing) (thing-world thing) from (thing-index thing))))
+    (move-between-cells (thing-rank thing) (thing-world thing) from (thing-index thing))))
 
-(defun take-away (thing)
+(defun remove-from-location (thing)
   "Remove THING from its location, so that THING is nowhere."
   (let ((location (thing-location thing)))
     (case location
@@ -72,12 +72,12 @@ TO. Conses nothing."
       (t (setf (location-contents location) (remove thing (location-contents location)))))
     (setf (thing-location thing) nil)))
 
-(declaim (inline lay-down))
-(defun lay-down (thing x y)
+(declaim (inline move-to-floor))
+(defun move-to-floor (thing x y)
   "Move THING from any location to the floor at X, Y, a point inside the map."
   (declare (type double-float x y))
   (cond ((eq :floor (thing-location thing)) (move-on-floor thing x y))
-        (t (take-away thing)
+        (t (remove-from-location thing)
            (put-on-floor thing x y))))
 
 (defun place-thing (thing location &optional x y)
@@ -86,9 +86,9 @@ Check only the position, and do not call the move watchers. Return THING."
   (if (eq location :floor)
       (let ((x (double x)) (y (double y)))
         (check-inside 'place-thing (world-map (thing-world thing)) x y)
-        (lay-down thing x y))
+        (move-to-floor thing x y))
       (progn
-        (take-away thing)
+        (remove-from-location thing)
         (setf (thing-location thing) location)
         (when location
           (setf (location-contents location)
@@ -110,8 +110,8 @@ such warning about WHAT in a run is also printed if no program reads it."
                      (format nil "a point of ~A, which is ~D by ~D metres"
                              map (map-width map) (map-height map)))))
 
-(declaim (inline note-move))
-(defun note-move (thing old-location new-location)
+(declaim (inline call-move-watchers))
+(defun call-move-watchers (thing old-location new-location)
   (dolist (watcher (world-move-watchers (thing-world thing)))
     (funcall (the function watcher) thing old-location new-location)))
 
@@ -147,7 +147,7 @@ Return the world of HOLDER."
   "Put THING into LOCATION as PLACE-THING does, and call the move watchers."
   (let ((old (thing-location thing)))
     (place-thing thing location x y)
-    (note-move thing old location)
+    (call-move-watchers thing old location)
     thing))
 
 (addition move-thing)
@@ -165,10 +165,10 @@ MISUSE for prototypes, destroyed things, and a container put into itself. Return
         (check-holder 'move-thing thing location))
     (changing ((thing-world thing) move-thing thing (or position location))
       (if position
-          (apply #'put-by-hand thing position)
+          (apply #'put-with-warning thing position)
           (relocate thing location)))))
 
-(defun put-by-hand (thing x y)
+(defun put-with-warning (thing x y)
   (relocate thing :floor x y)
   (warn-if-in-wall (princ-to-string thing) (thing-world thing) x y)
   thing)
@@ -177,11 +177,11 @@ MISUSE for prototypes, destroyed things, and a container put into itself. Return
   (let ((old (thing-location thing)) (x (thing-x thing)) (y (thing-y thing)))
     (dolist (inside (copy-list (thing-contents thing)))
       (relocate inside old x y))
-    (take-away thing)
+    (remove-from-location thing)
     (detach-all-kickers thing)
     (setf (thing-alive-p thing) nil)
     (remove-thing thing (thing-world thing))
-    (note-move thing old nil)))
+    (call-move-watchers thing old nil)))
 
 (define-operator 'move-thing '(thing datum) #'move-thing)
 
@@ -200,21 +200,21 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
 ;;; Kicks. Manual 5.3.1. The path is not checked, only where it ends. From an open container or from
 ;;; a hand a thing is kicked onto the floor. Off the map is as in a wall.
 
-(defun enclosed-p (thing)
+(defun in-closed-holder-p (thing)
   (loop for location = (thing-location thing) then (thing-location location)
         until (eq location :floor)
         thereis (and location (location-closed-p location))
         while (thing-p location)))
 
-(declaim (inline kickable-p open-at-p start-kick))
+(declaim (inline kickable-p free-point-p start-kick))
 (defun kickable-p (thing)
   "True if THING is on the floor, or inside something from which it can get onto the floor, because
 nothing around it is closed."
   (or (eq :floor (thing-location thing))
       (and (thing-location (thing-outermost thing))
-           (not (enclosed-p thing)))))
+           (not (in-closed-holder-p thing)))))
 
-(defun open-at-p (world x y)
+(defun free-point-p (world x y)
   (declare (type double-float x y))
   (let ((index (point-index (world-map world) x y)))
     (and index (not (logtest +wall+ (aref (world-flags world) index))))))
@@ -256,7 +256,7 @@ to its start. Return NIL if no cell is empty."
           for y of-type double-float = (+ (the fixnum (+ row dy)) 0.5d0)
           for away of-type double-float = (+ (expt (- x (kick-from-x kick)) 2)
                                              (expt (- y (kick-from-y kick)) 2))
-          do (when (and (open-at-p world x y) (or (not found) (< away least)))
+          do (when (and (free-point-p world x y) (or (not found) (< away least)))
                (setf (kick-x kick) x (kick-y kick) y least away found t)))
     found))
 
@@ -267,11 +267,11 @@ to its start. Return NIL if no cell is empty."
     (let ((world (thing-world thing)))
       (declare (type world world))
       (start-kick kick thing)
-      (when (or (open-at-p world (kick-x kick) (kick-y kick))
+      (when (or (free-point-p world (kick-x kick) (kick-y kick))
                 (and kick-if-wall (deflect-kick kick world)))
         (let ((old (thing-location thing)))
-          (lay-down thing (kick-x kick) (kick-y kick))
-          (note-move thing old :floor)
+          (move-to-floor thing (kick-x kick) (kick-y kick))
+          (call-move-watchers thing old :floor)
           t)))))
 
 (defun kick-by-numbers (thing dx dy kick-if-wall)
@@ -290,7 +290,7 @@ thread may not change the world."
   (if (and (thing-p thing)
            (within-reason-p (kick-dx kick))
            (within-reason-p (kick-dy kick))
-           (writing-p (thing-world thing)))
+           (changing-thread-p (thing-world thing)))
       (%kick-thing thing kick kick-if-wall)
       :otherwise))
 

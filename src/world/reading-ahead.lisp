@@ -8,10 +8,10 @@
 ;;; What they read does not affect results.
 
 ;; The larger the better, until a processor's cache is full, as each loop ends with waiting.
-(defconstant +batch+ 512 "The number of moves for which memory is read at once.")
+(defconstant +batch-size+ 512 "The number of moves for which memory is read at once.")
 
-(deftype batch () '(simple-vector #.+batch+))
-(deftype batch-count () '(integer 0 #.+batch+))
+(deftype batch () '(simple-vector #.+batch-size+))
+(deftype batch-count () '(integer 0 #.+batch-size+))
 
 (declaim (inline cell-to-read))
 (defun cell-to-read (thing)
@@ -60,12 +60,12 @@ p), or 0 if p is 1."
 ;;; To know which trials will succeed, numbers are drawn ahead. They depend on the state of the dice
 ;;; alone, so if the dice are in that state later, the results need not be computed again.
 
-(deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch+)))
+(deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch-size+)))
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
   "Gaps between successes, drawn ahead: the first COUNT elements of GAPS. Dice whose state is STATE
 would draw the gap with the index NEXT."
-  (gaps (make-array +batch+ :element-type '(unsigned-byte 62) :initial-element 0)
+  (gaps (make-array +batch-size+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
   (next 0 :type batch-count)
@@ -73,8 +73,8 @@ would draw the gap with the index NEXT."
 (declaim-final outlook)
 
 ;; Inline, so that SCALE is not boxed.
-(declaim (inline foresee))
-(defun foresee (outlook index end scale dice)
+(declaim (inline draw-gaps-ahead))
+(defun draw-gaps-ahead (outlook index end scale dice)
   "Store in OUTLOOK the next gaps of SCALE and DICE for trials before END, if the next success is at
 INDEX. Return the index of the first success after these gaps."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
@@ -82,7 +82,7 @@ INDEX. Return the index of the first success after these gaps."
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))
     (declare (dynamic-extent dice) (type batch-count count))
     (setf (outlook-state outlook) (dice-state dice))
-    (loop while (and (< index end) (< count +batch+))
+    (loop while (and (< index end) (< count +batch-size+))
           do (let ((gap (draw-gap scale dice)))
                (setf (aref gaps count) gap)
                (incf count)
@@ -91,8 +91,8 @@ INDEX. Return the index of the first success after these gaps."
           (outlook-count outlook) count)
     index))
 
-(declaim (inline draw-foreseen-gap))
-(defun draw-foreseen-gap (outlook scale dice)
+(declaim (inline draw-gap-from-outlook))
+(defun draw-gap-from-outlook (outlook scale dice)
   "Return the value of DRAW-GAP for SCALE and DICE. Take the value from OUTLOOK, unless NIL, if it
 was drawn ahead."
   (let ((next (if outlook (outlook-next outlook) 0)))

@@ -37,7 +37,7 @@ WRONG-ARGUMENT."
   (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
     (reject-argument operator "prototype" prototype "a thing, made by NEW-THING"))
-  (let ((own (normal-descriptor operator descriptor)))
+  (let ((own (checked-descriptor operator descriptor)))
     (make-recipe name
                  (merge-descriptors own (and prototype (thing-attributes prototype)))
                  (append (and prototype (mapcar #'thing-recipe (thing-contents prototype)))
@@ -63,7 +63,7 @@ is a prototype (reading 63)."
     (setf (thing-contents thing) contents
           (thing-attributes thing) (recipe-attributes recipe))
     (dolist (inside contents) (setf (thing-location inside) thing))
-    (refresh-physics thing)
+    (update-physics-slots thing)
     (when world
       (incf (world-next-serial world))
       (incf (world-live-count world))
@@ -80,7 +80,7 @@ value of TEST."
     (multiple-value-bind (inside value) (find-recipe test (recipe-contents recipe))
       (when inside (return (values inside value))))))
 
-(defun on-map-p (kicker map)
+(defun kicker-on-map-p (kicker map)
   (find-recipe (lambda (recipe)
                  (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
                (map-things map)))
@@ -94,7 +94,7 @@ value of TEST."
 
 ;;; Worlds.
 
-(defun empty-world (world)
+(defun clear-world (world)
   "Reset WORLD to an empty map: destroy all things, and reset the robots."
   (let ((map (world-map world)))
     (do-things (thing world)
@@ -108,7 +108,7 @@ value of TEST."
 (defun reset-world (world &key (seed (world-seed world)))
   "Reset WORLD to its initial state with the integer SEED: the things of the map's recipes, tick 0,
 robots at their starts. The timeline and the move watchers stay. Return WORLD."
-  (empty-world world)
+  (clear-world world)
   (seed-world world seed)
   (dolist (recipe (map-things (world-map world)) world)
     (place-thing (follow-recipe recipe world) :floor (recipe-x recipe) (recipe-y recipe))))
@@ -144,7 +144,7 @@ stands for."
         (t (values (check-holder 'new-thing nil location) location))))
 
 ;; What is noted is independent of later changes to a prototype, or to a map's name.
-(defun noted-location (location world)
+(defun journal-location (location world)
   "Return LOCATION, in WORLD, as an argument of MAKE-THING-AGAIN for the journal."
   (if (and (consp location) (not (eq :with (first location))))
       (cons (world-map world) (rest location))
@@ -166,13 +166,13 @@ and MISUSE for a hand that holds something."
                      that first."
                     (location-name place) (location-contents place)))
       (if world
-          (note-slips name descriptor world)
-          (warn-of-slips "new-thing" name descriptor))
-      (changing (world make-new-thing name (noted-location location world)
+          (warn-once-of-misspellings name descriptor world)
+          (warn-of-misspellings "new-thing" name descriptor))
+      (changing (world make-new-thing name (journal-location location world)
                        (recipe-attributes recipe)
                        :contents (recipe-contents recipe) :kickers (recipe-kickers recipe))
         (let ((thing (follow-recipe recipe world)))
-          (cond ((and world (eq place :floor)) (put-by-hand thing x y))
+          (cond ((and world (eq place :floor)) (put-with-warning thing x y))
                 (world (relocate thing place x y))
                 (place (place-thing thing place x y)))
           thing)))))
@@ -181,7 +181,7 @@ and MISUSE for a hand that holds something."
   "Make a thing as MAKE-NEW-THING does, but only in the current world."
   (unless (eq *world* (resolve-location location))
     (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
-  (apply #'call-with-data #'make-new-thing name location descriptor more))
+  (apply #'call-without-code #'make-new-thing name location descriptor more))
 
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 

@@ -30,14 +30,14 @@ MAP, else the resident world of MAP. If MAP is a world, return MAP."
 
 ;;; Finding.
 
-(defun worlds-in-view (world)
+(defun worlds-to-search (world)
   "Return a list of the worlds to search: WORLD unless NIL, else *WORLD* unless NIL, else the
 resident worlds of all maps."
   (cond (world (list (current-world world)))
         (*world* (list *world*))
         (t (mapcar #'map-resident-world (registry-objects *maps*)))))
 
-(defun thing-called-p (thing name)
+(defun thing-named-p (thing name)
   "True if NAME denotes THING: NAME is the name of THING, a symbol or string, with or without
 #serial, or its serial number."
   (if (integerp name)
@@ -53,33 +53,33 @@ current simulation or, without a simulation, the resident worlds of all maps are
 WRONG-ARGUMENT."
   (check-argument find-things name (typep name '(or symbol string integer))
                   "a symbol, a string such as \"PEN#2\", or a serial number")
-  (loop for each in (worlds-in-view world)
+  (loop for each in (worlds-to-search world)
         append (loop for rank below (world-rank-count each)
                      for thing = (thing-of-rank rank each)
-                     when (and thing (thing-called-p thing name)) collect thing)))
+                     when (and thing (thing-named-p thing name)) collect thing)))
 
 ;;; An unknown name may be a misspelling. Names that differ only in their digits, or in the number
 ;;; of a thing, such as "PEN#2", are names of several things.
 
-(defun may-be-slip-p (name other)
+(defun misspelling-p (name other)
   (flet ((without-digits (name)
            (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name))))
     (and (resembles-p name other)
          (not (string-equal (without-digits name) (without-digits other))))))
 
-(defun thing-like (name world)
+(defun similar-thing-name (name world)
   "Return the name of a thing in WORLD that NAME is probably a misspelling of, or NIL. A name that a
 thing of the map had at first is no misspelling."
   (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
                        (map-things (world-map world)))
     (do-things (thing world)
-      (when (may-be-slip-p name (thing-name thing))
-        (return-from thing-like (thing-name thing))))))
+      (when (misspelling-p name (thing-name thing))
+        (return-from similar-thing-name (thing-name thing))))))
 
 ;; Looking through all things takes time, so it is done only for the first request of each name.
-(defun note-unknown-thing (name world)
+(defun warn-of-unknown-thing (name world)
   "Warn if NAME, which no thing in WORLD has, is probably a misspelling of a thing's name."
-  (let ((like (and (first-time-p (list :thing name) world) (thing-like name world))))
+  (let ((like (and (first-time-p (list :thing name) world) (similar-thing-name name world))))
     (when like
       (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
@@ -90,7 +90,7 @@ a similar name if there is one; or NIL."
   (let* ((noted (and *world* (world-noted-names *world*)))
          (name (second (find-if (lambda (key) (typep key '(cons (eql :thing)))) noted))))
     (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]"
-                      name (thing-like name *world*)))))
+                      name (similar-thing-name name *world*)))))
 
 (addition find-thing)
 (defun find-thing (name &optional world)
@@ -98,7 +98,7 @@ a similar name if there is one; or NIL."
 if NAME is unknown and resembles the name of a thing."
   (let ((things (find-things name world)))
     (when (and (null things) (typep name '(or (and symbol (not null)) string)))
-      (dolist (each (worlds-in-view world)) (note-unknown-thing name each)))
+      (dolist (each (worlds-to-search world)) (warn-of-unknown-thing name each)))
     (first things)))
 
 (defun not-a-thing-text (value)

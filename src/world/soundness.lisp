@@ -71,7 +71,7 @@ MET yet. Add the tags to MET."
     (must-hold (eq location (thing-location thing)) "~A is not where it is listed" thing)
     (incf (gethash thing met 0))))
 
-(defun check-lying (thing index world)
+(defun check-thing-on-floor (thing index world)
   (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
                   (= index (thing-index thing)))
              "~A is not in the cell where it is listed" thing)
@@ -84,7 +84,7 @@ MET yet. Add the tags to MET."
         for flags = (aref (map-flags (world-map world)) index)
         do (do-cell (thing index world)
              (count-things (list thing) :floor met)
-             (check-lying thing index world)
+             (check-thing-on-floor thing index world)
              (setf flags (logior flags (thing-flags thing))))
            (must-hold (= flags (aref (world-flags world) index))
                       "the flags of cell ~D do not match the map and its things" index)))

@@ -82,7 +82,7 @@
 
 ;;; Things.
 
-(defun resize (vector size)
+(defun enlarge-vector (vector size)
   "Return a vector of SIZE elements, which begins with the elements of VECTOR and ends with 0 or
 NIL."
   (replace (make-array size :element-type (array-element-type vector)
@@ -93,9 +93,9 @@ NIL."
   "Give THING the next rank in STOCK. A full STOCK grows to twice its size."
   (let ((rank (stock-count stock)))
     (when (= rank (length (stock-things stock)))
-      (setf (stock-things stock) (resize (stock-things stock) (* 2 rank))
-            (stock-nexts stock) (resize (stock-nexts stock) (* 2 rank))
-            (stock-marks stock) (resize (stock-marks stock) (* 2 rank))))
+      (setf (stock-things stock) (enlarge-vector (stock-things stock) (* 2 rank))
+            (stock-nexts stock) (enlarge-vector (stock-nexts stock) (* 2 rank))
+            (stock-marks stock) (enlarge-vector (stock-marks stock) (* 2 rank))))
     (incf (stock-count stock))
     (setf (thing-rank thing) rank
           (svref (stock-things stock) rank) thing)))

@@ -2,35 +2,35 @@
 
 (in-package :ars-magna.world)
 
-(export '(note-strange-name warn-of-slips))
+(export '(warn-of-strange-attribute warn-of-misspellings))
 
 (defun attribute-present-p (key world)
   (do-things (thing world)
     (when (assoc key (thing-attributes thing) :test #'eq)
       (return-from attribute-present-p t))))
 
-(defun carried-name-like (key world)
+(defun undeclared-name-like (key world)
   "Return an undeclared attribute of a thing of WORLD that KEY is probably a misspelling of, or
 NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
-          when (and (not (attribute-of other)) (resembles-p key other))
-            do (return-from carried-name-like other))))
+          when (and (not (declared-attribute other)) (resembles-p key other))
+            do (return-from undeclared-name-like other))))
 
-(defun known-likeness (key world)
+(defun similar-name (key world)
   "Return the name of a declared attribute, or of an attribute of a thing of WORLD, that the
 undeclared KEY is probably a misspelling of; or NIL."
-  (ensure-gethash key *likenesses* (or (declared-name-like key) (carried-name-like key world))))
+  (ensure-gethash key *likenesses* (or (declared-name-like key) (undeclared-name-like key world))))
 
-(defun note-slip (operator thing key &key read)
+(defun warn-of-misspelling (operator thing key &key read)
   "Warn once if KEY, an argument of OPERATOR with THING, is undeclared, no thing has it, and it
 resembles a declared attribute or, if READ is true, an attribute of some thing."
   (let ((world (thing-world thing)))
-    (when (and world (not (attribute-of key)))
-      (let ((like (known-likeness key world)))
+    (when (and world (not (declared-attribute key)))
+      (let ((like (similar-name key world)))
         (when (and like
                    (or read (declared-name-like key))
-                   (not (said-p key world))
+                   (not (warning-given-p key world))
                    (not (attribute-present-p key world)))
           (warn-once key world
                      (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared, and nothing here has ~
@@ -47,7 +47,7 @@ a declared attribute or of an attribute of some thing."
   (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let* ((key (attribute-key attribute))
          (entry (assoc key (thing-attributes thing) :test #'eq)))
-    (unless entry (note-slip 'get-attribute thing key :read t))
+    (unless entry (warn-of-misspelling 'get-attribute thing key :read t))
     (second entry)))
 
 (defun merge-descriptors (new old)
@@ -57,7 +57,7 @@ that only NEW has."
                 collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
-(defun refresh-physics (thing)
+(defun update-physics-slots (thing)
   "Update the cached slots of THING from its attributes."
   (flet ((number-of (key)
            (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
@@ -77,12 +77,12 @@ that only NEW has."
 (defun change-attributes (thing descriptor)
   "Give THING the attributes in DESCRIPTOR, and update its cached slots and the flags of its cell."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
-  ;; What REFRESH-PHYSICS reads.
+  ;; What UPDATE-PHYSICS-SLOTS reads.
   (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
                       (mapcar #'first descriptor))
-    (refresh-physics thing)
+    (update-physics-slots thing)
     (when (eq (thing-location thing) :floor)
-      (set-mark thing (world-stock (thing-world thing)))
+      (record-thing-flags thing (world-stock (thing-world thing)))
       (refresh-cell-flags (thing-world thing) (thing-index thing)))))
 
 (defun checked-entry (operator name value)
@@ -90,7 +90,7 @@ that only NEW has."
     (check-attribute-value operator key value)
     (list key (if (eq key :draw-function) (stored-draw-function value) value))))
 
-(defun normal-descriptor (operator descriptor)
+(defun checked-descriptor (operator descriptor)
   "Return a copy of the object descriptor DESCRIPTOR with keywords as names. Signals
 WRONG-ARGUMENT."
   (unless (descriptor-p descriptor)
@@ -116,15 +116,15 @@ the attribute cannot have. Warns as GET-ATTRIBUTE does."
   (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
   (let ((descriptor (if (typep new-value '(or symbol number))
                         (list (checked-entry 'set-attribute attribute new-value))
-                        (normal-descriptor 'set-attribute (list (list attribute new-value))))))
-    (note-slip 'set-attribute thing (first (first descriptor)))
+                        (checked-descriptor 'set-attribute (list (list attribute new-value))))))
+    (warn-of-misspelling 'set-attribute thing (first (first descriptor)))
     (changing ((world-of-living thing) set-attribute
                thing attribute (second (first descriptor)))
       (change-attributes thing descriptor)))
   new-value)
 
 (defun set-attribute-again (thing attribute new-value)
-  (call-with-data #'set-attribute thing attribute new-value))
+  (call-without-code #'set-attribute thing attribute new-value))
 
 (define-operator 'set-attribute '(thing name datum) #'set-attribute-again)
 
@@ -136,14 +136,14 @@ the attribute cannot have. Warns as GET-ATTRIBUTE does."
   "Set all attributes of THING that are in the object descriptor DESCRIPTOR; other attributes do not
 change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
-  (let ((descriptor (normal-descriptor 'change-attribute descriptor)))
-    (loop for (key) in descriptor do (note-slip 'change-attribute thing key))
+  (let ((descriptor (checked-descriptor 'change-attribute descriptor)))
+    (loop for (key) in descriptor do (warn-of-misspelling 'change-attribute thing key))
     (changing ((world-of-living thing) change-attribute thing descriptor)
       (change-attributes thing descriptor)))
   thing)
 
 (define-operator 'change-attribute '(thing datum)
-  (lambda (thing descriptor) (call-with-data #'change-attribute thing descriptor)))
+  (lambda (thing descriptor) (call-without-code #'change-attribute thing descriptor)))
 
 ;;; Things may have undeclared attributes, and specifications may ask for them. Where a thing is
 ;;; defined, a warning names an attribute that resembles a declared one. Where a specification asks
@@ -156,13 +156,13 @@ change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   "The options of things that are not attributes. Each entry lists the option, and how to write it
 in a map and at run time.")
 
-(defun option-called (name)
+(defun option-named (name)
   "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
   (let ((key (attribute-key name)))
     (or (assoc key *options-of-things*)
         (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
 
-(defun slips-in (descriptor)
+(defun find-misspellings (descriptor)
   "Return a list of probable mistakes in DESCRIPTOR: (name like) for a name that resembles the
 attribute LIKE, and (name NIL) for the name of an option."
   (loop for (name) in descriptor
@@ -173,12 +173,12 @@ attribute LIKE, and (name NIL) for the name of an option."
 (defun option-of-things-p (name)
   "True if NAME, used as an attribute, is the name of an option of things and of no declared
 attribute."
-  (and (option-called name) (not (attribute-of (attribute-key name)))))
+  (and (option-named name) (not (declared-attribute (attribute-key name)))))
 
-(defun text-of-slip (thing-name slip &optional map-p)
+(defun misspelling-text (thing-name slip &optional map-p)
   "Return a text that says which attribute of the thing is probably a mistake, and what to write
 instead."
-  (destructuring-bind (name like &aux (option (option-called name))) slip
+  (destructuring-bind (name like &aux (option (option-named name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"
                 thing-name name like)
@@ -186,22 +186,22 @@ instead."
                 thing-name name (if map-p (second option) (third option))
                 (string-downcase thing-name)))))
 
-(defun warn-of-slips (definition name descriptor &key clause)
+(defun warn-of-misspellings (definition name descriptor &key clause)
   "Warn of probable misspellings in DESCRIPTOR of the thing NAME in DEFINITION. CLAUSE is the
 thing's clause in a map, or NIL."
-  (dolist (slip (slips-in descriptor))
+  (dolist (slip (find-misspellings descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
                         (clause-place (or clause (assoc (first slip) descriptor)))
-                        (text-of-slip name slip clause))))
+                        (misspelling-text name slip clause))))
 
-(defun note-slips (name descriptor world)
-  (dolist (slip (slips-in descriptor))
-    (warn-once (first slip) world (text-of-slip name slip))))
+(defun warn-once-of-misspellings (name descriptor world)
+  (dolist (slip (find-misspellings descriptor))
+    (warn-once (first slip) world (misspelling-text name slip))))
 
-(defun note-strange-name (key world)
+(defun warn-of-strange-attribute (key world)
   "Warn once if the attribute KEY of a specification is undeclared and no thing has it."
-  (unless (or (attribute-of key)
-              (said-p key world)
+  (unless (or (declared-attribute key)
+              (warning-given-p key world)
               (attribute-present-p key world))
     (warn-once key world
                (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~

@@ -3,7 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(location-contents location-position location-world location-closed-p location-full-p
-          location-name location-words thing thing-holders-text value-like note-unknown-substance))
+          location-name location-phrase thing thing-holders-text value-like
+          warn-of-unknown-substance))
 
 ;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
 ;;; layer above, a hand or storage bin, or NIL, as for prototypes and destroyed things. Holders
@@ -34,7 +35,7 @@ out of it."))
 (defgeneric location-name (location)
   (:documentation "Return the name of LOCATION for messages, a symbol or string."))
 
-(defgeneric location-words (location)
+(defgeneric location-phrase (location)
   (:documentation "Return the name of LOCATION for the middle of a sentence, with the robot that
 LOCATION belongs to.")
   (:method (location) (location-name location)))
@@ -128,16 +129,16 @@ nowhere" :near :addition)
   "Signal WRONG-ARGUMENT unless VALUE is valid for the attribute KEY. NIL is always valid."
   (when (typep value '(cons (eql quote)))
     (reject-argument operator key value "an unquoted value, because the value is not evaluated"))
-  (let ((attribute (attribute-of key)))
+  (let ((attribute (declared-attribute key)))
     (flet ((reject (expected) (reject-argument operator key value expected)))
       (cond ((and (floatp value) (not (finite-p value))) (reject (argument-type-text 'quantity)))
             ((eq key :draw-function)
-             (unless (draw-function-p value) (reject (draw-function-words value))))
+             (unless (draw-function-p value) (reject (draw-function-advice value))))
             ((or (null value) (null attribute)))
             ((eq key :substance)
              (unless (substance-value-p value)
                (reject "a number from -1e15 to 1e15, a substance's name, or a list (name number)"))
-             (note-unknown-substance value))
+             (warn-of-unknown-substance value))
             ((eq (attribute-kind attribute) :discrete)
              (unless (member value (attribute-domain attribute) :test #'value-equal)
                (reject (format nil "one of ~(~{~A~^, ~}~)~@[; did you mean ~(~A~)?~]"
@@ -147,7 +148,7 @@ nowhere" :near :addition)
             ((and (member key '(:size :weight :capacity)) (minusp value))
              (reject (argument-type-text 'amount)))))))
 
-(defun note-unknown-substance (value)
+(defun warn-of-unknown-substance (value)
   "Warn if VALUE, the value of a :substance attribute, names an unknown substance. Warn about the
 current definition, or else by a message."
   (let ((type (substance-value-type value)))
@@ -173,7 +174,7 @@ current definition, or else by a message."
 if THING is in no holder."
   (let ((holders (loop for location = (thing-location thing) then (thing-location location)
                        while (and location (not (eq location :floor)))
-                       collect (location-words location)
+                       collect (location-phrase location)
                        while (thing-p location))))
     (and holders (format nil "~{in ~A~^, ~}" holders))))
 

@@ -78,13 +78,13 @@ edges (reading 22)."
 
 ;;; The clauses.
 
-(defun made-of-p (type parameters counts)
+(defun valid-material-p (type parameters counts)
   "True if TYPE can be a substance, and PARAMETERS are numbers, whose count is in the list COUNTS."
   (and type (symbolp type) (member (length parameters) counts) (every #'quantity-p parameters)))
 
 (define-map-clause wall (map start end type &rest parameters)
     "(wall (x0 y0) (x1 y1) substance parameter [parameter1]), with numbers from -1e15 to 1e15"
-  :check (and (number-pair-p start) (number-pair-p end) (made-of-p type parameters '(1 2)))
+  :check (and (number-pair-p start) (number-pair-p end) (valid-material-p type parameters '(1 2)))
   :corners (list start end)
   :substance type
   :cells (apply #'draw-wall map start end type parameters))
@@ -92,7 +92,7 @@ edges (reading 22)."
 (define-map-clause rect (map start end type &rest parameters)
     "(rect (x0 y0) (x1 y1) substance parameter [three parameters more]), with numbers from -1e15
 to 1e15"
-  :check (and (number-pair-p start) (number-pair-p end) (made-of-p type parameters '(1 4)))
+  :check (and (number-pair-p start) (number-pair-p end) (valid-material-p type parameters '(1 4)))
   :corners (list start end)
   :substance type
   :cells (apply #'draw-rect map start end type parameters))
@@ -100,7 +100,7 @@ to 1e15"
 (define-map-clause circle (map center radius type parameter)
     "(circle (x y) radius substance parameter), numbers, radius not below 0"
   :check (and (number-pair-p center) (finite-p radius) (<= 0 radius)
-              (made-of-p type (list parameter) '(1)))
+              (valid-material-p type (list parameter) '(1)))
   :corners (destructuring-bind (x y) center
              (list (list (- x radius) (- y radius)) (list (+ x radius) (+ y radius))))
   :substance type
@@ -111,7 +111,7 @@ to 1e15"
 ;; A cell takes 20 bytes in its map, 2 while it is built, and 9 in a world. Other data need room.
 (defconstant +cell-bytes+ 40 "How many bytes of the heap there must be for each cell of a map.")
 
-(defun check-room (definition width height)
+(defun check-map-memory (definition width height)
   "Signal MALFORMED-DEFINITION if the heap is too small for a map of WIDTH by HEIGHT cells."
   (let ((possible (floor (heap-bytes) +cell-bytes+)))
     (when (< possible (* width height))
@@ -131,7 +131,7 @@ to 1e15"
   (setf (map-substance-types map)
         (coerce (cons nil (substances-of map (map-clauses map))) 'simple-vector)))
 
-(defun note-parameter-range (map)
+(defun record-parameter-range (map)
   (loop for flag across (map-flags map)
         for parameter across (map-parameters map)
         when (logtest +wall+ flag)
@@ -140,10 +140,10 @@ to 1e15"
                   (setf (map-least-parameter map) least
                         (map-greatest-parameter map) greatest))))
 
-(defun note-walls (map)
+(defun record-wall-facts (map)
   "Record the range of the walls' parameters in MAP, and whether walls enclose MAP, after all walls
 are drawn. Return MAP."
-  (note-parameter-range map)
+  (record-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)
           (and (loop for x from 0 to right

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.world)
 
-(export '(world do-cell world-rank-count thing-of-rank do-things change-world changing writing
-          first-time-p said-p note-looked-after looked-after-p warn-once doubt-angle))
+(export '(world do-cell world-rank-count thing-of-rank do-things change-world changing
+          permitting-changes first-time-p warning-given-p record-progress-checked
+          progress-checked-p warn-once warn-of-angle))
 
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
@@ -148,22 +149,22 @@ change as OPERATOR, a symbol, with the list ARGUMENTS.")
     (declare (ignore world operator arguments))
     (funcall function)))
 
-(declaim (inline writing-p))
-(defun writing-p (world)
+(declaim (inline changing-thread-p))
+(defun changing-thread-p (world)
   "True if this thread is changing WORLD, or there is no world to change."
   (or (null world)
       (eq (world-writer (the world world)) (current-thread))))
 
-(defun call-writing (function world)
+(defun call-changing-world (function world)
   "Call FUNCTION, which may change WORLD. Only the thread that owns WORLD may call this function."
   (let ((before (world-writer world)))
     (setf (world-writer world) (current-thread))
     (unwind-protect (funcall function)
       (setf (world-writer world) before))))
 
-(defmacro writing ((world) &body body)
+(defmacro permitting-changes ((world) &body body)
   "Run BODY, which may change WORLD. Only the thread that owns WORLD may use this macro."
-  (form-calling 'call-writing body world))
+  (form-calling 'call-changing-world body world))
 
 (defun world-of-living (thing)
   "Return the world that a change of THING affects: NIL if THING is a prototype or destroyed."
@@ -175,7 +176,7 @@ is NIL for prototypes. BODY does what OPERATOR, an unevaluated symbol, does with
 the journal records. Inside ticks, nothing is consed."
   (once-only (world)
     `(flet ((change-it () ,@body))
-       (if (writing-p ,world)
+       (if (changing-thread-p ,world)
            (change-it)
            ;; A separate closure, so that none is made above.
            (change-world (world-timeline ,world) ,world (lambda () (change-it))
@@ -189,7 +190,7 @@ the journal records. Inside ticks, nothing is consed."
 
 (defvar *noted-names-lock* (make-lock "noted names"))
 
-(defun said-p (key world)
+(defun warning-given-p (key world)
   "True if a warning about KEY has been queued in the run of WORLD."
   (with-lock (*noted-names-lock*)
     (and (member key (world-noted-names world) :test #'equal) t)))
@@ -202,13 +203,13 @@ now."
       (push key (world-noted-names world))
       t)))
 
-(defun note-looked-after (world)
+(defun record-progress-checked (world)
   "Record that the program itself has checked which commands are in progress in the run of WORLD."
   (first-time-p '(:looked-after) world))
 
-(defun looked-after-p (world)
+(defun progress-checked-p (world)
   "True if the program itself has checked which commands are in progress in the run of WORLD."
-  (said-p '(:looked-after) world))
+  (warning-given-p '(:looked-after) world))
 
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had a warning
@@ -219,7 +220,7 @@ if the warning was queued."
     (queue-items :warning (ensure-list items) :notable-p notable)
     t))
 
-(defun doubt-angle (operator world angle)
+(defun warn-of-angle (operator world angle)
   "Warn once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
   (when (perhaps-degrees-p angle)
     (warn-once (list :angle operator) world
