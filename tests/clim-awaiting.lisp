@@ -18,7 +18,7 @@
 
 (defun note-above (window)
   "Return what is said above the line that is typed in WINDOW, where one is."
-  (first (window::row-above (window::window-conversation window) "")))
+  (first (window::text-above-input (window::window-conversation window) "")))
 
 (test awaiting.is-said-above-the-line-and-in-the-strip
   (in-window (window robot)
@@ -54,7 +54,7 @@
       (cli::report-waiting-break (window::window-session window)
                                  (broken "oh" (base:current-thread)))
       (is (mentions-p (said-in window) "It waits until the one before is answered"))
-      (is (equal "Break> " (cli:unpainted-text (first (window::line-shown conversation))))))))
+      (is (equal "Break> " (cli:unpainted-text (first (window::shown-input-line conversation))))))))
 
 (test awaiting.code-that-draws-in-a-window-is-not-waited-for
   "Nobody could answer it: the thread that handles keys would wait. It is said once."
@@ -66,7 +66,7 @@
                              (incf calls)
                              (break "look")))
       (world:move-thing (world:find-thing "BOX#1") (robot:robot-hand robot 0))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::without-debugger
         (window::refresh window)
         (window::repaint (pane window 'window::hands)))
@@ -119,10 +119,10 @@
   (in-window (window robot)
     (let ((conversation (window::window-conversation window)))
       (leave-broken (window::window-session window) (broken "oh" (base:current-thread)))
-      (window::give-line conversation "rewind 10")
-      (window::begin-line-with conversation "turn ")
+      (window::run-line-at-prompt conversation "rewind 10")
+      (window::replace-input-line conversation "turn ")
       (is (has-words-p (said-in window)
                        "REWIND 10: answer the break first" "TURN: answer"))
       (is (equal "" (keys-given window)))
-      (window::give-line conversation "(describe 1)")
+      (window::run-line-at-prompt conversation "(describe 1)")
       (is (mentions-p (keys-given window) "(describe 1)")))))

@@ -27,11 +27,11 @@
         (is (equal text (held-in window)))
         (inside (window) (window::paste-text window :clipboard))
         (is (mentions-p (said-or-typed window) "line 00199 für uns"))
-        (window::give-key (window::window-conversation window) :control-c)))))
+        (window::pass-key (window::window-conversation window) :control-c)))))
 
 (defun said-or-typed (window)
   "Return what is being typed in WINDOW, once something is."
-  (loop for shown = (window::line-shown (window::window-conversation window))
+  (loop for shown = (window::shown-input-line (window::window-conversation window))
         until (and shown (string/= "" (second shown)))
         do (base:wait-on-semaphore *never-comes* 0.01)
         finally (return (second shown))))
@@ -48,7 +48,7 @@
 (test clipboard.a-long-transcript-can-be-copied
   (in-x-window (window robot)
     (let ((text (lines-of-length 100000)))
-      (window::say (window::window-transcript window) text)
+      (window::write-to-transcript (window::window-transcript window) text)
       (inside (window) (window::copy-text window))
       (is (mentions-p (held-in window) text)))))
 

@@ -22,8 +22,8 @@
   (in-shed
     (with-window-of (window 'mole)
       (type-here "world hayloft")
-      (window::leave-run window "it was left")
-      (window::match-robot window)
+      (window::leave-finished-run window "it was left")
+      (window::match-window-and-prompt window)
       (is (equal (list 'heifer time:*simulation*) (shown-in window)))
       (is (= 1 (occurrences "HEIFER in HAYLOFT." (said-in window)))))))
 
@@ -36,7 +36,7 @@
         (type-here "world hayloft")
         (window::switch-to-robot window (robot:find-robot 'heifer))
         (window::follow-prompt nil old time:*simulation*)
-        (window::match-robot window)
+        (window::match-window-and-prompt window)
         (is (equal (list 'heifer time:*simulation*) (shown-in window)))
         (is (= 0 (occurrences "HEIFER in HAYLOFT." (said-in window))))))))
 
@@ -47,7 +47,7 @@
       (type-here "world hayloft")
       (is (eq 'heifer (window::robot-to-show left)))
       (with-window-of (other 'heifer)
-        (is (eq other (window::window-for (robot:find-robot 'heifer))))
+        (is (eq other (window::window-to-show-robot (robot:find-robot 'heifer))))
         (is (null (window::robot-to-show left)))))))
 
 (test going-on.a-window-stays-when-there-is-no-run-to-go-on-in
@@ -56,19 +56,19 @@
     (with-window-of (window 'mole)
       (let ((old time:*simulation*))
         (run:end-simulation old "enough")
-        (window::leave-run window "enough")
-        (window::leave-run window "enough")
+        (window::leave-finished-run window "enough")
+        (window::leave-finished-run window "enough")
         (is (equal (list 'mole old) (shown-in window)))
         (is (= 1 (occurrences "The run of MOLE is over: enough." (said-in window))))
-        (is (eq window (window::window-for (robot:find-robot 'mole))))))))
+        (is (eq window (window::window-to-show-robot (robot:find-robot 'mole))))))))
 
 (test going-on.a-window-is-not-led-out-of-the-trial-of-its-prompt
   (in-shed
     (with-window-of (window 'mole)
       (let ((session (window::window-session window)))
-        (is (eq window (window::window-for (robot:find-robot 'mole))))
+        (is (eq window (window::window-to-show-robot (robot:find-robot 'mole))))
         (setf (cli::session-forks session) 1)
-        (is (null (window::window-for (robot:find-robot 'mole))))))))
+        (is (null (window::window-to-show-robot (robot:find-robot 'mole))))))))
 
 (test going-on.a-second-window-on-a-run-comes-back-to-its-robot
   (in-shed
@@ -85,28 +85,28 @@
           (setf (window::watcher-robot (window::window-watcher second)) 'mole)
           (window::follow-prompt nil fork run)
           (is (equal (list 'vole run) (shown-in second)))
-          (window::match-robot second)
+          (window::match-window-and-prompt second)
           (is (not (mentions-p (said-in second) "WOODSHED")))
           (is (equal (list 'mole run) (shown-in first))))))))
 
 (test going-on.one-set-of-words-tells-of-windows-that-close
   (in-shed
     (with-window-of (window 'mole)
-      (is (mentions-p (window::words-for-closing window "out of ink")
+      (is (mentions-p (window::closing-message window "out of ink")
                       "MOLE has closed: out of ink. The run continues; the line WINDOW"))
       (run:end-simulation time:*simulation* "enough")
       (is (equal "The window of MOLE has closed: out of ink"
-                 (window::words-for-closing window "out of ink"))))))
+                 (window::closing-message window "out of ink"))))))
 
 ;;; What was said before there was a window.
 
 (test going-on.a-new-window-tells-what-was-said-of-definitions
   (in-window (window robot)
-    (let ((window::*last-settings* '()) (window::*legacies* '())
+    (let ((window::*last-settings* '()) (window::*window-states* '())
           (cli::*first-messages* (let ((base:*message-queue* (base:make-message-queue)))
                                    (base:warning-set "The poster is inside a wall.")
                                    (base:take-messages))))
-      (window::take-settings window)
+      (window::restore-settings window)
       (is (mentions-p (said-in window) "The poster is inside a wall")))))
 
 ;;; When something ends the thread of a prompt.
@@ -121,12 +121,12 @@
     (let ((conversation (window::window-conversation window))
           (simulation (time:current-simulation)))
       (window::start-conversation conversation simulation 'studio-robot)
-      (window::give-line conversation "(sb-thread:abort-thread)")
+      (window::run-line-at-prompt conversation "(sb-thread:abort-thread)")
       (join-prompt window)
-      (window::restart-if-lost conversation simulation 'studio-robot)
+      (window::restart-prompt-if-lost conversation simulation 'studio-robot)
       (is (mentions-p (said-in window) "A new thread starts"))
-      (window::give-line conversation "(* 6 7)")
-      (window::give-line conversation "quit")
+      (window::run-line-at-prompt conversation "(* 6 7)")
+      (window::run-line-at-prompt conversation "quit")
       (join-prompt window)
       (is (mentions-p (said-in window) "42"))
       (is (not (window::conversation-lost-p conversation))))))

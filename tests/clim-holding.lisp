@@ -22,16 +22,17 @@
 (test holding.what-is-held-is-told-of-where-it-is
   "In a hand or a bin, and not where it was picked up."
   (in-window (window robot)
-    (is (mentions-p (window::subject-text (hold-pen window robot (robot:robot-hand robot 0)))
+    (is (mentions-p (window::subject-description (hold-pen window robot (robot:robot-hand robot 0)))
                     "PEN#2 in hand 0 of STUDIO-ROBOT"))
     (is (mentions-p (with-output-to-string (*standard-output*)
                       (describe (world:find-thing "PEN#2")))
                     "Where: in hand 0 of STUDIO-ROBOT"))
-    (is (mentions-p (window::subject-text
+    (is (mentions-p (window::subject-description
                      (hold-pen window robot (robot:robot-storage-bin robot 0)))
                     "PEN#2 in storage-bin 0 of STUDIO-ROBOT"))
     (world:move-thing (world:find-thing "PEN#2") (world:find-thing "BOX#1"))
-    (is (mentions-p (window::subject-text (display::image-of-thing (world:find-thing "PEN#2")))
+    (is (mentions-p (window::subject-description
+                     (display::image-of-thing (world:find-thing "PEN#2")))
                     "PEN#2 in BOX#1"))))
 
 (test holding.what-is-held-can-be-let-go-of-and-stowed
@@ -71,7 +72,7 @@
            (x (1+ (first box))) (y (1+ (second box))))
       (window::handle-press pane :left x y)
       (window::handle-drag pane (+ x 40) y)
-      (is (mentions-p (window::window-hint window) "Only lines let go of PEN#2"))
+      (is (mentions-p (window::window-hint window) "Only prompt lines let go of PEN#2"))
       (is (mentions-p (window::window-hint window) "hand-ungrasp 0"))
       (window::handle-drop pane (+ x 40) y)
       (is (null (window::window-selection window)) "it was no click")

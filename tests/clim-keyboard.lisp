@@ -12,7 +12,7 @@
 (defparameter *symbols-of-two* #(#x71 #x51 #x6ca #x6ea #x40 #x7d9))
 
 (defun symbol-of (symbols state)
-  (window::altgr-symbol (lambda (index) (svref symbols index)) state))
+  (window::altgr-key-symbol (lambda (index) (svref symbols index)) state))
 
 (test keyboard.altgr-gives-what-stands-beside-it
   (is (eql (char-code #\{) (symbol-of *symbols-of-7* #x80)))
@@ -24,14 +24,14 @@
   (is (null (symbol-of *symbols-of-two* #x80))))
 
 (test keyboard.mcclim-asks-us
-  (is (eq #'window::read-key (fdefinition window::*key-reader*))))
+  (is (eq #'window::read-key (fdefinition window::*mcclim-key-reader-name*))))
 
 (defun typed-with (window &rest keys)
   "Return what WINDOW types when KEYS are pressed, which are characters or names of keys."
   (let ((window::*dead-key* nil))
     (format nil "~{~A~}"
             (loop for key in keys
-                  append (loop for event in (window::after-dead-key (press-of window key))
+                  append (loop for event in (window::events-after-dead-key (press-of window key))
                                collect (clim:keyboard-event-character event))))))
 
 (defun press-of (window key)

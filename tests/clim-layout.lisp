@@ -67,7 +67,7 @@
            (destructuring-bind (left top width height) (place-of name places)
              (declare (ignore left width))
              (+ top height)))
-         (needs (section) (second (assoc section window::*first-needs*))))
+         (needs (section) (second (assoc section window::*initial-heights*))))
     (let ((places (window::arrange (window::make-preferences) #'needs 640 480)))
       (is (= (bottom 'window::transcript places) (bottom 'window::plan-title places)))
       (loop for (section lines) in '((window::state 4) (window::cameras 3) (window::hands 1)
@@ -81,7 +81,7 @@
   (let ((canvas (make-instance 'window::clim-canvas :medium nil :bottom 38)))
     (flet ((whole (offset)
              (setf (window::canvas-dy canvas) (- offset))
-             (loop for base from 18 to 66 by 16 collect (window::uncut-p canvas base))))
+             (loop for base from 18 to 66 by 16 collect (window::text-uncut-p canvas base))))
       (is (equal '(t t nil nil) (whole 0)))
       (is (equal '(nil t t nil) (whole 16)))
       (is (equal '(nil nil t nil) (whole 28))))))
@@ -118,13 +118,13 @@
 (test layout.titles-fold-displays
   (in-window (window robot)
     (lay-out window 800 600)
-    (is (not (window::shown-p (pane window 'window::plan))))
+    (is (not (window::pane-shown-p (pane window 'window::plan))))
     (window::handle-click (pane window 'window::plan-title) :left 5 5)
-    (is (window::shown-p (pane window 'window::plan)))
+    (is (window::pane-shown-p (pane window 'window::plan)))
     (window::handle-click (pane window 'window::state-title) :left 5 5)
-    (is (not (window::shown-p (pane window 'window::state))))
+    (is (not (window::pane-shown-p (pane window 'window::state))))
     (window::handle-click (pane window 'window::state-title) :left 5 5)
-    (is (window::shown-p (pane window 'window::state)))))
+    (is (window::pane-shown-p (pane window 'window::state)))))
 
 (test layout.splitters-move
   (in-window (window robot)
@@ -145,7 +145,7 @@
 (test layout.the-splitters-of-the-plans-column-move
   (in-window (window robot)
     (lay-out window 1600 900)
-    (window::fold window 'window::plan nil)
+    (window::fold-section window 'window::plan nil)
     (flet ((width (name) (window::pane-size (pane window name)))
            (pull (name x)
              (let ((pane (pane window name)))
@@ -159,8 +159,8 @@
         (pull 'window::plan-splitter 80)
         (is (equal (list (- world 100) (+ plan 180) (- state 80))
                    (mapcar #'width '(window::world window::plan window::state))))
-        (window::fold window 'window::plan)
-        (is (not (window::shown-p (pane window 'window::plan-splitter))))))))
+        (window::fold-section window 'window::plan)
+        (is (not (window::pane-shown-p (pane window 'window::plan-splitter))))))))
 
 (defun high-as-needed-p (window)
   "True if each display of details in WINDOW is as high as what it shows, designators at least so."
@@ -178,15 +178,15 @@
      (lambda (window)
        (flet ((show (name)
                 (window::show-robot-called window name (time:current-simulation))
-                (window::publish (window::window-watcher window) (time:current-simulation))
+                (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
                 (window::refresh window)
                 (high-as-needed-p window)))
          (lay-out window 1180 900)
          (is (show 'ars-worlds:gofer))
          (is (show 'ars-worlds:marvin))
-         (window::fold window 'window::cameras)
+         (window::fold-section window 'window::cameras)
          (show 'ars-worlds:gofer)
-         (window::fold window 'window::cameras nil)
+         (window::fold-section window 'window::cameras nil)
          (is (high-as-needed-p window))))
      ars-worlds:marvin)))
 
@@ -196,13 +196,13 @@
     (lay-out window 1180 900)
     (is (high-as-needed-p window))
     (world:move-thing (world:find-thing "PEN#2") (robot:robot-storage-bin robot 0))
-    (window::publish (window::window-watcher window) (time:current-simulation))
+    (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
     (window::refresh window)
     (is (high-as-needed-p window))))
 
 (defun publish-and-refresh (window)
   "Let WINDOW show how its run is now."
-  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
   (window::refresh window))
 
 (defun title-tops (window)
@@ -214,7 +214,7 @@
   "Check that titles in a window HEIGHT pixels high, with the plan open if PLAN-P, stay where they
 are when so many DESIGNATORS and a thing in a bin go."
   (in-window (window robot)
-    (when plan-p (window::fold window 'window::plan nil))
+    (when plan-p (window::fold-section window 'window::plan nil))
     (lay-out window 1280 height)
     (let ((before (title-tops window)))
       (dotimes (count designators) (robot:add-designator robot :x 2 :y 2))
@@ -226,8 +226,8 @@ are when so many DESIGNATORS and a thing in a bin go."
         (world:move-thing (world:find-thing "PEN#2") 3.5 3.5)
         (publish-and-refresh window)
         (is (equal grown (title-tops window)))
-        (window::fold window 'window::hands)
-        (window::fold window 'window::hands nil)
+        (window::fold-section window 'window::hands)
+        (window::fold-section window 'window::hands nil)
         (is (equal before (title-tops window)))))))
 
 (test layout.titles-stay-when-a-display-shows-less
@@ -249,7 +249,7 @@ takes all the room that there is."
 (defun show-many-designators (window robot)
   "Let ROBOT have 40 designators; return the pane of WINDOW that shows them."
   (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
-  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
   (window::refresh window)
   (pane window 'window::designators))
 
@@ -284,7 +284,7 @@ takes all the room that there is."
          (is (= (window::pane-extent pane) (cameras-height window pane)) "all are drawn")
          (loop repeat 20
                do (setf reached (union reached (cameras-drawn window pane)))
-                  (window::scroll pane 16))
+                  (window::scroll-pane pane 16))
          (is (equal '(0 1 2) (sort reached #'<)))))
      ars-worlds:marvin)))
 
@@ -303,9 +303,9 @@ takes all the room that there is."
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((pane (show-many-designators window robot)))
-      (window::scroll pane 300)
+      (window::scroll-pane pane 300)
       (is (= 300 (window::pane-offset pane)))
       (mapc #'robot:drop-designator (robot:live-designators robot))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (= 0 (window::pane-offset pane))))))

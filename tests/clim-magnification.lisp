@@ -7,11 +7,11 @@
 (defun sizes-of-panes (window)
   "Return width and height of each pane of WINDOW that is to be seen."
   (loop for pane in (window::display-panes window)
-        when (window::shown-p pane) collect (multiple-value-list (window::pane-size pane))))
+        when (window::pane-shown-p pane) collect (multiple-value-list (window::pane-size pane))))
 
 (test magnification.follows-what-programs-are-told-of-the-screen
   (flet ((magnification (resources)
-           (window::usual-magnification (window::resolution-in resources))))
+           (window::usual-magnification (window::resolution-in-resources resources))))
     (is (= 1 (magnification "")))
     (is (= 1 (magnification (format nil "Xft.antialias: 1~%Xft.dpi: 96~%"))))
     (is (= 2 (magnification (format nil "*color: red~%Xft.dpi:~C192" #\Tab))))
@@ -33,7 +33,7 @@
     (let ((sizes (sizes-of-panes window)))
       (lay-out window 1400 1000)
       (is (not (equal sizes (sizes-of-panes window))))
-      (window::magnify window 2)
+      (window::set-magnification window 2)
       (is (equal sizes (sizes-of-panes window))))))
 
 (test magnification.can-be-chosen-in-a-menu
@@ -48,20 +48,20 @@
       (window::com-smaller)
       (is (mentions-p (said-in window) "The window is at its smallest size"))
       (dotimes (times 10) (window::com-larger))
-      (is (<= (window::window-magnification window) window::+most-magnified+))
+      (is (<= (window::window-magnification window) window::+greatest-magnification+))
       (is (mentions-p (said-in window) "The window is at its largest size")))))
 
 (test magnification.points-where-the-mouse-is
   "A click on the screen picks what is drawn there, a drag of a splitter follows."
   (in-window (window robot)
-    (window::magnify window 3)
+    (window::set-magnification window 3)
     (lay-out window 2400 1800)
     (let* ((pane (pane window 'window::world)) (splitter (pane window 'window::side-splitter))
            (width (window::pane-size pane)))
-      (multiple-value-bind (x y) (window::robot-place pane)
+      (multiple-value-bind (x y) (window::robot-position-in-pane pane)
         (is (mentions-p (window::hover-text pane (floor x) (floor y)) "STUDIO-ROBOT"))
         (multiple-value-bind (at-x at-y)
-            (window::event-place pane (motion-event pane (* 3 (floor x)) (* 3 (floor y))))
+            (window::event-position pane (motion-event pane (* 3 (floor x)) (* 3 (floor y))))
           (is (= (floor x) at-x))
           (is (= (floor y) at-y))))
       (window::handle-press splitter :left 1 1)
@@ -75,12 +75,12 @@
 
 (test magnification.is-kept-for-the-next-window
   (in-window (window robot)
-    (window::magnify window 2)
-    (let ((window::*last-settings* '()) (window::*legacies* '()))
-      (window::keep-settings window)
+    (window::set-magnification window 2)
+    (let ((window::*last-settings* '()) (window::*window-states* '()))
+      (window::save-settings window)
       (call-with-window
        (lambda (next)
          (is (= 1 (window::window-magnification next)))
-         (window::take-settings next)
+         (window::restore-settings next)
          (is (= 2 (window::window-magnification next))))
        robot))))

@@ -7,11 +7,11 @@
 (defun open-menu-called (window title)
   "Click on the menu called TITLE in the bar of WINDOW."
   (let ((bar (pane window 'window::menus)))
-    (window::take-press bar :left
-                        (+ 5 (window::menu-left bar (find title window::*menus*
-                                                          :key #'window::menu-title
-                                                          :test #'equal)))
-                        5)))
+    (window::handle-any-press bar :left
+                              (+ 5 (window::menu-left bar (find title window::*menus*
+                                                                :key #'window::menu-title
+                                                                :test #'equal)))
+                              5)))
 
 (defun rows-of-popup (window)
   "Return the texts of the menu or panel that is open in WINDOW, or NIL."
@@ -23,8 +23,9 @@
   (let* ((popup (window::window-popup window))
          (position (position text (rows-of-popup window) :test #'equal)))
     (window::scroll-to popup (* position window::+row-height+))
-    (window::take-press popup :left 20
-                        (- (+ 8 (* position window::+row-height+)) (window::pane-offset popup)))))
+    (window::handle-any-press popup :left 20
+                              (- (+ 8 (* position window::+row-height+))
+                                 (window::pane-offset popup)))))
 
 (defun popup-inside-p (window)
   (let ((popup (window::window-popup window)))
@@ -37,35 +38,36 @@
 (test window.what-was-said-comes-back-for-each-robot-that-it-has-shown
   "ROBOT may have led the window to another one."
   (in-window (window robot)
-    (let ((window::*last-settings* '()) (window::*legacies* '()))
-      (window::say (window::window-transcript window) (format nil "That was said.~%"))
+    (let ((window::*last-settings* '()) (window::*window-states* '()))
+      (window::write-to-transcript (window::window-transcript window)
+                                  (format nil "That was said.~%"))
       (window::show-robot-called window 'other (time:current-simulation))
-      (window::keep-settings window)
+      (window::save-settings window)
       (call-with-window
        (lambda (next)
-         (window::take-settings next)
+         (window::restore-settings next)
          (is (mentions-p (said-in next) "That was said.")))
        robot))))
 
 (test window.a-new-one-is-as-the-user-left-the-last
   "Layers, displays folded away, sizes, and what was said."
   (in-window (window robot)
-    (window::switch-layer window :grid)
-    (window::fold window 'window::hands)
+    (window::toggle-layer window :grid)
+    (window::fold-section window 'window::hands)
     (setf (window::preferences-details-width (window::window-preferences window)) 300)
-    (window::say (window::window-transcript window) (format nil "That was said.~%"))
-    (let ((window::*last-settings* '()) (window::*legacies* '())
+    (window::write-to-transcript (window::window-transcript window) (format nil "That was said.~%"))
+    (let ((window::*last-settings* '()) (window::*window-states* '())
           (layers (window::window-layers window)))
-      (window::keep-settings window)
+      (window::save-settings window)
       (call-with-window
        (lambda (next)
-         (window::take-settings next)
+         (window::restore-settings next)
          (is (equal layers (window::window-layers next)))
-         (is (window::folded-p next 'window::hands))
+         (is (window::section-folded-p next 'window::hands))
          (is (= 300 (window::preferences-details-width (window::window-preferences next))))
          (is (mentions-p (said-in next) "That was said."))
-         (window::fold next 'window::hands nil)
-         (is (window::folded-p window 'window::hands) "each has its own"))
+         (window::fold-section next 'window::hands nil)
+         (is (window::section-folded-p window 'window::hands) "each has its own"))
        robot))))
 
 (test menus.open-one-another
@@ -83,12 +85,12 @@
   "Each of the prompt's lines can be chosen in a menu, at 640 x 480."
   (in-window (window robot)
     (lay-out window 640 480)
-    (dolist (group (window::line-menus))
+    (dolist (group (window::prompt-line-menus))
       (open-menu-called window "Robot")
       (is (popup-inside-p window))
       (choose-in-menu window (format nil "~A >" (window::menu-title group)))
       (is (popup-inside-p window))
-      (is (equal (cons "< Robot" (cl:mapcar #'first (window::menu-items-now group)))
+      (is (equal (cons "< Robot" (cl:mapcar #'first (window::current-menu-items group)))
                  (rows-of-popup window)))
       (window::close-popup window))))
 
@@ -129,7 +131,7 @@
                                :key (lambda (subject) (window::button-label (first subject)))
                                :test #'equal))
                  (declare (ignore rest))
-                 (window::take-press bar :left (+ left 3) (+ top 3)))))
+                 (window::handle-any-press bar :left (+ left 3) (+ top 3)))))
         (press "Layers")
         (is (member "In colour" (rows-of-popup window) :test #'equal))
         (press "Help")
@@ -168,7 +170,7 @@
     (let ((popup (window::window-popup window)))
       (window::open-first-menu window)
       (move-mouse popup 20 60)
-      (window::point-further popup 1)
+      (window::highlight-further-row popup 1)
       (let ((row (window::pane-pointed popup)))
         (move-mouse popup 20 60)
         (is (eq row (window::pane-pointed popup)))

@@ -12,11 +12,11 @@
   "Return the pane of plans in WINDOW, which shows them as VIEW, as they are now."
   (let ((pane (pane window 'window::plan)))
     (lay-out window 1600 900)
-    (window::fold window 'window::plan nil)
-    (window::show-plans-as pane view)
+    (window::fold-section window 'window::plan nil)
+    (window::set-plan-view pane view)
     (window::repaint pane)
     (setf (window::plan-look-due (window::plan-look-of pane)) 0d0)
-    (window::look-at-plans (window::plan-look-of pane))
+    (window::update-look-if-changed (window::plan-look-of pane))
     (window::repaint-if-changed pane)
     pane))
 
@@ -80,13 +80,13 @@
     (run:run-ticks 3)
     (let* ((pane (seen-plans window)) (look (window::plan-look-of pane)))
       (setf (window::plan-look-due look) 0d0)
-      (is (not (window::look-at-plans look)))
+      (is (not (window::update-look-if-changed look)))
       (run:run-ticks 30)
-      (is (window::look-at-plans look))
-      (window::fold window 'window::plan)
+      (is (window::update-look-if-changed look))
+      (window::fold-section window 'window::plan)
       (run:run-ticks 30)
       (setf (window::plan-look-due look) 0d0)
-      (is (not (window::look-at-plans look)) "what nobody sees is not looked at"))))
+      (is (not (window::update-look-if-changed look)) "what nobody sees is not looked at"))))
 
 (test plan-pane.tells-how-the-last-plan-ended
   (in-window (window robot)
@@ -100,16 +100,17 @@
     (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
     (run:run-ticks 3)
     (let* ((look (window::plan-look-of (seen-plans window)))
-           (interface (window::interface-of (time:current-simulation)))
+           (interface (window::plan-interface-of (time:current-simulation)))
            (before (window::plan-look-tree look)))
       (run:run-ticks 40)
       (setf (window::plan-look-due look) 0d0)
       (ars-magna.rpl-robot:call-with-plans
        (lambda ()
-         (base:join-thread (base:start-thread (lambda () (window::look-at-plans look)) "look")))
+         (base:join-thread (base:start-thread (lambda () (window::update-look-if-changed look))
+                                              "look")))
        interface)
       (is (eq before (window::plan-look-tree look)))
-      (is (window::look-at-plans look)))))
+      (is (window::update-look-if-changed look)))))
 
 ;;; The timeline.
 
@@ -118,11 +119,11 @@
     (let ((ars-magna.rpl-robot:*trace-plans* t))
       (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
       (run:run-ticks 30)
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (let* ((pane (seen-plans window :timeline))
              (page (window::plan-look-page (window::plan-look-of pane)))
              (x (ars-magna.rpl-pictures::x-of-tick
-                 10 (ars-magna.rpl-pictures:scale-for page (window::content-width pane)))))
+                 10 (ars-magna.rpl-pictures:page-scale page (window::content-width pane)))))
         (is (mentions-p (window::hover-text pane x 60) "Tick 10"))
         (window::handle-click pane :left x 60)
         (is (equal '("rewind-to 10") (lines-given window)))
@@ -134,7 +135,7 @@
   (in-window (window robot)
     (let ((pane (seen-plans window)) (switch (window::make-button "x" nil nil "")))
       (flet ((box-of (y)
-               (window::painting (canvas pane)
+               (window::with-pane-canvas (canvas pane)
                  (canvas:with-clipping (canvas 0 23 200 100)
                    (canvas:with-origin (canvas 0 (- y))
                      (canvas:with-subject (canvas switch)
@@ -167,9 +168,9 @@
       (let ((page (window::plan-look-page (window::plan-look-of (seen-plans window :timeline)))))
         (flet ((names (width)
                  (let ((left (ars-magna.rpl-pictures::scale-left
-                              (ars-magna.rpl-pictures:scale-for page width))))
+                              (ars-magna.rpl-pictures:page-scale page width))))
                    (loop for row in (ars-magna.rpl-pictures::page-rows page)
-                         collect (ars-magna.rpl-pictures::row-name row (- left 20))))))
+                         collect (ars-magna.rpl-pictures::cut-row-label row (- left 20))))))
           (is (some (lambda (name) (search "..." name)) (names 200)))
           (is (notany (lambda (name) (search "..." name)) (names 700))))))))
 
@@ -206,7 +207,7 @@
     (run:run-ticks 3)
     (let ((ars-magna.rpl-robot:*trace-plans* t))
       (ars-magna.rpl:start-trace (ars-magna.rpl-robot:interface-runner
-                                  (window::interface-of (time:current-simulation))))
+                                  (window::plan-interface-of (time:current-simulation))))
       (run:run-ticks 2)
       (run:rewind 3)
       (window::watch-simulation (window::window-watcher window) (time:current-simulation))
@@ -290,5 +291,5 @@
 (test following.buttons-are-lines-where-the-prompt-lets-ticks-pass
   "The studio's run is not live, as that of a trial."
   (in-window (window robot)
-    (window::do-key window nil #\.)
+    (window::handle-key window nil #\.)
     (is (equal '("step 1") (lines-given window)))))

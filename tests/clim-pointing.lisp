@@ -39,13 +39,13 @@
         (window::handle-hover pane 28 36)
         (is (told-p "BOX#1"))
         (world:move-thing (world:find-thing "BOX#1") (list 15.5 2.5))
-        (window::publish (window::window-watcher window) (time:current-simulation))
+        (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
         (window::refresh window)
         (is (told-p "Cell 3, 4"))
         (is (not (told-p "BOX#1")))
-        (window::zoom pane 2)
+        (window::zoom-view pane 2)
         (is (told-p "Cell 1, 2"))
-        (window::hint window "The run is at this tick now.")
+        (window::show-hint window "The run is at this tick now.")
         (window::repaint pane)
         (is (told-p "The run is at this tick now.") "which stays until the mouse moves")
         (window::handle-hover pane 28 36)
@@ -62,7 +62,7 @@
 (defun robot-beneath (window thing-spot)
   "Let the robot of WINDOW stand at THING-SPOT; return its display of the world, painted."
   (apply #'robot:place-robot (first (run:simulation-robots)) (append thing-spot '(0)))
-  (window::publish (window::window-watcher window) (time:current-simulation))
+  (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
   (window::refresh window)
   (painted-world window))
 
@@ -74,7 +74,7 @@
         (is (mentions-p (window::hover-text pane 44 36) "PEN#"))
         (is (mentions-p (window::hover-text pane 44 36) "STUDIO-ROBOT"))
         (is (equal "STUDIO-ROBOT" (taken)))
-        (window::pick-next pane 44 36)
+        (window::select-next-at pane 44 36)
         (is (mentions-p (taken) "PEN#"))))))
 
 (defun same-place-p (box other)
@@ -95,7 +95,7 @@ leads to both."
                              when (typep subject 'display:robot-image) collect box)))
            (is (= 2 (length boxes)))
            (is (not (same-place-p (first boxes) (second boxes))))
-           (multiple-value-bind (x y) (window::robot-place pane)
+           (multiple-value-bind (x y) (window::robot-position-in-pane pane)
              (is (eq (robot:robot-name shown)
                      (display:robot-image-name (window::draggable-at pane (round x) (round y)))))
              (dolist (name '("MARVIN" "GOFER"))
@@ -113,7 +113,7 @@ leads to both."
 
 (test panels.close-by-their-key-and-by-escape
   (in-window (window robot)
-    (flet ((press (character) (window::do-key window nil character)))
+    (flet ((press (character) (window::handle-key window nil character)))
       (press #\L)
       (is (window::popup-open-p window))
       (press #\L)
@@ -143,14 +143,15 @@ leads to both."
        (let ((*focus* (list nil)) (port (clim:port one)))
          (flet ((click-in (window)
                   (let ((pane (pane window 'window::interactor)))
-                    (window::give-keys-by port (make-instance 'clim:pointer-button-press-event
-                                                              :sheet pane :x 5 :y 5
-                                                              :button clim:+pointer-left-button+
-                                                              :modifier-state 0)))))
+                    (window::direct-keys-by-event
+                     port (make-instance 'clim:pointer-button-press-event
+                                         :sheet pane :x 5 :y 5
+                                         :button clim:+pointer-left-button+
+                                         :modifier-state 0)))))
            (click-in one)
            (click-in other)
-           (window::type-into (pane other 'window::interactor))
-           (window::type-into (pane one 'window::interactor))
+           (window::focus-and-repaint (pane other 'window::interactor))
+           (window::focus-and-repaint (pane one 'window::interactor))
            (is (window::focused-p (pane other 'window::interactor)))
            (is (not (window::focused-p (pane one 'window::interactor))))
            (click-in one)
@@ -206,7 +207,7 @@ leads to both."
   "A hand grasps only what a local designator denotes."
   (in-window (window robot)
     (robot:place-robot robot 3.1 4.5 0)
-    (window::publish (window::window-watcher window) (time:current-simulation))
+    (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
     (let ((rows (offered (painted-world window) 28 36)))
       (is (find "obj-desig 0 local ((:color red))" rows :test #'search) "~A" rows)
       (is (not (find "non-local" rows :test #'search))))))
@@ -215,10 +216,10 @@ leads to both."
   "What was painted is an image of a moment that is over; the robot is still the one commanded."
   (in-window (window robot)
     (let ((before (window::window-robot window)))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (is (not (eq before (window::window-robot window))))
       (is (member '("Stop" "stop") (window::offers before window) :test #'equal))
-      (is (equal "pos 3 4" (window::moving-line before "3" "4" window))))))
+      (is (equal "pos 3 4" (window::line-that-moves before "3" "4" window))))))
 
 (test pointing.offers-what-can-be-done-with-a-designator
   "Track, and what is tracked, grasp."
@@ -226,7 +227,7 @@ leads to both."
     (let ((number (robot:designator-number
                    (robot:add-designator robot :denotation (world:find-thing "BOX#1")
                                                :x 1 :y 0))))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (is (find (format nil "cam-track 0 ~D" number) (offered (painted-world window) 28 36)
                 :test #'search)))))
 
@@ -250,7 +251,7 @@ leads to both."
   (in-window (window robot)
     (robot:place-robot robot 3.5 4.5 0)
     (world:make-new-thing 'ars-user::lid (list (robot:robot-world robot) 3.5 4.5) '((:size 1)))
-    (window::publish (window::window-watcher window) (time:current-simulation))
+    (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
     (let ((pane (painted-world window)))
       (dolist (name '("LID" "BOX#1" "STUDIO-ROBOT" "Cell 3, 4"))
         (is (mentions-p (window::hover-text pane 28 36) name)))
@@ -345,7 +346,7 @@ leads to both."
     (let ((simulation (time:current-simulation)))
       (run:start-clock simulation :rate 20)
       (unwind-protect
-           (flet ((key (character) (window::do-key window nil character)))
+           (flet ((key (character) (window::handle-key window nil character)))
              (is (key #\Space))
              (is (time:paused-p simulation))
              (is (key #\Space))
@@ -360,7 +361,7 @@ leads to both."
                          :test #'string=))
              (key #\L)
              (is (window::popup-open-p window))
-             (is (window::do-key window :return #\Return))
+             (is (window::handle-key window :return #\Return))
              (is (not (window::popup-open-p window)))
              ;; A line begins with a small letter; what follows belongs to it.
              (is (key #\b))

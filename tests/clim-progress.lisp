@@ -5,7 +5,7 @@
 (in-suite clim)
 
 (defun progress-text-of (simulation &optional (pulse (window::make-sample)))
-  (window::progress-text (window::progress-of simulation pulse)))
+  (window::progress-text (window::measure-progress simulation pulse)))
 
 (test progress.says-whether-time-stands-still
   (in-studio (robot)
@@ -25,11 +25,11 @@
 
 (test progress.measures-the-rate-over-some-ticks
   (let ((pulse (window::make-sample :seconds 100d0)))
-    (is (null (window::measure pulse 3 100.5d0)))
-    (is (= 20 (window::measure pulse 20 101d0)))
-    (is (= 20 (window::measure pulse 21 101.2d0)))
-    (is (= 40 (window::measure pulse 60 102d0)))
-    (is (null (window::measure pulse 5 103d0)))))
+    (is (null (window::measure-rate pulse 3 100.5d0)))
+    (is (= 20 (window::measure-rate pulse 20 101d0)))
+    (is (= 20 (window::measure-rate pulse 21 101.2d0)))
+    (is (= 40 (window::measure-rate pulse 60 102d0)))
+    (is (null (window::measure-rate pulse 5 103d0)))))
 
 (defun call-while-code-holds (function robot &optional (enter (constantly nil)))
   "Call FUNCTION with the live run of ROBOT while a continuation there, which calls ENTER, waits."
@@ -60,7 +60,7 @@
     (call-while-code-holds
      (lambda (simulation)
        (let ((pulse (window::make-sample)))
-         (window::progress-of simulation pulse)
+         (window::measure-progress simulation pulse)
          (is (mentions-p (progress-text-of simulation pulse) "busy in"))))
      robot)))
 
@@ -68,9 +68,9 @@
   (in-studio (robot)
     (let* ((count 0)
            (watcher (window::make-watcher 'studio-robot (lambda () (incf count)))))
-      (window::look-at-scale watcher)
+      (window::check-graphics-scale watcher)
       (is (= 0 count))
       (let ((canvas:graphics-scale* 13))
-        (window::look-at-scale watcher)
-        (window::look-at-scale watcher)
+        (window::check-graphics-scale watcher)
+        (window::check-graphics-scale watcher)
         (is (= 1 count))))))

@@ -12,7 +12,7 @@
   "Do what TALK-IN does in WINDOW, which commands ROBOT, the name of one."
   (let ((conversation (window::window-conversation window)))
     (window::start-conversation conversation (time:current-simulation) robot)
-    (dolist (line lines) (window::give-line conversation line))
+    (dolist (line lines) (window::run-line-at-prompt conversation line))
     (base:join-thread (window::conversation-thread conversation))
     (said-in window)))
 
@@ -42,10 +42,10 @@
 
 (test talking.pasted-lines-are-done-one-after-the-other
   (in-window (window robot)
-    (window::give-key (window::window-conversation window)
+    (window::pass-key (window::window-conversation window)
                       (list :paste (format nil "Robot> (+ 20 22)~%42~%Robot> (+ 1 1)~%2~%~
                                                 Robot> quit")))
-    (window::give-key (window::window-conversation window) :return)
+    (window::pass-key (window::window-conversation window) :return)
     (is (mentions-p (cli:unpainted-text (talk-in window))
                     (format nil "Robot> (+ 20 22)~%42~%Robot> (+ 1 1)~%2~%Robot> quit")))))
 
@@ -59,7 +59,7 @@
   (typed-ahead-of (window::window-session window)))
 
 (defun give-keys (window &rest keys)
-  (dolist (key keys) (window::give-key (window::window-conversation window) key)))
+  (dolist (key keys) (window::pass-key (window::window-conversation window) key)))
 
 (test ahead.is-seen-and-edited
   (in-window (window robot)
@@ -111,7 +111,7 @@
            (conversation (window::begin-conversation transcript (lambda () (values 80 24))
                                                      (constantly nil) (constantly nil))))
       (flet ((give (&rest keys)
-               (dolist (key keys) (window::give-key conversation key)))
+               (dolist (key keys) (window::pass-key conversation key)))
              (said-p (part)
                (mentions-p (format nil "~{~A~%~}" (window::latest-lines transcript 50)) part)))
         (setf (symbol-value (intern "*THERE*" :ars-user)) there)
@@ -134,14 +134,15 @@
     (let ((there (base:make-semaphore "there")) (conversation (window::window-conversation window)))
       (setf (symbol-value (intern "*THERE*" :ars-user)) there)
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
-      (window::give-line conversation "(progn (ars-magna.base:signal-semaphore *there*) (loop))")
+      (window::run-line-at-prompt
+       conversation "(progn (ars-magna.base:signal-semaphore *there*) (loop))")
       (is (base:wait-on-semaphore there 20))
       (window::com-interrupt)
       ;; What is entered before that is said would be dropped with the line.
       (loop repeat 2000 until (mentions-p (said-in window) "Interrupted.")
             do (base:wait-on-semaphore there 0.01))
-      (window::give-line conversation "(+ 20 22)")
-      (window::give-line conversation "quit")
+      (window::run-line-at-prompt conversation "(+ 20 22)")
+      (window::run-line-at-prompt conversation "quit")
       (base:join-thread (window::conversation-thread conversation))
       (is (mentions-p (said-in window) "Interrupted."))
       (is (mentions-p (said-in window) "42")))))
@@ -161,12 +162,12 @@
       (setf (window::window-conversation window) conversation)
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
       (is (not (mentions-p (window::time-text window) "waits for your answer")))
-      (window::give-line conversation "(list (read) 2)")
+      (window::run-line-at-prompt conversation "(list (read) 2)")
       (is (equal "(list (read) 2)" (await-in conversation news #'window::line-awaiting-input)))
       (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- Control-C"))
       (is (mentions-p (window::time-text window) "; a program waits for your answer"))
-      (is (equal "Answer> " (first (await-in conversation news #'window::line-shown))))
-      (window::give-key conversation "half")
+      (is (equal "Answer> " (first (await-in conversation news #'window::shown-input-line))))
+      (window::pass-key conversation "half")
       (cli:interrupt-session (window::conversation-session conversation))
       (is (await-in conversation news
                     (lambda (conversation)
@@ -174,7 +175,7 @@
                       (find-if (lambda (line) (mentions-p line "Interrupted."))
                                (window::latest-lines transcript 20)))))
       (is (null (window::line-awaiting-input conversation)))
-      (window::give-line conversation "quit")
+      (window::run-line-at-prompt conversation "quit")
       (base:join-thread (window::conversation-thread conversation)))))
 
 (defvar *typed* nil "A semaphore that a line waits for.")
@@ -186,12 +187,12 @@
     (let ((conversation (window::window-conversation window)))
       (setf *typed* (base:make-semaphore "typed"))
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
-      (window::give-line conversation "(ars-magna.tests::wait-for-typing)")
-      (window::give-line conversation "(+ 20 2)")
-      (window::give-key conversation "x")
-      (window::give-line conversation "(+ 30 3)")
+      (window::run-line-at-prompt conversation "(ars-magna.tests::wait-for-typing)")
+      (window::run-line-at-prompt conversation "(+ 20 2)")
+      (window::pass-key conversation "x")
+      (window::run-line-at-prompt conversation "(+ 30 3)")
       (base:signal-semaphore *typed*)
-      (window::give-line conversation "quit")
+      (window::run-line-at-prompt conversation "quit")
       (base:join-thread (window::conversation-thread conversation))
       (let ((said (said-in window)))
         (dolist (answer '("22" "33"))
@@ -233,7 +234,7 @@
   (in-window (window robot)
     (let ((pane (pane window 'window::interactor)))
       (flet ((action (character)
-               (window::own-action
+               (window::window-key-action
                 (make-instance 'clim:key-press-event
                                :sheet pane :key-name (base:make-keyword (string character))
                                :key-character character :x 0 :y 0
@@ -260,7 +261,7 @@
 
 (test talking.what-is-pasted-is-not-entered
   (in-window (window robot)
-    (window::give-key (window::window-conversation window) (list :paste (format nil "a~%b")))
+    (window::pass-key (window::window-conversation window) (list :paste (format nil "a~%b")))
     (is (mentions-p (keys-given window) (format nil "a~%b")))
     (is (not (find #\Return (keys-given window))))))
 
@@ -268,7 +269,7 @@
 
 (defun fill-transcript (window count)
   (dotimes (line count)
-    (window::say (window::window-transcript window) (format nil "line ~D~%" line)))
+    (window::write-to-transcript (window::window-transcript window) (format nil "line ~D~%" line)))
   (let ((pane (pane window 'window::transcript)))
     (window::repaint pane)
     pane))
@@ -299,13 +300,13 @@
           (loop for row in rows
                 do (is (<= (- (window::text-row-stop row) (window::text-row-start row)) columns))
                    (is (equal '(:red) (mapcar #'second (window::text-row-spans row)))))))
-      (window::say (window::window-transcript window) (format nil "~A~%" painted))
+      (window::write-to-transcript (window::window-transcript window) (format nil "~A~%" painted))
       (is (mentions-p (window::selected-text (pane window 'window::transcript)) text)))))
 
 (test transcript.what-is-counted-stands-in-one-line
   (let ((transcript (window::make-transcript (constantly nil))))
-    (window::say transcript (format nil "~C1 of 2" #\Return))
-    (window::say transcript (format nil "~C2 of 2" #\Return))
+    (window::write-to-transcript transcript (format nil "~C1 of 2" #\Return))
+    (window::write-to-transcript transcript (format nil "~C2 of 2" #\Return))
     (is (equal '("2 of 2") (window::latest-lines transcript 5)))))
 
 (test transcript.stays-where-one-has-scrolled-to
@@ -317,13 +318,13 @@
         (fill-transcript window 10)
         (is (equal before (rows-shown pane))))
       (window::handle-wheel pane 1000 0 0)
-      (is (null (window::pane-last pane))))))
+      (is (null (window::last-line-in-view pane))))))
 
 (test transcript.goes-to-its-end-when-a-line-is-entered
   (in-window (window robot)
     (let ((pane (fill-transcript window 100)))
       (window::handle-wheel pane -10 0 0)
-      (window::say-entered (window::window-transcript window) (format nil "Robot> status~%"))
+      (window::write-entered-line (window::window-transcript window) (format nil "Robot> status~%"))
       (is (equal (list 101 100 99)
                  (progn (fill-transcript window 0) (last-numbers pane 3)))))))
 
@@ -353,18 +354,18 @@
 ;;; Menus.
 
 (test menus.hold-lines-by-their-families
-  (flet ((group (name) (window::line-group (cli:find-line name))))
+  (flet ((group (name) (window::prompt-menu-title (cli:find-line name))))
     (is (equal '("Cameras" "Cameras" "Moving" "Plans" "Prompt" "Hands")
                (mapcar #'group '("OBJ-DESIG" "CAM-TRACK" "TURN" "PLAN" "QUIT" "HAND-GRASP"))))
     (loop for (family) in cli::*families*
-          do (is (assoc family window::*line-groups*) "~A has no menu" family))))
+          do (is (assoc family window::*prompt-menu-titles*) "~A has no menu" family))))
 
 ;;; Which robot.
 
 (test window.goes-on-with-the-robot-that-its-prompt-chooses
   (in-window (window robot)
     (let ((cli:*prompt-robot* 'somebody))
-      (window::match-robot window)
+      (window::match-window-and-prompt window)
       (is (eq 'somebody (window::watcher-robot (window::window-watcher window))))
       (is (mentions-p (clim:frame-pretty-name window) "SOMEBODY")))))
 

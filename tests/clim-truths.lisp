@@ -15,7 +15,7 @@
     (cli::call-among-sessions session (lambda () (funcall function trial)))))
 
 (defun time-said (window)
-  (window::look-at-progress (window::window-watcher window))
+  (window::check-progress (window::window-watcher window))
   (window::time-text window))
 
 (test trials.strip-and-button-say-how-time-passes
@@ -24,7 +24,7 @@
      (lambda (trial)
        (is (mentions-p (time-said window) "20/s  paused"))
        (is (equal "Resume" (window::pause-label window)))
-       (window::do-key window nil #\Space)
+       (window::handle-key window nil #\Space)
        (is (equal '("resume") (lines-given window)))
        (cli::resume-trial trial)
        (is (mentions-p (time-said window) "20/s  running"))
@@ -37,7 +37,7 @@
   (in-window (window robot)
     (call-in-trial (lambda (trial)
                      (declare (ignore trial))
-                     (window::do-key window nil #\+)
+                     (window::handle-key window nil #\+)
                      (is (equal '("rate 40") (lines-given window))))
                    window)))
 
@@ -67,7 +67,7 @@
       (run:keep-forks t fork)
       (run:run-ticks 2 fork)
       (window::watch-simulation (window::window-watcher window) fork)
-      (window::do-key window nil #\B)
+      (window::handle-key window nil #\B)
       (is (equal '("rewind 2") (lines-given window))))))
 
 (test buttons.back-pauses-a-run-that-goes-on
@@ -76,7 +76,7 @@
       (run:keep-forks)
       (run:start-clock simulation :rate 50)
       (unwind-protect
-           (progn (window::do-key window nil #\B)
+           (progn (window::handle-key window nil #\B)
                   (is (time:paused-p simulation)))
         (run:stop-clock simulation)))))
 
@@ -84,10 +84,10 @@
 
 (test strip.says-that-all-is-in-view-while-it-is
   (in-window (window robot)
-    (window::fit (pane window 'window::world))
-    (window::do-key window nil #\R)
+    (window::fit-whole-map (pane window 'window::world))
+    (window::handle-key window nil #\R)
     (is (mentions-p (window::window-hint window) "whole map is in view"))
-    (window::do-key window :left nil)
+    (window::handle-key window :left nil)
     (is (equal "" (window::window-hint window)))))
 
 ;;; What is typed.
@@ -99,10 +99,10 @@
            (before (nth-value 1 (window::pane-size interactor)))
            (console (window::conversation-console (window::window-conversation window))))
       (cli::show-prompt console "Robot> ")
-      (is (= 1 (window::rows-wanted interactor)))
+      (is (= 1 (window::needed-rows interactor)))
       (setf (cli:drawn-line-shown (cli:console-line console))
             (list "Robot> " (format nil "turn 1~%turn 2~%turn 3~%turn 4") 0))
-      (is (= 5 (window::rows-wanted interactor)))
+      (is (= 5 (window::needed-rows interactor)))
       (window::refresh window)
       (is (= (+ before (* 3 canvas::+line-height+))
              (nth-value 1 (window::pane-size interactor)))))))
@@ -140,8 +140,8 @@
 ;;; Layers.
 
 (test layers.have-one-table-of-words
-  (is (mentions-p (window::layer-text :wedges) "wedges or cones"))
-  (is (equal "Grid" (window::layer-text :grid)))
+  (is (mentions-p (window::layer-row-text :wedges) "wedges or cones"))
+  (is (equal "Grid" (window::layer-row-text :grid)))
   (is (equal (list :layers '(:cones :belief) :only-legend nil)
              (cli::map-options "wedges designators")))
   (is (subsetp '(:trail :planned-way) (getf (cli::picture-options "way plan") :layers))))
@@ -192,7 +192,7 @@ each stop that the task is at, and of what tick that is, and of the tick."
        (seen-plans window)
        (run:run-ticks 3)
        (let* ((simulation (time:current-simulation))
-              (interface (window::interface-of simulation))
+              (interface (window::plan-interface-of simulation))
               (look (window::watcher-plans (window::window-watcher window))))
          (ars-magna.rpl-robot::call-holding
           (lambda () (ars-magna.host:tell-listeners cli:*break-hooks*)) interface)

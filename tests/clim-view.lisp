@@ -19,11 +19,11 @@
         (loop for (width height) in *window-sizes*
               do (lay-out window width height)
                  (is (filled-p)))
-        (window::zoom pane 2)
+        (window::zoom-view pane 2)
         (let ((scale (window::pane-scale pane)))
           (lay-out window 800 600)
           (is (= scale (window::pane-scale pane))))
-        (window::fit pane)
+        (window::fit-whole-map pane)
         (is (filled-p))))))
 
 (test view.fits-maps-that-have-more-cells-than-the-pane-has-pixels
@@ -62,8 +62,8 @@
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((pane (pane window 'window::world)))
-      (window::zoom pane 4)
-      (window::place-view pane 30 30)
+      (window::zoom-view pane 4)
+      (window::set-view-corner pane 30 30)
       (destructuring-bind (left top right bottom) (window::view-box pane)
         (flet ((cells (x y) (length (remove-if-not #'world:cell-p
                                                    (window::subjects-under pane x y)))))
@@ -76,15 +76,15 @@
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((pane (pane window 'window::world)))
-      (window::zoom pane 4)
+      (window::zoom-view pane 4)
       (window::com-follow)
       (robot:place-robot robot 17.5 8.5 0)
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (not (window::off-centre-p pane)))
       (window::com-follow)
       (robot:place-robot robot 2.5 2.5 0)
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (window::off-centre-p pane)))))
 
@@ -114,7 +114,7 @@
            (let ((canvas (make-instance 'window::clim-canvas :medium nil
                                                             :magnification magnification)))
              (apply #'canvas::call-with-gcontext
-                    (lambda () (window::dashes canvas canvas:draw-gcontext*))
+                    (lambda () (window::clim-line-dashes canvas canvas:draw-gcontext*))
                     canvas:draw-gcontext* options))))
     (is (null (dashes-of 1 :line-style :solid :dashes '(3 1))))
     (is (equal '(5 5) (dashes-of 1 :line-style :dash :dashes 5)))

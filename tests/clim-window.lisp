@@ -87,7 +87,7 @@
   (in-window (window robot)
     (dotimes (count 40) (robot:add-designator robot :x 2 :y 2))
     (let ((pane (pane window 'window::designators)))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (= 0 (window::pane-offset pane)))
       (press pane clim:+pointer-left-button+)
@@ -113,7 +113,7 @@
         (window::handle-wheel pane 1 84 36)
         (window::handle-wheel pane 1 84 36)
         (is (= 4 (window::pane-scale pane)))
-        (window::fit pane)
+        (window::fit-whole-map pane)
         (is (integerp (window::pane-scale pane)))))))
 
 (defun painted-contents (window)
@@ -130,11 +130,11 @@
     (window::refresh window)
     (window::refresh window)
     (let ((before (painted-contents window)))
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (null (panes-changed before (painted-contents window))))
       (robot:place-robot robot 7.5 6.5 0)
-      (window::publish (window::window-watcher window) (time:current-simulation))
+      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
       (is (equal '(window::world window::state)
                  (panes-changed before (painted-contents window)))))))
@@ -171,7 +171,7 @@
            (progn
              (window::start-watching watcher simulation)
              (is (base:wait-on-semaphore news 20))
-             (window::painted watcher)
+             (window::report-painted watcher)
              (robot:place-robot robot 2.5 2.5 0)
              ;; Other news, such as that time stands still, may come before.
              (is (loop while (base:wait-on-semaphore news 20)
@@ -186,10 +186,10 @@
 
 (test transcript.keeps-the-last-lines
   (let ((transcript (window::make-transcript (constantly nil))))
-    (window::say transcript (format nil "one~%tw"))
-    (window::say transcript (format nil "o~%"))
+    (window::write-to-transcript transcript (format nil "one~%tw"))
+    (window::write-to-transcript transcript (format nil "o~%"))
     (is (equal '("one" "two" "") (window::latest-lines transcript 10)))
-    (dotimes (line 5000) (window::say transcript (format nil "~D~%" line)))
+    (dotimes (line 5000) (window::write-to-transcript transcript (format nil "~D~%" line)))
     (is (<= (length (window::latest-lines transcript 5000)) 4001))
     (is (equal '("4999" "") (window::latest-lines transcript 2)))))
 
@@ -243,7 +243,7 @@
 
 (test window.a-line-with-arguments-waits-for-them
   (in-window (window robot)
-    (window::choose-line window "POS")
+    (window::choose-prompt-line window "POS")
     (is (mentions-p (keys-given window) "pos "))
     (is (not (find #\Return (keys-given window))))))
 
@@ -281,11 +281,11 @@
           (watcher (window::make-watcher 'studio-robot (constantly nil)))
           (meanwhile '()))
       (window::watch-simulation watcher old)
-      (host:wrap-function 'window::leave-simulation
+      (host:wrap-function 'window::stop-observing
                           (lambda (leave &rest arguments)
                             (push (window::watcher-simulation watcher) meanwhile)
                             (apply leave arguments))
                           'test)
       (unwind-protect (window::watch-simulation watcher new)
-        (host:unwrap-function 'window::leave-simulation 'test))
+        (host:unwrap-function 'window::stop-observing 'test))
       (is (equal (list new) meanwhile)))))

@@ -98,7 +98,7 @@
     (inside (window) (lay-out window 1180 820))
     (flet ((look ()
              (time:asking (robot)
-               (window::publish (window::window-watcher window) (time:current-simulation)))
+               (window::publish-snapshot (window::window-watcher window) (time:current-simulation)))
              (shown-on-screen window 'window::designators)))
       (let ((before (look)))
         (time:asking (robot) (dotimes (count 40) (robot:add-designator robot :x 2 :y 2)))
@@ -266,10 +266,10 @@ server blackens what is resized, and has it painted by what it sends to the wind
              (with-x-server ()
                (setf window (window::open-window robot))
                (await-window window)
-               (window::give-line (window::window-conversation window)
-                                  (format nil "(progn (ars-magna.base:signal-semaphore ~
-                                               ars-magna.tests::*gate*) (loop))"))
-               (window::give-line (window::window-conversation window) "turn 1")
+               (window::run-line-at-prompt (window::window-conversation window)
+                                           (format nil "(progn (ars-magna.base:signal-semaphore ~
+                                                        ars-magna.tests::*gate*) (loop))"))
+               (window::run-line-at-prompt (window::window-conversation window) "turn 1")
                (is-true (base:wait-on-semaphore *never-comes* 60)))
              (base:join-thread (window::window-thread window))
              (let ((said (format nil "~{~A~%~}"
@@ -297,7 +297,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
                           (if (plusp start)
                               (error *misreading*)
                               (apply read display vector start arguments))))
-                  (window::words-for-no-port *misreading*))
+                  (window::connection-failure-message *misreading*))
         (setf (fdefinition 'xlib::buffer-read-default) read)))))
 
 (test port.clx-is-named-when-it-fails-on-a-server-that-answers
@@ -311,7 +311,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
 
 (test port.mcclim-is-named-when-it-fails-and-clx-reads
   (with-x-server ()
-    (let ((text (window::words-for-no-port *misreading*)))
+    (let ((text (window::connection-failure-message *misreading*)))
       (is-true (has-words-p text "McCLIM" "fails on SBCL" "-20 is not 0 or more") "~A" text)
       (is-false (mentions-p text "CLX 0.7.6")))))
 
@@ -324,7 +324,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
                (setf (uiop:getenv "DISPLAY") (or before ""))))))
     (dolist (display '(":5999" "no-such-host.invalid:0" "nonsense" ":abc"))
       (is-true (has-words-p (words display) display "does not answer" "Start it") "~A" display)))
-  (is-true (has-words-p (window::words-for-no-port
+  (is-true (has-words-p (window::connection-failure-message
                          (make-condition 'xlib:connection-failure
                                          :display nil :host "" :major-version 11 :minor-version 0
                                          :reason "No protocol specified"))
@@ -360,7 +360,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
     (flet ((read-input (display timeout force-output-p come-p &rest arguments)
              (declare (ignore force-output-p))
              (loop until (apply come-p arguments)
-                   do (let ((end (window::wait-unless-come
+                   do (let ((end (window::wait-unless-input-arrived
                                   (lambda (display timeout)
                                     (declare (ignore display timeout))
                                     (incf waits)
@@ -369,7 +369,8 @@ server blackens what is resized, and has it painted by what it sends to the wind
                         (when end (return end)))))
            (come-p (answers)
              (pop (first answers))))
-      (flet ((wait (answers) (window::read-for #'read-input nil 1 nil #'come-p (list answers))))
+      (flet ((wait (answers) (window::read-x-server-input #'read-input nil 1 nil
+                                                          #'come-p (list answers))))
         (setf looks (list nil t))
         (is (null (wait looks)))
         (is (= 0 waits))

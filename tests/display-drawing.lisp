@@ -130,8 +130,9 @@
     (base:take-messages)
     (world:set-attribute thing :draw-function (lambda (&rest arguments)
                                                 (declare (ignore arguments))
-                                                (base:call-with-limit (lambda () (loop)) 1/100
-                                                                      #'display::give-up-drawing)))
+                                                (base:call-with-limit
+                                                 (lambda () (loop)) 1/100
+                                                 #'display::signal-drawing-timeout)))
     (detail robot :hands)
     (is (mentions-p (base:message-text (first (base:take-messages))) "had not ended"))))
 

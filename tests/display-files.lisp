@@ -244,7 +244,7 @@
 
 (test display.a-robot-without-a-window-says-so-in-one-line
   (in-studio (robot)
-    (let* ((display:*display-opener* nil) (display::*told-reasons* '())
+    (let* ((display:*display-opener* nil) (display::*reported-messages* '())
            (said (with-output-to-string (*standard-output*)
                    (display:announce-display robot '()))))
       (is (mentions-p said "No display"))

@@ -69,7 +69,7 @@
     (let* ((texts '())
            (look (lambda (simulation)
                    (when (zerop (mod (run:simulation-tick simulation) 5))
-                     (push (display::movers-text
+                     (push (display::movers-svg
                             (display:take-snapshot (run:simulation-world simulation))
                             '(:wedges) t 12)
                            texts)))))

@@ -61,7 +61,7 @@
 
 (test manual-a.simulator-runs-without-a-display
   "A, reading 238: it pops up a display, and where there is none it says so and runs all the same."
-  (let ((ars-magna.display::*display-opener* nil) (ars-magna.display::*told-reasons* '()))
+  (let ((ars-magna.display::*display-opener* nil) (ars-magna.display::*reported-messages* '()))
     (with-output (text) (simulator scout)
       (is-true (search "No display" text))
       (is-true (live-p)))

@@ -61,7 +61,7 @@ VISIONS."
 (test palette.bars-of-timelines-are-told-apart-by-all-eyes-and-in-grey
   "From each other, and from the page."
   (is (<= 10 (least-difference (cons canvas:white*
-                                     (mapcar #'second ars-magna.rpl-pictures::*looks*)))))
+                                     (mapcar #'second ars-magna.rpl-pictures::*bar-looks*)))))
   (is (<= 10 (least-difference (mapcar #'third trails::*outcome-looks*)))))
 
 (test palette.the-measure-would-find-colours-that-are-alike
@@ -192,9 +192,9 @@ VISIONS."
 
 (test contrast.crosses-and-rims-are-seen-on-whatever-colour-a-thing-has
   (dolist (color (authors-colors))
-    (is (seen-p (canvas:ink-on color) color)))
+    (is (seen-p (canvas:black-or-white-on color) color)))
   (loop for color from 0 to #xFFFFFF by 40009
-        unless (seen-p (canvas:ink-on color) color)
+        unless (seen-p (canvas:black-or-white-on color) color)
           do (fail "~6,'0X" color)))
 
 (test contrast.symbols-of-places-are-seen-on-their-tints

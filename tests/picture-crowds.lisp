@@ -106,7 +106,7 @@ of the lines that lead to names, x y x y each."
                                                                     :layers '(:title))
                                       :stroke (web (display:nth-ink 0))))))
          (is (= 20 (of-element ring :rx)))
-         (is (< (* 2 (of-element ring :rx)) (+ 40 (* 2 display::+beyond+))))))
+         (is (< (* 2 (of-element ring :rx)) (+ 40 (* 2 display::+robot-overhang+))))))
      '(lodger))))
 
 (test robots.alone-reach-beyond-the-edges-of-the-map
@@ -171,8 +171,8 @@ of the lines that lead to names, x y x y each."
 (test film.title-has-robots-as-far-as-there-is-room-and-the-map
   (let ((names '("ada" "ben" "cleo" "dora" "emil" "fay" "gus" "hal" "ida")))
     (is (string= "ada, ben, cleo, dora, emil, fay and 3 more in study"
-                 (display::title-of names 'study)))
-    (is (string= "ada in study" (display::title-of '("ada") 'study))))
+                 (display::robots-and-map-title names 'study)))
+    (is (string= "ada in study" (display::robots-and-map-title '("ada") 'study))))
   (in-studio (robot)
     (is (mentions-p (film-of robot #'ungrasp-nothing) "<title>studio-robot in studio, tick"))))
 

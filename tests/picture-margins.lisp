@@ -25,7 +25,7 @@ end is there as well, and whole."
                                    collect (of-element strip key)))))
     (dolist (text texts)
       (is (<= 76 (of-element text :x)
-              (- 240 (display::words-width (of-element text :text)))))
+              (- 240 (display::monospaced-width (of-element text :text)))))
       (is (<= 40 (of-element text :y) 160)))))
 
 (defun words-in-picture (robot &rest options)

@@ -35,13 +35,13 @@
   "From 5 pixels for nothing, to a cell and a half."
   (dolist (scale '(4 14 40))
     (let ((canvas:graphics-scale* scale))
-      (flet ((more (size) (- (display::half-width (image-with :size size)) 5/2)))
+      (flet ((more (size) (- (display::thing-half-width (image-with :size size)) 5/2)))
         (is (= (* 2 (more 4)) (more 16)))
         (is (= (* 2 (more 16)) (more 64)))
         (is (< 0 (more 0.01d0) (more 1) (more 2)))
         (is (= (more 64) (more 1000))))))
   (let ((canvas:graphics-scale* 40))
-    (is (= 30 (display::half-width (image-with :size 64))))))
+    (is (= 30 (display::thing-half-width (image-with :size 64))))))
 
 (test things.the-small-lie-above-the-large-and-all-above-the-robot
   (in-studio (robot)
@@ -102,8 +102,8 @@
                             (display:pixels-of (list x y (+ x metres) y))))))
 
 (defun range-marks (view robot)
-  (display::mark-at view (+ 1 (display:robot-image-x robot)) (display:robot-image-y robot)
-                    (display::make-glyph :layer #\~ "range")))
+  (display::glyph-mark-at view (+ 1 (display:robot-image-x robot)) (display:robot-image-y robot)
+                          (display::make-glyph :layer #\~ "range")))
 
 (defmacro with-range-layer (() &body body)
   "Run BODY while there is a layer :RANGES, of a sensor that reads 2 metres."
@@ -127,8 +127,8 @@
       (is-true (has-words-p (documentation 'display:*picture-layers* 'variable)
                             ":RANGES *" "An addition to the manual."))
       (is (equal '(:ranges :range "RANGES or RANGE")
-                 (list (display:layer-named :range) (display:text-layer-named :ranges)
-                       (display:layer-words :ranges)))))))
+                 (list (display:picture-layer-name :range) (display:text-layer-name :ranges)
+                       (display:layer-prompt-names :ranges)))))))
 
 (test layers.what-they-note-changes-what-displays-show
   "A window draws anew where a note is another one."
@@ -143,7 +143,7 @@
 (test layers.each-has-a-title-and-a-sentence
   (dolist (layer (display:picture-layers))
     (is (plusp (length (display:layer-title layer))))
-    (is (char= #\. (char (reverse (display::%layer-sentence (display::layer-called layer))) 0)))
+    (is (char= #\. (char (reverse (display::%layer-sentence (display::find-layer layer))) 0)))
     (is (mentions-p (documentation 'display:*picture-layers* 'variable)
                     (display:layer-title layer))))
   (is (subsetp display:*picture-layers* (display:picture-layers)))
@@ -316,7 +316,7 @@
       (world:make-new-thing name (list (robot:robot-world robot) 8 8) '()))
     (is (equal '("r1" "r2" "r9" "r10")
                (mapcar #'display::thing-image-name
-                       (find 'r1 (display::thing-kinds (display:snapshot-of robot))
+                       (find 'r1 (display::things-by-look (display:snapshot-of robot))
                              :key (lambda (images)
                                     (world:thing-name
                                      (display::thing-image-thing (first images))))))))))

@@ -59,7 +59,7 @@
                                        '(rpl:n-times 20 (rpl:par (rpl:wait-time 2)
                                                          (rpl:wait-time 1))))))
          (bars (rpl:bars (rpl:plan-trace runner)))
-         (rows (ars-magna.rpl-pictures::rows bars)))
+         (rows (ars-magna.rpl-pictures::rows-of-bars bars)))
     (is (= 41 (1+ (length (rpl:bar-parts (first bars))))))
     (is (= 3 (length rows)))
     (is (equal '(1 20 20)
@@ -140,7 +140,7 @@
   (with-traced-turns ()
     (is-true (has-words-p (timeline-text nil) ">robot-turn 1<")))
   (flet ((name (text)
-           (ars-magna.rpl-pictures::name-of-span
+           (ars-magna.rpl-pictures::command-text
             (ars-magna.rpl.seeing::make-span :command 0 text))))
     (is (string= "robot-turn -0.05 nil" (name "(rpl-robot-turn -0.058755822d0 nil)")))
     (is (string= "camera-track 1 #<Designator 0>" (name "(rpl-camera-track 1 #<Designator 0>)")))))
@@ -192,12 +192,13 @@ one points at it, it says in words what came of it."
 
 (test timeline.writes-the-last-commands-before-them-where-there-is-no-room-behind
   (flet ((place (x from)
-           (multiple-value-list (ars-magna.rpl-pictures::place-for-name 50 x 10 from 140))))
+           (multiple-value-list
+            (ars-magna.rpl-pictures::find-command-text-place 50 x 10 from 140))))
     (is (equal '(73) (place 60 0)))
     (is (equal '(67) (place 120 0)))
     (is (equal '(nil) (place 120 80)))
     (is (equal '(82 t) (multiple-value-list
-                        (ars-magna.rpl-pictures::place-for-name 50 80 60 0 140))))))
+                        (ars-magna.rpl-pictures::find-command-text-place 50 80 60 0 140))))))
 
 (defun colors-in (text)
   "Return what follows each # in the SVG document TEXT, six characters each time."
@@ -226,10 +227,11 @@ one points at it, it says in words what came of it."
 (test timeline.has-no-two-kinds-that-look-alike-without-colours
   "Neither as wide as in the legend nor as narrow as a tick may be."
   (dolist (width '(6 18))
-    (let ((looks (loop for (kind) in ars-magna.rpl-pictures::*looks*
+    (let ((looks (loop for (kind) in ars-magna.rpl-pictures::*bar-looks*
                        collect (drawing (canvas)
                                  (let ((canvas:in-color* nil))
-                                   (ars-magna.rpl-pictures::look-box canvas kind 0 0 width 14))))))
+                                   (ars-magna.rpl-pictures::draw-bar-look
+                                    canvas kind 0 0 width 14))))))
       (is (= 8 (length looks) (length (remove-duplicates looks :test #'equal)))))))
 
 (test timeline.has-no-lines-through-the-names-of-commands

@@ -169,7 +169,7 @@
     (let* ((snapshot (display:snapshot-of robot)) (canvas:graphics-scale* 20)
            (image (aref (display:snapshot-things snapshot) 0))
            (x (* 20 (display:thing-image-x image))) (y (* 20 (display:thing-image-y image))))
-      (is (< (display:half-width image) (trails::ring-radius snapshot (+ x 2) y)))
+      (is (< (display:thing-half-width image) (trails::ring-radius snapshot (+ x 2) y)))
       (is (= trails::+ring-radius+ (trails::ring-radius snapshot (+ x 200) y)))
       (is (null (drawn-with :ellipse
                             (format nil "~{~A~}"

@@ -18,7 +18,7 @@ terminal."
 
 (defun words-of-map ()
   "Return the words that MAP accepts: names of layers, as for MAP and as for PICTURE, and LEGEND."
-  (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'layer-named (text-layers)))))
+  (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
 (defun word-meant (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
@@ -58,7 +58,7 @@ is WORDS."
         for word in (split-words (or text ""))
         for number = (number-typed word)
         if number collect number into numbers
-        else collect (text-layer-named (word-meant word (words-of-map) "MAP" takes)) into words
+        else collect (text-layer-name (word-meant word (words-of-map) "MAP" takes)) into words
         finally (return (append (map-part numbers)
                                 (list :layers (remove :legend words)
                                       :only-legend (and (member :legend words) t))))))
@@ -84,7 +84,7 @@ room for LINES-BELOW lines below."
     (:seeing
      (format nil "Shown if named: ~:{~A (~(~A~))~:^, ~}."
              (loop for name in (text-layers)
-                   collect (list name (layer-title (layer-named name))))))
+                   collect (list name (layer-title (picture-layer-name name))))))
     "Show the world as characters: all of it, a radius around the robot, or a region.
 LEGEND shows only what the characters mean. The names of layers for PICTURE can be used, too."
   (write-string (map-text session (map-options what))))

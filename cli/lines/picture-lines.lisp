@@ -7,7 +7,7 @@
 (defun picture-word (text line)
   "Return the layer for TEXT, a word typed after LINE. TEXT is the name of a layer of MAP or
 PICTURE, or BARE, which omits the default layers, or the beginning of such a word."
-  (layer-named (word-meant text
+  (picture-layer-name (word-meant text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
                            line "a file, a scale, and words: ~{~A~^, ~}")))
@@ -31,7 +31,7 @@ file."
           (loop for layer in layers
                 for name = (substitute #\Space #\- (symbol-name layer))
                 for title = (layer-title layer)
-                collect (list (layer-words layer)
+                collect (list (layer-prompt-names layer)
                               (and (not (string-equal title name)) (string-downcase title))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")

@@ -4,18 +4,18 @@
 
 (export '(tick-at))
 
-(defconstant +label-width+ 480
+(defconstant +greatest-label-width+ 480
   "The greatest width of the column with the names of the tasks, in pixels.")
 (defconstant +tick-width+ 8
   "The width of a tick, in pixels, unless the timeline has very few or very many ticks.")
-(defconstant +least-chart+ 280 "The least width of all ticks together, in pixels.")
-(defconstant +chart-width+ 900 "The greatest width of all ticks together, in pixels.")
+(defconstant +least-chart-width+ 280 "The least width of all ticks together, in pixels.")
+(defconstant +greatest-chart-width+ 900 "The greatest width of all ticks together, in pixels.")
 (defconstant +bar-height+ 14 "The height of a bar, in pixels.")
 (defconstant +lane-height+ 12 "The height of the commands below a bar, in pixels.")
-(defconstant +gap+ 5 "The gap between rows, in pixels.")
-(defconstant +legend-line+ 18 "The distance between lines of the legend, in pixels.")
+(defconstant +row-gap+ 5 "The gap between rows, in pixels.")
+(defconstant +legend-line-height+ 18 "The distance between lines of the legend, in pixels.")
 
-(defparameter *looks*
+(defparameter *bar-looks*
   '((:parts #x5A81C2 :hatching "runs its parts") (:call #xA6BDF7 :dots "commands in a call")
     (:waiting #xEBD6FC :plain "waits")
     (:blocked #x564533 :chequers "is blocked") (:cleaning #xDA8C5A :crosses "cleans up")
@@ -33,8 +33,8 @@ colours. The colours differ for any colour vision and in grey: tests/palette.lis
 
 ;;; Ticks and pixels.
 
-(defstruct (scale (:constructor make-scale (start end &optional (left +label-width+)
-                                                          (width +chart-width+)))
+(defstruct (scale (:constructor make-scale (start end &optional (left +greatest-label-width+)
+                                                          (width +greatest-chart-width+)))
                   (:copier nil))
   "A horizontal axis: the ticks from START to END begin LEFT pixels from the left and take WIDTH
 pixels."
@@ -59,14 +59,14 @@ at X."
     (and (<= (scale-left scale) x) (<= (scale-start scale) tick (scale-end scale))
          tick)))
 
-(defun nice-step (span &optional (most 12))
+(defun round-tick-step (span &optional (most 12))
   "Return the number of ticks between two labels of an axis that shows SPAN ticks with at most about
 MOST labels. The number is 1, 2 or 5 times a power of ten."
   (loop for power = 1 then (* 10 power)
         thereis (loop for factor in '(1 2 5)
                       when (<= (/ span (* factor power)) most) return (* factor power))))
 
-(defun box (canvas color x y width height)
+(defun draw-box (canvas color x y width height)
   (with-color color
     (draw-rectangle canvas draw-gcontext* x y (max 1 width) height t)))
 
@@ -78,7 +78,7 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
       (draw-rectangle canvas draw-gcontext* (+ x thick) (+ y thick)
                       (max 0 (- width thick thick)) (- height thick thick) t))))
 
-(defun wedge (canvas x y width height)
+(defun draw-black-wedge (canvas x y width height)
   "Draw a black wedge that points down, with a white rim."
   (flet ((draw (color more)
            (with-gcontext (draw-gcontext* :foreground color)
@@ -88,32 +88,32 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
     (draw white* 2)
     (draw black* 0)))
 
-(defun textured-box (canvas texture x y width height)
+(defun draw-textured-box (canvas texture x y width height)
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t))
   (with-color black*
     (draw-texture canvas draw-gcontext* texture (list x y width height) 6)
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (max 0 (1- height)))))
 
-(defun colourless-box (canvas texture x y width height)
-  "Draw a box in black and white in the look TEXTURE, one of those in *LOOKS*."
+(defun draw-colourless-box (canvas texture x y width height)
+  "Draw a box in black and white in the look TEXTURE, one of those in *BAR-LOOKS*."
   (case texture
-    (:solid (box canvas black* x y width height))
+    (:solid (draw-box canvas black* x y width height))
     (:frame (draw-frame canvas x y width height))
-    (:wedge (wedge canvas x y width height))
-    (t (textured-box canvas texture x y width height))))
+    (:wedge (draw-black-wedge canvas x y width height))
+    (t (draw-textured-box canvas texture x y width height))))
 
-(defun look-box (canvas kind x y width height)
-  (destructuring-bind (color texture text) (rest (assoc kind *looks*))
+(defun draw-bar-look (canvas kind x y width height)
+  (destructuring-bind (color texture text) (rest (assoc kind *bar-looks*))
     (declare (ignore text))
     (if in-color*
-        (box canvas color x y width height)
-        (colourless-box canvas texture x y (max 1 width) height))))
+        (draw-box canvas color x y width height)
+        (draw-colourless-box canvas texture x y (max 1 width) height))))
 
-(defun write-at (canvas x y text &optional (color black*))
+(defun write-text-at (canvas x y text &optional (color black*))
   (with-color color (draw-glyphs canvas draw-gcontext* x y text)))
 
-(defun fitted (text width)
+(defun cut-to-width (text width)
   "Return TEXT, cut to fit into WIDTH pixels. Return NIL if only a few characters would fit."
   (let ((count (floor width +character-width+)))
     (cond ((<= (length text) count) text)
@@ -121,8 +121,9 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
 
 ;;; A bar.
 
-(defun last-tick (bar)
-  (reduce #'max (append (mapcar #'span-end (bar-commands bar)) (mapcar #'last-tick (bar-parts bar)))
+(defun last-tick-of-bar (bar)
+  (reduce #'max (append (mapcar #'span-end (bar-commands bar))
+                        (mapcar #'last-tick-of-bar (bar-parts bar)))
           :initial-value (bar-end bar)))
 
 (defun span-width (span scale)
@@ -130,29 +131,29 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
 
 (defun draw-span (canvas span y scale)
   (let ((x (x-of-tick (span-start span) scale)))
-    (look-box canvas (span-kind span) x y (span-width span scale) +bar-height+)
-    (box canvas #xA8B4C8 x y 1 +bar-height+)))
+    (draw-bar-look canvas (span-kind span) x y (span-width span scale) +bar-height+)
+    (draw-box canvas #xA8B4C8 x y 1 +bar-height+)))
 
-(defun write-span (canvas span next y scale)
+(defun write-wait-text (canvas span next y scale)
   "Write the text of SPAN, a wait, as far as there is room before NEXT, the next span or NIL."
   (let* ((x (x-of-tick (span-start span) scale))
          (end (if next
                   (min (x-of-tick (span-end span) scale) (x-of-tick (span-start next) scale))
                   (x-of-tick (span-end span) scale)))
-         (text (and (span-text span) (fitted (span-text span) (- end x 6)))))
-    (when text (write-at canvas (+ x 3) (+ y 11) text #x505868))))
+         (text (and (span-text span) (cut-to-width (span-text span) (- end x 6)))))
+    (when text (write-text-at canvas (+ x 3) (+ y 11) text #x505868))))
 
 (defun draw-waits (canvas spans y scale)
   "Draw SPANS, which are waits, and then their texts on top."
   (let ((spans (stable-sort (copy-list spans) #'< :key #'span-start)))
     (dolist (span spans) (draw-span canvas span y scale))
-    (loop for (span next) on spans do (write-span canvas span next y scale))))
+    (loop for (span next) on spans do (write-wait-text canvas span next y scale))))
 
 ;;; Commands stand in a separate lane, so that neither they nor their names lie on others'.
 
 (defconstant +command-size+ 9 "The height of the font of commands, in pixels.")
 
-(defun plain-number (token)
+(defun shorten-decimals (token)
   "Return the string TOKEN. If it is a number with decimals, keep only two of them."
   (if (and (find #\. token) (every (lambda (char) (find char "+-.0123456789def")) token)
            (find-if #'digit-char-p token))
@@ -161,17 +162,17 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
         (subseq token 0 (min (or end (length token)) (+ dot 3))))
       token))
 
-(defun name-of-span (span)
+(defun command-text (span)
   "Return the text of the command of SPAN, without parentheses and the prefix rpl-. Numbers are cut
 to two decimals, and a long text to its beginning."
   (let* ((text (string-trim "()" (span-text span)))
          (own (if (eql 0 (search "rpl-" text)) (subseq text 4) text)))
-    (cut (format nil "~{~A~^ ~}" (mapcar #'plain-number (uiop:split-string own))) 56)))
+    (cut (format nil "~{~A~^ ~}" (mapcar #'shorten-decimals (uiop:split-string own))) 56)))
 
-(defun ink-in-lane (span)
+(defun command-ink (span)
   (if (and (failure-code-p (span-error span)) (not in-color*)) black* white*))
 
-(defun place-for-name (length x width from to)
+(defun find-command-text-place (length x width from to)
   "Return the x coordinate for the name of a command, LENGTH pixels wide, and whether it is on the
 command's box, which begins at X and is WIDTH pixels wide. The name is on the box, after it or
 before it, between FROM and TO. Return NIL if there is no room."
@@ -179,7 +180,7 @@ before it, between FROM and TO. Return NIL if there is no room."
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))
 
-(defun draw-plate (canvas x y width)
+(defun clear-behind-text (canvas x y width)
   "Draw a white background for a name in a lane at Y, so that no line runs through the name."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* (- x 1) y (+ 2 width) +lane-height+ t)))
@@ -188,17 +189,17 @@ before it, between FROM and TO. Return NIL if there is no room."
   "Write the name of the command of SPAN on its box, which begins at X and is WIDTH pixels wide, or
 beside the box between FROM and TO. Without room, write its beginning on the box. Return the x
 coordinate where box and name end."
-  (let* ((name (name-of-span span))
+  (let* ((name (command-text span))
          (per-character (character-width canvas +command-size+))
          (length (* per-character (length name)))
          (fitting (floor (- width 4) per-character)))
     (flet ((words (color at text)
              (with-gcontext (draw-gcontext* :foreground color)
                (draw-words canvas draw-gcontext* at (+ y 9) text :size +command-size+))))
-      (multiple-value-bind (at on-it-p) (place-for-name length x width from to)
-        (when (and at (not on-it-p)) (draw-plate canvas at y length))
-        (cond (at (words (if on-it-p (ink-in-lane span) black*) at name))
-              ((<= 7 fitting) (words (ink-in-lane span) (+ x 2) (cut name fitting))))
+      (multiple-value-bind (at on-it-p) (find-command-text-place length x width from to)
+        (when (and at (not on-it-p)) (clear-behind-text canvas at y length))
+        (cond (at (words (if on-it-p (command-ink span) black*) at name))
+              ((<= 7 fitting) (words (command-ink span) (+ x 2) (cut name fitting))))
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun command-title (span)
@@ -215,11 +216,11 @@ next command in the lane, or NIL. Return the x coordinate from which the lane is
                 (x-of-tick (span-start next) scale)
                 (+ 40 (x-of-tick (scale-end scale) scale)))))
     (with-subject (canvas (command-title span))
-      (look-box canvas (if (failure-code-p (span-error span)) :trouble :command)
+      (draw-bar-look canvas (if (failure-code-p (span-error span)) :trouble :command)
                 x y width +lane-height+)
       (write-command canvas span x y width from to))))
 
-(defun draw-lane (canvas spans y scale)
+(defun draw-command-lane (canvas spans y scale)
   (loop with free = (scale-left scale)
         for (span next) on (stable-sort (copy-list spans) #'< :key #'span-start)
         do (setf free (draw-command canvas span next free y scale))))
@@ -229,15 +230,15 @@ next command in the lane, or NIL. Return the x coordinate from which the lane is
   (with-subject (canvas (format nil "failed at tick ~D: ~A" (span-start span)
                                 (cut (one-line (span-text span)) 200)))
     (let ((half (if in-color* 2 4)))
-      (look-box canvas :failure (- (x-of-tick (span-start span) scale) half) y
-                (* 2 half) (* 3 half)))))
+      (draw-bar-look canvas :failure (- (x-of-tick (span-start span) scale) half) y
+                     (* 2 half) (* 3 half)))))
 
-(defun draw-mark (canvas outcome x y)
+(defun draw-end-mark (canvas outcome x y)
   "Draw the mark at the end of a task by its OUTCOME: a line, which is crossed out if the task
 failed, and struck through if it was ended. Draw nothing if OUTCOME is NIL."
   (let ((color (second (assoc outcome *end-looks*))))
     (when color
-      (box canvas color (- x 1) y 2 +bar-height+)
+      (draw-box canvas color (- x 1) y 2 +bar-height+)
       (with-color color
         (with-lines (:width 2)
           (unless (eq :succeeded outcome)
@@ -257,8 +258,8 @@ failed, and struck through if it was ended. Draw nothing if OUTCOME is NIL."
   "Draw BAR, a task, with its upper edge at Y."
   (let ((x (x-of-tick (bar-start bar) scale)))
     (with-subject (canvas bar)
-      (look-box canvas (if (bar-call-p bar) :call :parts)
-                x y (- (x-of-tick (bar-end bar) scale) x) +bar-height+)
+      (draw-bar-look canvas (if (bar-call-p bar) :call :parts)
+                     x y (- (x-of-tick (bar-end bar) scale) x) +bar-height+)
       (draw-waits canvas (spans-of-kind bar :waiting) y scale)
       (dolist (kind '(:cleaning :blocked))
         (dolist (span (spans-of-kind bar kind)) (draw-span canvas span y scale))))

@@ -18,4 +18,4 @@
                 #:tree-image-tasks)
   (:import-from :ars-magna.rpl-robot #:call-with-plans-in-use)
   (:import-from :ars-magna.command #:failure-code-p #:error-code-meaning)
-  (:import-from :ars-magna.display #:picture-kind #:save-svg #:lines-within))
+  (:import-from :ars-magna.display #:picture-kind #:save-svg #:wrap-text-to-width))

@@ -5,8 +5,9 @@
 (export '(draw-task-tree fold-mark))
 
 (defconstant +indent+ 12 "The indentation of the parts of a task, in pixels.")
-(defconstant +deepest+ 14 "The greatest depth to which parts of tasks are indented.")
-(defconstant +mark+ 9 "The width of the mark for the state of a task, in pixels.")
+(defconstant +greatest-indented-depth+ 14
+  "The greatest depth to which parts of tasks are indented.")
+(defconstant +task-mark-size+ 9 "The width of the mark for the state of a task, in pixels.")
 
 (defparameter *task-looks*
   '((:running #x1E8232 "runs") (:waiting #x3C64B4 "waits") (:blocked #x6E6E78 "is blocked")
@@ -31,10 +32,10 @@ legend.")
 
 ;;; Marks.
 
-(defun draw-shape (canvas look x y)
-  "Draw the mark of a task with LOOK at X, Y, +MARK+ pixels wide and high. Each look has a different
-shape, so that colours are not needed."
-  (let* ((size +mark+) (right (+ x size)) (low (+ y size)) (middle (floor size 2)))
+(defun draw-task-mark (canvas look x y)
+  "Draw the mark of a task with LOOK at X, Y, +TASK-MARK-SIZE+ pixels wide and high. Each look has a
+different shape, so that colours are not needed."
+  (let* ((size +task-mark-size+) (right (+ x size)) (low (+ y size)) (middle (floor size 2)))
     (ecase look
       (:running (draw-lines canvas draw-gcontext* (list x y right (+ y middle) x low) :fill-p t))
       (:waiting (draw-arc canvas draw-gcontext* x y size size 0 (* 2 pi)))
@@ -60,12 +61,12 @@ right if the parts are folded."
 
 ;;; Rows.
 
-(defun task-head (image)
+(defun task-line-text (image)
   (format nil "~D ~@[~A ~]~A~@[  (~D part~:P folded)~]" (task-image-serial image)
           (task-image-name image) (task-image-form image)
           (and (task-image-folded-p image) (task-image-parts image))))
 
-(defun task-condition (image)
+(defun task-condition-text (image)
   "Return a text about what the task of IMAGE waits for, or about its state. Return NIL if the mark
 of the task says enough."
   (cond ((task-image-awaits image)
@@ -77,16 +78,16 @@ of the task says enough."
 
 (defun draw-row-text (canvas image x y width)
   "Write the name, expression and state of the task of IMAGE at X, Y. Return the number of lines."
-  (let* ((head (task-head image)) (plight (task-condition image))
+  (let* ((head (task-line-text image)) (plight (task-condition-text image))
          (room (max 8 (floor (- width x) +character-width+)))
          (one-p (and plight (<= (+ 2 (length head) (length plight)) room))))
-    (write-at canvas x y (cut head room))
+    (write-text-at canvas x y (cut head room))
     (cond ((null plight) 1)
-          (one-p (write-at canvas (+ x (* +character-width+ (+ 2 (length head)))) y plight
-                           #x505868)
+          (one-p (write-text-at canvas (+ x (* +character-width+ (+ 2 (length head)))) y plight
+                                #x505868)
                  1)
-          (t (write-at canvas (+ x (* 2 +character-width+)) (+ y +line-height+)
-                       (cut plight (max 8 (- room 2))) #x505868)
+          (t (write-text-at canvas (+ x (* 2 +character-width+)) (+ y +line-height+)
+                            (cut plight (max 8 (- room 2))) #x505868)
              2))))
 
 (defun draw-calls (canvas image x y width)
@@ -94,9 +95,9 @@ of the task says enough."
   (loop for call in (task-image-calls image)
         for line from 0
         for left = (+ x (* +character-width+ (1+ (min line 8))))
-        do (write-at canvas left (+ y (* line +line-height+))
-                     (cut call (max 8 (floor (- width left) +character-width+)))
-                     #x505868))
+        do (write-text-at canvas left (+ y (* line +line-height+))
+                          (cut call (max 8 (floor (- width left) +character-width+)))
+                          #x505868))
   (length (task-image-calls image)))
 
 (defun draw-task-texts (canvas image x y width)
@@ -106,18 +107,18 @@ of the task says enough."
 
 (defun draw-task (canvas image y width)
   "Draw the task of IMAGE with its upper edge at Y. Return its height in pixels."
-  (let ((x (+ 6 (* +indent+ (min +deepest+ (task-image-depth image))))))
+  (let ((x (+ 6 (* +indent+ (min +greatest-indented-depth+ (task-image-depth image))))))
     (prog1 (with-subject (canvas image)
              (with-color (second (assoc (task-image-look image) *task-looks*))
                (with-lines (:width 2)
-                 (draw-shape canvas (task-image-look image) (+ x 12) (+ y 3))))
+                 (draw-task-mark canvas (task-image-look image) (+ x 12) (+ y 3))))
              (* +line-height+ (draw-task-texts canvas image (+ x 27) (+ y 12) width)))
       (when (plusp (task-image-parts image))
         (draw-fold-mark canvas image x (+ y 4))))))
 
 ;;; The whole.
 
-(defun unseen-text (image)
+(defun omitted-tasks-text (image)
   "Return a text about the number of tasks that IMAGE, a tree, leaves out, or NIL if it shows all."
   (let ((unseen (- (tree-image-tasks image) (length (tree-image-rows image)))))
     (and (plusp unseen)
@@ -127,14 +128,14 @@ of the task says enough."
   "Draw IMAGE, a value of IMAGE-OF-TASKS, on CANVAS, WIDTH pixels wide, from TOP down. Return the y
 coordinate of its end, in pixels."
   (let ((y (+ top 4)))
-    (write-at canvas 6 (+ y 11)
-              (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
-                      (tree-image-tasks image) (tree-image-tick image)))
+    (write-text-at canvas 6 (+ y 11)
+                   (format nil "~D plan~:P, ~D task~:P; as of tick ~D" (tree-image-plans image)
+                           (tree-image-tasks image) (tree-image-tick image)))
     (incf y (+ 4 +line-height+))
     (dolist (row (tree-image-rows image)) (incf y (draw-task canvas row y width)))
-    (let ((unseen (unseen-text image)))
+    (let ((unseen (omitted-tasks-text image)))
       (when unseen
-        (write-at canvas 6 (+ y 12) unseen #x606060)
+        (write-text-at canvas 6 (+ y 12) unseen #x606060)
         (incf y +line-height+)))
     (+ y 4)))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(export '(make-timeline-page scale-for draw-page))
+(export '(make-timeline-page page-scale draw-page))
 
 ;;; The parts of a task stand below it. Parts that run the same expression one after the other, as
 ;;; the turns of a loop do, share a row, so that a long run needs no more rows than a short one.
@@ -19,31 +19,32 @@ most MOST spaces."
             (bar-label (first (row-bars row)))
             (and (plusp more) more))))
 
-(defun fits-p (bar row)
+(defun bar-fits-p (bar row)
   "True if BAR has the expression of the bars in ROW and starts when the last of them has ended."
   (let ((last (first (last (row-bars row)))))
     (and (eq (bar-form bar) (bar-form last)) (<= (bar-end last) (bar-start bar)))))
 
-(defun lanes (bars)
+(defun arrange-in-rows (bars)
   "Return the rows for BARS, which are sorted by start, without the rows for their parts."
   (let ((rows '()))
     (dolist (bar bars (nreverse rows))
-      (let ((row (find-if (lambda (row) (fits-p bar row)) rows)))
+      (let ((row (find-if (lambda (row) (bar-fits-p bar row)) rows)))
         (if row
             (setf (row-bars row) (append (row-bars row) (list bar)))
             (push (make-row (list bar)) rows))))))
 
-(defun rows (bars)
+(defun rows-of-bars (bars)
   "Return the rows for BARS and their parts, from top to bottom."
-  (loop for row in (lanes bars)
+  (loop for row in (arrange-in-rows bars)
         collect row
-        append (rows (stable-sort (mapcan (lambda (bar) (copy-list (bar-parts bar))) (row-bars row))
-                           #'< :key #'bar-serial))))
+        append (rows-of-bars (stable-sort (mapcan (lambda (bar) (copy-list (bar-parts bar)))
+                                                  (row-bars row))
+                                   #'< :key #'bar-serial))))
 
 (defun draw-axis (canvas scale top bottom)
   "Draw vertical lines from TOP to BOTTOM at round numbers of ticks, with these numbers above and
 below."
-  (loop with step = (nice-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
+  (loop with step = (round-tick-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (x-of-tick tick scale)
         for text = (princ-to-string tick)
@@ -51,25 +52,25 @@ below."
         do (with-color #xDCDCDC
              (with-lines (:style (if in-color* :solid :dash))
                (draw-line canvas draw-gcontext* x (- top 6) x (+ bottom 2))))
-           (write-at canvas left (- top 10) text #x606060)
-           (write-at canvas left (+ bottom 15) text #x606060)))
+           (write-text-at canvas left (- top 10) text #x606060)
+           (write-text-at canvas left (+ bottom 15) text #x606060)))
 
 ;;; The legend.
 
-(defparameter *legend*
-  (append (loop for (kind nil nil text) in *looks* collect (list kind text))
+(defparameter *timeline-legend*
+  (append (loop for (kind nil nil text) in *bar-looks* collect (list kind text))
           (loop for (outcome nil text) in *end-looks* collect (list outcome text)))
   "Lists (look text): the meaning of each colour and mark.")
 
-(defun looks-of (bar)
+(defun looks-of-bar (bar)
   (append (list (if (bar-call-p bar) :call :parts) (bar-outcome bar))
           (mapcar #'span-kind (bar-spans bar))
           (loop for span in (bar-commands bar)
                 collect (if (failure-code-p (span-error span)) :trouble :command))))
 
-(defun legend-for (rows)
-  (let ((drawn (loop for row in rows append (mapcan #'looks-of (row-bars row)))))
-    (remove-if-not (lambda (entry) (member (first entry) drawn)) *legend*)))
+(defun legend-of-rows (rows)
+  (let ((drawn (loop for row in rows append (mapcan #'looks-of-bar (row-bars row)))))
+    (remove-if-not (lambda (entry) (member (first entry) drawn)) *timeline-legend*)))
 
 (defun legend-places (legend width)
   "Return two values: lists (look text x y), the positions of the entries of LEGEND in lines of
@@ -79,51 +80,52 @@ WIDTH pixels, and the height of all lines."
                   for wide = (+ 46 (* +character-width+ (length text)))
                   do (when (and (plusp x) (> (+ x wide) width))
                        (setf x 0)
-                       (incf y +legend-line+))
+                       (incf y +legend-line-height+))
                   collect (list what text x y)
                   do (incf x wide))
-            (+ y +legend-line+))))
+            (+ y +legend-line-height+))))
 
 (defun draw-legend (canvas legend x y width)
   "Draw LEGEND at X, Y, WIDTH pixels wide. Return the y coordinate of its end."
   (multiple-value-bind (places height) (legend-places legend width)
     (loop for (what text right down) in places
-          do (if (assoc what *looks*)
-                 (look-box canvas what (+ x right) (+ y down) 18 +bar-height+)
-                 (draw-mark canvas what (+ x right 12) (+ y down)))
-             (write-at canvas (+ x right 24) (+ y down 11) text))
+          do (if (assoc what *bar-looks*)
+                 (draw-bar-look canvas what (+ x right) (+ y down) 18 +bar-height+)
+                 (draw-end-mark canvas what (+ x right 12) (+ y down)))
+             (write-text-at canvas (+ x right 24) (+ y down 11) text))
     (+ y height)))
 
 ;;; The rows.
 
 (defun row-height (row)
   "Return the height of ROW in pixels, with its lane for commands if it has commands."
-  (+ +bar-height+ +gap+ (if (some #'bar-commands (row-bars row)) (+ 1 +lane-height+) 0)))
+  (+ +bar-height+ +row-gap+ (if (some #'bar-commands (row-bars row)) (+ 1 +lane-height+) 0)))
 
 (defun rows-height (rows)
   (reduce #'+ (mapcar #'row-height rows)))
 
-(defun name-to-fit (row width)
+(defun row-label-for-width (row width)
   "Return the label of ROW, with less indentation if WIDTH, in pixels, is small."
   (if (< width 250) (row-label row 1 7) (row-label row)))
 
 (defun labels-width (rows least most)
   (clamp (+ 24 (* +character-width+
-                  (loop for row in rows maximize (length (name-to-fit row most)))))
+                  (loop for row in rows maximize (length (row-label-for-width row most)))))
          least most))
 
-(defun row-name (row width)
+(defun cut-row-label (row width)
   "Return the label of ROW, cut to fit into WIDTH pixels."
-  (fitted (name-to-fit row width) width))
+  (cut-to-width (row-label-for-width row width) width))
 
 (defun draw-row (canvas row y scale)
   (with-subject (canvas (first (row-bars row)))
-    (write-at canvas 10 (+ y 11) (or (row-name row (max 80 (- (scale-left scale) 20))) "")))
+    (write-text-at canvas 10 (+ y 11)
+                   (or (cut-row-label row (max 80 (- (scale-left scale) 20))) "")))
   (dolist (bar (row-bars row)) (draw-bar canvas bar y scale))
-  (draw-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
-             (+ y +bar-height+ 1) scale)
+  (draw-command-lane canvas (mapcan (lambda (bar) (copy-list (bar-commands bar))) (row-bars row))
+                     (+ y +bar-height+ 1) scale)
   (dolist (bar (row-bars row))
-    (draw-mark canvas (bar-outcome bar) (x-of-tick (bar-end bar) scale) y)))
+    (draw-end-mark canvas (bar-outcome bar) (x-of-tick (bar-end bar) scale) y)))
 
 (defun draw-rows (canvas rows scale top &key (from 0) to)
   "Draw ROWS from TOP down, except rows that end above FROM or begin below TO."
@@ -144,13 +146,13 @@ WIDTH pixels, and the height of all lines."
 
 (defun make-timeline-page (bars most)
   "Return a page with the rows for BARS, the bars of top-level tasks, but at most MOST rows."
-  (let* ((all (rows bars)) (unseen (max 0 (- (length all) most))))
+  (let* ((all (rows-of-bars bars)) (unseen (max 0 (- (length all) most))))
     (%make-page (subseq all 0 (- (length all) unseen)) unseen
-                (reduce #'min bars :key #'bar-start) (reduce #'max bars :key #'last-tick))))
+                (reduce #'min bars :key #'bar-start) (reduce #'max bars :key #'last-tick-of-bar))))
 
-(defun draw-unseen (canvas page y)
+(defun draw-omitted-rows-text (canvas page y)
   (when (plusp (page-unseen page))
-    (write-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
+    (write-text-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
 (defconstant +title-size+ 13 "The height of the font of the title, in pixels.")
 (defconstant +title-line+ 17 "The distance between lines of the title, in pixels.")
@@ -158,33 +160,35 @@ WIDTH pixels, and the height of all lines."
 (defun title-lines (canvas page title width)
   "Return TITLE as lines of at most WIDTH pixels. If TITLE is NIL, the title is the range of ticks
 of PAGE."
-  (lines-within (or title (format nil "Plans from tick ~D to ~D" (page-start page) (page-end page)))
-                width (character-width canvas +title-size+)))
+  (wrap-text-to-width (or title (format nil "Plans from tick ~D to ~D" (page-start page)
+                                          (page-end page)))
+                      width (character-width canvas +title-size+)))
 
 (defun draw-timeline (canvas bars most &optional title)
   "Draw a timeline of BARS, the bars of top-level tasks, on CANVAS, in at most MOST rows below
 TITLE. The default title is the range of ticks. Return the width and height in pixels."
   (let* ((page (make-timeline-page bars most)) (rows (page-rows page))
-         (left (labels-width rows 120 +label-width+))
+         (left (labels-width rows 120 +greatest-label-width+))
          (scale (make-scale (page-start page) (page-end page) left
                             (clamp (* +tick-width+ (- (page-end page) (page-start page)))
-                                   +least-chart+ +chart-width+)))
+                                   +least-chart-width+ +greatest-chart-width+)))
          (width (+ left (scale-width scale) 40))
          (lines (title-lines canvas page title (- width 20)))
-         (top (+ 30 (draw-legend canvas (legend-for rows) 10 (+ 10 (* +title-line+ (length lines)))
+         (top (+ 30 (draw-legend canvas (legend-of-rows rows) 10
+                                 (+ 10 (* +title-line+ (length lines)))
                                  (- width 10))))
          (bottom (+ top (rows-height rows))))
     (loop for line in lines for y from 16 by +title-line+
           do (draw-words canvas draw-gcontext* 10 y line :size +title-size+ :bold-p t))
     (draw-axis canvas scale top bottom)
-    (write-at canvas 10 (- top 10) "ticks" #x606060)
+    (write-text-at canvas 10 (- top 10) "ticks" #x606060)
     (draw-rows canvas rows scale top)
-    (draw-unseen canvas page (+ bottom 34))
+    (draw-omitted-rows-text canvas page (+ bottom 34))
     (values width (+ bottom 42))))
 
 ;;; In a place of any width.
 
-(defun scale-for (page width)
+(defun page-scale (page width)
   "Return the scale for PAGE in WIDTH pixels. The names of tasks take up to half of them."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
@@ -196,15 +200,15 @@ TITLE. The default title is the range of ticks. Return the width and height in p
   "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down. FROM and TO, in pixels from the top, are
 the visible part: other rows are not drawn, and the tick numbers stay above the visible rows. Return
 the y coordinate of the end of PAGE, in pixels."
-  (let* ((scale (scale-for page width))
+  (let* ((scale (page-scale page width))
          (first (+ top +axis-height+))
          (bottom (+ first (rows-height (page-rows page))))
          (axis (min (+ first from) bottom)))
     (draw-axis canvas scale axis bottom)
     (with-clipping (canvas 0 axis width (max 1 (- bottom axis)))
       (draw-rows canvas (page-rows page) scale first :from from :to to))
-    (draw-unseen canvas page (+ bottom 34))
-    (draw-legend canvas *legend* 10 (+ bottom (if (plusp (page-unseen page)) 44 24))
+    (draw-omitted-rows-text canvas page (+ bottom 34))
+    (draw-legend canvas *timeline-legend* 10 (+ bottom (if (plusp (page-unseen page)) 44 24))
                  (- width 10))))
 
 ;;; In a file.

@@ -16,13 +16,14 @@
 (defconstant +prompt-rows+ 2 "The least number of rows of the input line.")
 (defconstant +prompt-height+ 36
   "Height of the input line when it has +PROMPT-ROWS+ rows, in pixels.")
-(defconstant +splitter+ 6 "Thickness of a splitter, in pixels.")
-(defconstant +wide+ 1500
+(defconstant +splitter-width+ 6 "Thickness of a splitter, in pixels.")
+(defconstant +least-width-for-plan-column+ 1500
   "The least width, in pixels, of a window that shows plans in a separate column.")
 
-(defconstant +low+ 700
+(defconstant +low-window-height+ 700
   "In windows less high than this many pixels, sections continue beside the transcript.")
-(defconstant +edge+ 6 "The distance from the top of a section to its first line, in pixels.")
+(defconstant +section-top-margin+ 6
+  "The distance from the top of a section to its first line, in pixels.")
 
 (define-constant +sections+ '(state designators cameras hands bins plan)
   :test #'equal
@@ -48,12 +49,13 @@ for what suits the screen."
   (folded '(plan) :type list)
   (magnification nil :type (or null (integer 1))))
 
-(defun title-name (section)
+(defun title-pane-name (section)
   (intern (format nil "~A-TITLE" (symbol-name section)) :ars-magna.clim))
 
 (defun plan-column-p (preferences width)
   "True if plans have a separate column in a window WIDTH pixels wide."
-  (and (>= width +wide+) (not (member 'plan (preferences-folded preferences)))))
+  (and (>= width +least-width-for-plan-column+)
+       (not (member 'plan (preferences-folded preferences)))))
 
 (defun column-sections (preferences width)
   (if (plan-column-p preferences width) (remove 'plan +sections+) +sections+))
@@ -83,7 +85,7 @@ window has no such column."
 (defun transcript-height (preferences height)
   "Return the height in pixels of the transcript and its title in a window HEIGHT pixels high."
   (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
-        (fixed (+ +menus-height+ +bar-height+ +splitter+ +prompt-height+ +strip-height+)))
+        (fixed (+ +menus-height+ +bar-height+ +splitter-width+ +prompt-height+ +strip-height+)))
     (clamp (round wanted) 40 (max 40 (- height fixed 120)))))
 
 ;;; Sections.
@@ -93,7 +95,7 @@ window has no such column."
 pixels). If HEIGHT is enough, each section gets what it needs, and the plan or the designators get
 the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
-        ((<= (reduce #'+ needs :key #'second) height) (give-rest needs height))
+        ((<= (reduce #'+ needs :key #'second) height) (give-rest-to-section needs height))
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
@@ -108,9 +110,10 @@ sections get fair shares."
           (cons (list 'plan share) (share-height others (- height share))))
         (share-fairly needs height))))
 
-(defun whole-lines (height)
+(defun height-of-whole-lines (height)
   "Return the largest height, up to HEIGHT pixels, that cuts no line of text; at least one line."
-  (+ +edge+ (* +line-height+ (max 1 (floor (- height +edge+) +line-height+)))))
+  (+ +section-top-margin+
+     (* +line-height+ (max 1 (floor (- height +section-top-margin+) +line-height+)))))
 
 (defun share-fairly (needs height)
   "Divide HEIGHT, which is not enough for NEEDS. Sections that need less than an equal share get
@@ -126,7 +129,7 @@ what they need. The other sections get equally many whole lines."
 (defun share-lines (needs fair height)
   "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. The first
 sections get one of the remaining lines each, and the last one gets the remaining pixels."
-  (let* ((share (min (whole-lines fair) (max 0 fair)))
+  (let* ((share (min (height-of-whole-lines fair) (max 0 fair)))
          (rest (- height (* share (length needs)))))
     (loop for ((section) . more) on needs
           for extra = (cond ((null more) rest)
@@ -135,7 +138,7 @@ sections get one of the remaining lines each, and the last one gets the remainin
           do (decf rest extra)
           collect (list section (+ share extra)))))
 
-(defun give-rest (shares height)
+(defun give-rest-to-section (shares height)
   "Return SHARES, lists (section pixels), with the unused pixels of HEIGHT added to one section."
   (let ((rest (- height (reduce #'+ shares :key #'second)))
         (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
@@ -145,7 +148,7 @@ sections get one of the remaining lines each, and the last one gets the remainin
 
 (defun place-section (section left top width height)
   "Return the places of the title of SECTION and of the display below it, HEIGHT pixels high."
-  (list (list (title-name section) left top width +title-height+)
+  (list (list (title-pane-name section) left top width +title-height+)
         (list section left (+ top +title-height+) width (max 0 height))))
 
 (defun place-sections (sections needs folded left top width height)
@@ -170,7 +173,7 @@ LEFT and is HEIGHT pixels high; the splitter is DOWN pixels high."
   (let ((plan (plan-width preferences width)))
     (if (plusp plan)
         (append (place-section 'plan left top plan (- height +title-height+))
-                (list (list 'plan-splitter (+ left plan) top +splitter+ down)))
+                (list (list 'plan-splitter (+ left plan) top +splitter-width+ down)))
         (list (list 'plan-splitter left top 0 0)))))
 
 (defun place-displays (preferences needs width top height down)
@@ -178,21 +181,21 @@ LEFT and is HEIGHT pixels high; the splitter is DOWN pixels high."
 pixels high. The column of sections is DOWN pixels high."
   (let* ((column (details-width preferences width))
          (own-p (plan-column-p preferences width))
-         (plan (if own-p (+ (plan-width preferences width) +splitter+) 0))
-         (world (- width column plan +splitter+))
-         (left (+ world +splitter+)))
+         (plan (if own-p (+ (plan-width preferences width) +splitter-width+) 0))
+         (world (- width column plan +splitter-width+))
+         (left (+ world +splitter-width+)))
     (append (place-section 'world 0 top world (- height +title-height+))
-            (list (list 'side-splitter world top +splitter+ (if own-p height down)))
+            (list (list 'side-splitter world top +splitter-width+ (if own-p height down)))
             (place-plan-column preferences width left top height down)
             (place-sections (column-sections preferences width) needs
                             (preferences-folded preferences)
                             (+ left plan) top column down))))
 
-(defun place-low (width top bottom)
+(defun place-transcript (width top bottom)
   "Return the places of the transcript and of the splitter above it. The splitter begins at TOP, and
 the transcript ends at BOTTOM."
-  (let ((low (+ top +splitter+)))
-    (cons (list 'low-splitter 0 top width +splitter+)
+  (let ((low (+ top +splitter-width+)))
+    (cons (list 'low-splitter 0 top width +splitter-width+)
           (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun prompt-height (rows transcript)
@@ -211,13 +214,13 @@ additional rows take room from the transcript."
          (transcript (transcript-height preferences height))
          (typed (prompt-height rows transcript))
          (prompt (- strip typed))
-         (splitter (- strip +prompt-height+ transcript +splitter+))
-         (down-p (< height +low+))
-         (column (+ (details-width preferences width) +splitter+)))
+         (splitter (- strip +prompt-height+ transcript +splitter-width+))
+         (down-p (< height +low-window-height+))
+         (column (+ (details-width preferences width) +splitter-width+)))
     (append (list (list 'menus 0 0 width +menus-height+)
                   (list 'bar 0 +menus-height+ width +bar-height+))
             (place-displays preferences needs width top (- splitter top)
                             (- (if down-p prompt splitter) top))
-            (place-low (if down-p (- width column) width) splitter prompt)
+            (place-transcript (if down-p (- width column) width) splitter prompt)
             (list (list 'interactor 0 prompt width typed)
                   (list 'strip 0 strip width +strip-height+)))))

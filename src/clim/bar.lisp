@@ -17,28 +17,28 @@ function of the window that returns true while the button is on."
   (help "" :type string :read-only t)
   (lit-p nil :read-only t))
 
-(defun key-text (key)
+(defun key-label (key)
   (if (char= key #\Space) "space" (string key)))
 
 (defmethod subject-title ((button button))
   (let ((key (button-key button)))
-    (format nil "~A~@[ (key: ~A)~]" (button-help button) (and key (key-text key)))))
+    (format nil "~A~@[ (key: ~A)~]" (button-help button) (and key (key-label key)))))
 
 (defun pause-label (window)
-  (if (paused-here-p (window-simulation window)) "Resume" "Pause"))
+  (if (paused-until-resume-p (window-simulation window)) "Resume" "Pause"))
 
-(defun following-p (window) (pane-following-p (pane-named window 'world)))
+(defun view-follows-robot-p (window) (pane-following-p (pane-named window 'world)))
 
 (defparameter *buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
                      "Pause the run, or let time pass again"
-                     (lambda (window) (paused-here-p (window-simulation window))))
+                     (lambda (window) (paused-until-resume-p (window-simulation window))))
         (make-button "Step" #\. 'com-step "Let one tick pass, then pause")
         (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
         (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
         (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
-        (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'following-p)
+        (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'view-follows-robot-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")
         (make-button "Help" #\? 'com-help "Show what the keys and the mouse do"))
   "The buttons of the tool bar, from left to right.")
@@ -58,7 +58,7 @@ function of the window that returns true while the button is on."
                         (and lit-p (funcall lit-p window) t)))))
 
 (defmethod paint ((pane bar-pane))
-  (painting (canvas pane)
+  (with-pane-canvas (canvas pane)
     (loop with x = 4
           for button in *buttons*
           for (text lit-p) in (pane-content pane)
@@ -89,7 +89,7 @@ function of the window that returns true while the button is on."
                 (simulation-tick simulation)
                 (and snapshot (snapshot-tick snapshot))))))
 
-(defun answers-text (window)
+(defun waiting-answers-text (window)
   "Return a text that says how many programs wait for an answer at the prompt of WINDOW. Return NIL
 if no program waits."
   (let ((count (length (ars-magna.cli:awaited-answers (window-session window)))))
@@ -101,7 +101,7 @@ if no program waits."
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
           (line-awaiting-input (window-conversation window))
-          (answers-text window)))
+          (waiting-answers-text window)))
 
 (defun strip-lines (window)
   (list (time-text window) (window-hint window)))
@@ -111,7 +111,7 @@ if no program waits."
 
 (defmethod paint ((pane strip-pane))
   (let ((columns (max 4 (floor (- (pane-size pane) 12) +character-width+))))
-    (painting (canvas pane)
+    (with-pane-canvas (canvas pane)
       (loop for line in (strip-lines (window-of pane))
             for y from 14 by +line-height+
             do (draw-glyphs canvas draw-gcontext* 6 y (cut line columns))))))
@@ -123,4 +123,4 @@ if no program waits."
 (defmethod handle-click ((pane strip-pane) button x y)
   (declare (ignore button x y))
   (let ((window (window-of pane)))
-    (say-in-window window "~A~%" (time-text window))))
+    (write-in-window window "~A~%" (time-text window))))

@@ -24,7 +24,7 @@
 
 (defvar *inks* (make-hash-table :synchronized t) "A cache of CLIM's colour objects by colour.")
 
-(defun ink (color)
+(defun clim-ink (color)
   (or (gethash color *inks*)
       (setf (gethash color *inks*)
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
@@ -32,11 +32,11 @@
 
 ;;; CLIM magnifies the positions of lines and letters, but not their thickness and size.
 
-(defun thickness (canvas gcontext)
+(defun clim-line-thickness (canvas gcontext)
   "Return the thickness of lines that GCONTEXT draws on CANVAS, in screen pixels."
   (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
 
-(defun dashes (canvas gcontext)
+(defun clim-line-dashes (canvas gcontext)
   "Return the lengths of dashes and gaps of GCONTEXT in screen pixels, as a list. Return NIL if its
 lines are solid."
   (let ((dashes (gcontext-dashes gcontext)))
@@ -51,26 +51,26 @@ lines are solid."
             (list (min (first reach) left) (min (second reach) top)
                   (max (third reach) right) (max (fourth reach) bottom))))))
 
-(defun extend-over (canvas points)
+(defun extend-reach-over-points (canvas points)
   (when (canvas-reach canvas)
     (loop for (x y) on points by #'cddr
           do (extend-reach canvas x y x y))))
 
 ;;; Painting.
 
-(defun corners (rectangles)
+(defun corners-of-rectangles (rectangles)
   "Return RECTANGLES, a sequence x y width height ..., as a list left top right bottom ...."
   (loop for (x y width height) on (coerce rectangles 'list) by #'cddddr
         append (list x y (+ x width) (+ y height))))
 
 (defmethod paint-rectangles ((canvas clim-canvas) gcontext rectangles fill-p)
-  (let ((corners (corners rectangles)))
-    (extend-over canvas corners)
+  (let ((corners (corners-of-rectangles rectangles)))
+    (extend-reach-over-points canvas corners)
     (clim:draw-rectangles* (canvas-medium canvas) corners
                            :filled (and fill-p t)
-                           :ink (ink (gcontext-foreground gcontext))
-                           :line-thickness (thickness canvas gcontext)
-                           :line-dashes (dashes canvas gcontext))))
+                           :ink (clim-ink (gcontext-foreground gcontext))
+                           :line-thickness (clim-line-thickness canvas gcontext)
+                           :line-dashes (clim-line-dashes canvas gcontext))))
 
 (defun arc-points (x y width height start extent)
   "Return points along an arc, x y ..., close enough together for the arc to look round."
@@ -84,8 +84,8 @@ lines are solid."
 (defun paint-ellipse (canvas gcontext x y width height fill-p)
   (clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))
                       (/ width 2) 0 0 (/ height 2)
-                      :filled (and fill-p t) :ink (ink (gcontext-foreground gcontext))
-                      :line-thickness (thickness canvas gcontext)))
+                      :filled (and fill-p t) :ink (clim-ink (gcontext-foreground gcontext))
+                      :line-thickness (clim-line-thickness canvas gcontext)))
 
 (defun outline-box (x y width height thickness)
   "Return a box, as values x, y, width and height, for an outline inside the box X, Y, WIDTH,
@@ -112,48 +112,48 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
 
 (defmethod paint-path ((canvas clim-canvas) gcontext points fill-p)
   (let ((points (coerce points 'list)))
-    (extend-over canvas points)
+    (extend-reach-over-points canvas points)
     (clim:draw-polygon* (canvas-medium canvas) points
                         :filled (and fill-p t) :closed (and fill-p t)
-                        :ink (ink (gcontext-foreground gcontext))
-                        :line-thickness (thickness canvas gcontext)
-                        :line-dashes (dashes canvas gcontext))))
+                        :ink (clim-ink (gcontext-foreground gcontext))
+                        :line-thickness (clim-line-thickness canvas gcontext)
+                        :line-dashes (clim-line-dashes canvas gcontext))))
 
 (defmethod paint-segments ((canvas clim-canvas) gcontext segments)
   (let ((points (coerce segments 'list)))
-    (extend-over canvas points)
+    (extend-reach-over-points canvas points)
     (clim:draw-lines* (canvas-medium canvas) points
-                      :ink (ink (gcontext-foreground gcontext))
-                      :line-thickness (thickness canvas gcontext)
-                      :line-dashes (dashes canvas gcontext))))
+                      :ink (clim-ink (gcontext-foreground gcontext))
+                      :line-thickness (clim-line-thickness canvas gcontext)
+                      :line-dashes (clim-line-dashes canvas gcontext))))
 
 (defparameter *text-styles*
-  (coerce (loop for magnification from 1 to +most-magnified+
+  (coerce (loop for magnification from 1 to +greatest-magnification+
                 collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
           'vector)
   "CLIM text styles by magnification. In the style for magnification N, letters are N times
 +CHARACTER-WIDTH+ wide.")
 
-(defun uncut-p (canvas y)
+(defun text-uncut-p (canvas y)
   "True if text with its base line at Y is not cut off at the upper or lower edge of CANVAS."
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
     (or (null bottom) (<= 10 y (- bottom 3)))))
 
 (defmethod paint-string ((canvas clim-canvas) gcontext x y string)
   (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
-  (when (uncut-p canvas y)
+  (when (text-uncut-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
                      :text-style (svref *text-styles* (1- (canvas-magnification canvas)))
-                     :ink (ink (gcontext-foreground gcontext)))))
+                     :ink (clim-ink (gcontext-foreground gcontext)))))
 
 ;;; Where.
 
-(defun shifted (canvas left top right bottom)
+(defun box-on-medium (canvas left top right bottom)
   "Return the box LEFT, TOP, RIGHT, BOTTOM of CANVAS in the coordinates of its medium."
   (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
     (list (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))))
 
-(defun seen-part (canvas box)
+(defun visible-part (canvas box)
   "Return the part of BOX, in coordinates of the medium, that CANVAS does not clip away, or NIL."
   (if (canvas-seen canvas)
       (destructuring-bind ((left top right bottom) (from-x from-y to-x to-y))
@@ -165,7 +165,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
 (defmethod call-with-clipping (function (canvas clim-canvas) x y width height)
   (let* ((reach (shiftf (canvas-reach canvas) nil)) (right (+ x width)) (bottom (+ y height))
          (seen (canvas-seen canvas)))
-    (setf (canvas-seen canvas) (or (seen-part canvas (shifted canvas x y right bottom))
+    (setf (canvas-seen canvas) (or (visible-part canvas (box-on-medium canvas x y right bottom))
                                    '(0 0 -1 -1)))
     (unwind-protect
          (clim:with-drawing-options ((canvas-medium canvas)
@@ -193,17 +193,18 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
       (destructuring-bind (left top right bottom) (canvas-reach canvas)
         (setf (canvas-reach canvas) outer)
         (extend-reach canvas left top right bottom)
-        (let ((box (seen-part canvas (shifted canvas left top right bottom))))
+        (let ((box (visible-part canvas (box-on-medium canvas left top right bottom))))
           (when box (push (cons subject box) (canvas-subjects canvas))))))))
 
-(defconstant +subject-slack+ 3 "The number of pixels by which a click may miss what it selects.")
+(defconstant +subject-tolerance+ 3
+  "The number of pixels by which a click may miss what it selects.")
 
 (defun subjects-at (subjects x y)
   "Return the objects drawn at X, Y or close to that point, the smallest first. SUBJECTS are lists
 (object left top right bottom) of what was drawn on a canvas."
   (let ((found (loop for (subject left top right bottom) in subjects
-                     when (and (<= (- left +subject-slack+) x (+ right +subject-slack+))
-                               (<= (- top +subject-slack+) y (+ bottom +subject-slack+)))
+                     when (and (<= (- left +subject-tolerance+) x (+ right +subject-tolerance+))
+                               (<= (- top +subject-tolerance+) y (+ bottom +subject-tolerance+)))
                        collect (cons (* (- right left) (- bottom top)) subject))))
     (cl:map 'list #'cdr (stable-sort found #'< :key #'car))))
 

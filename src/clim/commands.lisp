@@ -10,23 +10,23 @@
 
 ;;; Running. A fork or trial is not live: there the prompt lets ticks pass.
 
-(defun steer (window function line)
+(defun call-if-live (window function line)
   "Call FUNCTION with the simulation of WINDOW if it is live. Otherwise send LINE to the prompt."
   (let ((simulation (window-simulation window)))
     (if (live-p simulation)
         (funcall function simulation)
-        (give-line (window-conversation window) line))))
+        (run-line-at-prompt (window-conversation window) line))))
 
 (define-window-command (com-pause "Pause") (window)
-  (steer window #'pause "pause"))
+  (call-if-live window #'pause "pause"))
 
 (define-window-command (com-resume "Resume") (window)
-  (steer window #'resume "resume"))
+  (call-if-live window #'resume "resume"))
 
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
-  (if (paused-here-p (window-simulation window)) (com-resume) (com-pause)))
+  (if (paused-until-resume-p (window-simulation window)) (com-resume) (com-pause)))
 
-(defconstant +back+ 10 "The number of ticks that the button Back goes back.")
+(defconstant +ticks-of-step-back+ 10 "The number of ticks that the button Back goes back.")
 
 ;; This goes back some ticks, as REWIND does, or to the first tick there is. It pauses the run, as
 ;; STEP does, since ticks that pass would undo it at once.
@@ -34,32 +34,34 @@
   (let ((simulation (window-simulation window)))
     (when (live-p simulation) (pause simulation))
     (let ((passed (- (simulation-tick simulation) (or (earliest-tick simulation) 0))))
-      (give-line (window-conversation window) (format nil "rewind ~D" (min +back+ passed))))))
+      (run-line-at-prompt (window-conversation window)
+                          (format nil "rewind ~D" (min +ticks-of-step-back+ passed))))))
 
 (define-window-command (com-step "Step") (window)
   (if (ars-magna.cli:simulator-broken-p (window-session window))
-      (tell-to-answer (window-conversation window) "Step")
-      (steer window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
+      (request-answer-first (window-conversation window) "Step")
+      (call-if-live window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
 (defun change-rate-to (window rate)
   "Set the tick rate of the run of WINDOW to RATE, if its ticks pass by themselves."
   (let ((simulation (window-simulation window)))
     (cond ((live-p simulation)
            (set-rate rate simulation)
-           (say-in-window window "~:[Ticks pass as fast as possible~;~:*The rate is ~A ticks per ~
-                                  second~].~%"
-                          (and (realp rate) (number-text (simulation-rate simulation)))))
-          ((rate-set simulation)
-           (give-line (window-conversation window)
-                      (format nil "rate ~:[free~;~:*~A~]" (and (realp rate) (number-text rate)))))
-          (t (say-in-window window "Time passes in this run only while commands need it, so there ~
-                                    is no tick rate.~%")))))
+           (write-in-window window "~:[Ticks pass as fast as possible~;~:*The rate is ~A ticks per ~
+                                    second~].~%"
+                            (and (realp rate) (number-text (simulation-rate simulation)))))
+          ((chosen-rate simulation)
+           (run-line-at-prompt (window-conversation window)
+                               (format nil "rate ~:[free~;~:*~A~]"
+                                      (and (realp rate) (number-text rate)))))
+          (t (write-in-window window "Time passes in this run only while commands need it, so ~
+                                      there is no tick rate.~%")))))
 
 (defun change-rate (window factor)
-  (let ((rate (rate-set (window-simulation window))))
+  (let ((rate (chosen-rate (window-simulation window))))
     (if (eq rate :free)
-        (say-in-window window "Ticks pass as fast as possible. The line RATE sets a number of ~
-                               ticks per second.~%")
+        (write-in-window window "Ticks pass as fast as possible. The line RATE sets a number of ~
+                                 ticks per second.~%")
         (change-rate-to window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
@@ -97,10 +99,10 @@
 (defun zoom-window (window factor)
   (let ((pane (pane-named window 'world)))
     (multiple-value-bind (width height) (pane-size pane)
-      (zoom pane factor (floor width 2) (floor height 2)))))
+      (zoom-view pane factor (floor width 2) (floor height 2)))))
 
 (define-window-command (com-fit "Whole map") (window)
-  (fit (pane-named window 'world)))
+  (fit-whole-map (pane-named window 'world)))
 
 (define-window-command (com-find "Go to the robot") (window)
   (show-robot (pane-named window 'world)))
@@ -109,17 +111,17 @@
   (let ((pane (pane-named window 'world)))
     (setf (pane-following-p pane) (not (pane-following-p pane)))
     (when (and (pane-following-p pane) (pane-fitting-p pane))
-      (hint window *all-in-view*))
+      (show-hint window *whole-map-hint*))
     (refresh window)))
 
 (define-window-command (com-larger "All larger") (window)
-  (magnify window (1+ (window-magnification window))))
+  (set-magnification window (1+ (window-magnification window))))
 
 (define-window-command (com-smaller "All smaller") (window)
-  (magnify window (1- (window-magnification window))))
+  (set-magnification window (1- (window-magnification window))))
 
 (define-window-command (com-color "Colours on or off") (window)
-  (switch-color window))
+  (toggle-color window))
 
 (defun button-left (window command)
   "Return the distance in pixels from the left edge of the tool bar of WINDOW to the button that
@@ -128,21 +130,21 @@ calls COMMAND. Return 8 if no button calls COMMAND."
         when (and (button-p subject) (eq command (button-command subject))) return (floor left)
         finally (return 8)))
 
-(defun open-below-bar (window rows opener)
+(defun open-popup-below-bar (window rows opener)
   (open-popup window rows (button-left window opener) (+ +menus-height+ +bar-height+ 2) opener))
 
 (define-window-command (com-layers "Layers") (window)
-  (open-below-bar window (layer-rows window) 'com-layers))
+  (open-popup-below-bar window (layer-rows window) 'com-layers))
 
 (define-window-command (com-robots "Which robot") (window)
-  (open-below-bar window (robot-rows window) 'com-robots))
+  (open-popup-below-bar window (robot-rows window) 'com-robots))
 
 (define-window-command (com-help "Keys and mouse") (window)
-  (open-below-bar window (help-rows) 'com-help))
+  (open-popup-below-bar window (help-rows) 'com-help))
 
 ;;; Pictures.
 
-(defun save-window (window type)
+(defun save-window-picture (window type)
   "Save a picture of the displays of WINDOW in the current directory, in a file of TYPE."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
                              (format nil "~(~A~)-~6,'0D.~A" (shown-robot window)
@@ -150,10 +152,10 @@ calls COMMAND. Return 8 if no button calls COMMAND."
                              :layers (window-layers window)
                              :in-color (window-color-p window)
                              :scale (pane-scale (pane-named window 'world)))))
-    (say-in-window window "Saved ~A~%" (native-name file))))
+    (write-in-window window "Saved ~A~%" (native-name file))))
 
 (define-window-command (com-save-svg "Save as SVG") (window)
-  (save-window window "svg"))
+  (save-window-picture window "svg"))
 
 (define-window-command (com-save-png "Save as PNG") (window)
-  (save-window window "png"))
+  (save-window-picture window "png"))

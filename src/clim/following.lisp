@@ -21,9 +21,9 @@ has left."
 commands, a robot with the name of the robot shown before, or else another robot. Return NIL if
 other windows show all robots of NEW."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
-        (own-p (eq window (own-window))))
+        (own-p (eq window (window-of-this-thread))))
     (find-if (lambda (name)
-               (and (member name names) (not (shown-beside-p window name new))))
+               (and (member name names) (not (shown-in-other-window-p window name new))))
              (append (and own-p (list ars-magna.cli:*prompt-robot*))
                      (list (shown-robot window) ars-magna.cli:*prompt-robot*)
                      names))))
@@ -32,9 +32,9 @@ other windows show all robots of NEW."
   "Make WINDOW show the run NEW from now on, if NEW has a robot that no other window shows."
   (let ((name (robot-after-switch window new)))
     (when name
-      (note-shown window name)
+      (record-shown-robot window name)
       (watch-simulation (window-watcher window) new)
-      (retitle window)
+      (update-title window)
       (request-refresh window))))
 
 (defun follow-prompt (session old new)
@@ -44,7 +44,7 @@ other windows show all robots of NEW."
     (dolist (window (open-windows))
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
-               (unless (live-p new) (publish watcher new)))
+               (unless (live-p new) (publish-snapshot watcher new)))
               ((and old (not (eq old new)) (follows-prompt-p window old))
                (switch-window window new)))))))
 
@@ -54,14 +54,14 @@ other windows show all robots of NEW."
 
 ;;; A plan of a live run breaks in a separate thread, while ticks pass.
 
-(defun show-as-it-stands ()
+(defun update-own-run-windows ()
   "Update the windows that show the run whose plans or ticks this thread executes."
   (dolist (window (open-windows))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
       (when simulation
-        (when (look-as-it-stands (watcher-plans watcher))
+        (when (update-look-of-own-plans (watcher-plans watcher))
           (funcall (watcher-news watcher)))
         (when (mine-p (timeline-custody (simulation-timeline simulation)))
-          (publish watcher simulation))))))
+          (publish-snapshot watcher simulation))))))
 
-(attend ars-magna.cli:*break-hooks* show-as-it-stands)
+(attend ars-magna.cli:*break-hooks* update-own-run-windows)

@@ -13,7 +13,7 @@
 
 ;;; What is to be seen.
 
-(defun line-text (control line)
+(defun running-line-text (control line)
   "Return a text about the running LINE and how to end it. CONTROL is a format string for LINE."
   (format nil "~@? -- Control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
@@ -22,25 +22,26 @@
   (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; Backspace removes the last line. ~]Next> "
           count))
 
-(defun line-shown (conversation)
+(defun shown-input-line (conversation)
   "Return a list of label, text and cursor position of the input line of CONVERSATION, or NIL."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line (ars-magna.cli:drawn-line-shown line))))
 
-(defun asked-text (answers)
+(defun waiting-breaks-text (answers)
   "Return the text above the input line while programs wait for answers. ANSWERS is a list of texts
 about the waiting breaks. Return NIL if ANSWERS is empty."
   (when answers
     (format nil "~@[~D more wait~:*~[~;s~:;~]. ~]How to continue? ~A"
             (and (rest answers) (length (rest answers))) (first answers))))
 
-(defun row-above (conversation text)
+(defun text-above-input (conversation text)
   "Return a list of the text to show above the input line, or NIL, and its ink. TEXT is the text of
 the input line."
   (let ((reading (line-awaiting-input conversation))
-        (asked (asked-text (ars-magna.cli:awaited-answers (conversation-session conversation))))
+        (asked (waiting-breaks-text
+                (ars-magna.cli:awaited-answers (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
-    (cond (reading (list (line-text "~A waits for your answer" reading) :red))
+    (cond (reading (list (running-line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))
           ((= lines 1) (list nil :grey))
           (t (list (format nil "~D lines: Return enters them one after the other; Control-C ~
@@ -48,29 +49,30 @@ the input line."
                            lines)
                    :grey)))))
 
-(defun what-is-shown (pane)
+(defun interactor-contents (pane)
   "Return what PANE shows, as a list of label, text and cursor position of the input line, the text
 above it and its ink. Return NIL if PANE is empty."
   (let* ((conversation (window-conversation (window-of pane)))
-         (shown (line-shown conversation))
-         (busy (busy-with conversation)))
-    (cond (shown (append shown (row-above conversation (second shown))))
+         (shown (shown-input-line conversation))
+         (busy (running-line conversation)))
+    (cond (shown (append shown (text-above-input conversation (second shown))))
           (busy (multiple-value-bind (count text point)
                     (ars-magna.cli:typed-ahead
                      (ars-magna.cli:session-input (conversation-session conversation)))
                   (list (waiting-label count) text point
-                        (line-text "Running ~A" busy) :red))))))
+                        (running-line-text "Running ~A" busy) :red))))))
 
-(defun rows-wanted (pane)
+(defun needed-rows (pane)
   "Return the number of rows that PANE needs for the input line and the text above it."
-  (destructuring-bind (&optional label (text "") (point 0) note &rest ink) (what-is-shown pane)
+  (destructuring-bind (&optional label (text "") (point 0) note &rest ink)
+      (interactor-contents pane)
     (declare (ignore ink))
     (+ (if note 1 0)
        (length (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text (or label "")) text point
                                            (columns-and-rows pane) 1000)))))
 
 (defmethod pane-content ((pane interactor-pane))
-  (list (what-is-shown pane) (focused-p pane)))
+  (list (interactor-contents pane) (focused-p pane)))
 
 ;;; Painting.
 
@@ -87,18 +89,19 @@ above it and its ink. Return NIL if PANE is empty."
                                     columns (max 1 (- height top)))
       (loop for (string) in rows
             for y from (+ 14 (* top +line-height+)) by +line-height+
-            do (paint-words canvas string 0 y nil))
+            do (paint-glyphs-at-column canvas string 0 y nil))
       (paint-cursor canvas (+ top row) column (focused-p pane)))))
 
 (defmethod paint ((pane interactor-pane))
-  (painting (canvas pane)
-    (destructuring-bind (&optional label text point note ink) (what-is-shown pane)
-      (when note (paint-words canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
+  (with-pane-canvas (canvas pane)
+    (destructuring-bind (&optional label text point note ink) (interactor-contents pane)
+      (when note
+        (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
       (when label (paint-line canvas pane label text point (if note 1 0))))))
 
 ;;; Keys.
 
-(defparameter *keys-by-name*
+(defparameter *editor-keys-by-clim-name*
   '((:return :return) (:kp-enter :return) (:tab :tab) (:backspace :rubout) (:delete :delete)
     (:rubout :delete) (:up :up) (:down :down) (:left :left) (:right :right)
     (:home :home) (:end :end))
@@ -107,25 +110,25 @@ above it and its ink. Return NIL if PANE is empty."
 (defun pressed-with-p (event modifier)
   (logtest modifier (clim:event-modifier-state event)))
 
-(defun named-key (name control-p meta-p)
-  (let ((key (second (assoc name *keys-by-name*))))
+(defun editor-key-named (name control-p meta-p)
+  (let ((key (second (assoc name *editor-keys-by-clim-name*))))
     (case key
       (:left (if (or control-p meta-p) :meta-b key))
       (:right (if (or control-p meta-p) :meta-f key))
       (:rubout (if (or control-p meta-p) :meta-rubout key))
       (t key))))
 
-(defun key-with (prefix char)
+(defun prefixed-key (prefix char)
   (make-keyword (format nil "~A-~:@(~C~)" prefix char)))
 
-(defun key-of (event)
+(defun editor-key-of-event (event)
   (let ((char (clim:keyboard-event-character event))
         (control-p (pressed-with-p event clim:+control-key+))
         (meta-p (pressed-with-p event clim:+meta-key+)))
-    (cond ((named-key (clim:keyboard-event-key-name event) control-p meta-p))
+    (cond ((editor-key-named (clim:keyboard-event-key-name event) control-p meta-p))
           ((or (null char) (not (graphic-char-p char))) nil)
-          (control-p (and (alpha-char-p char) (key-with "CONTROL" char)))
-          (meta-p (key-with "META" char))
+          (control-p (and (alpha-char-p char) (prefixed-key "CONTROL" char)))
+          (meta-p (prefixed-key "META" char))
           (t (string char)))))
 
 ;;; The window handles copy, paste and scrolling back itself.
@@ -135,16 +138,16 @@ above it and its ink. Return NIL if PANE is empty."
 transcript."
   (let ((pane (pane-named window 'transcript)))
     (share-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
-    (unless (selection pane)
-      (hint window "Nothing was selected, so all text of the commands has been copied."))))
+    (unless (selection-bounds pane)
+      (show-hint window "Nothing was selected, so all text of the commands has been copied."))))
 
 (defun paste-text (window selection)
   "Paste the text of SELECTION, :PRIMARY or :CLIPBOARD, into the input line of WINDOW."
   (let ((text (fetch-text (clim:port (pane-named window 'interactor)) selection)))
     (unless (member text '(nil "") :test #'equal)
-      (give-key (window-conversation window) (list :paste text)))))
+      (pass-key (window-conversation window) (list :paste text)))))
 
-(defun own-action (event)
+(defun window-key-action (event)
   (let* ((name (clim:keyboard-event-key-name event))
          (typed (clim:keyboard-event-character event))
          ;; CLIM reports shift only by the capital letter.
@@ -159,18 +162,18 @@ transcript."
             ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
-(defun take-key (window key)
+(defun pass-key-to-prompt (window key)
   "Pass KEY to the prompt of WINDOW. The key Control-C also ends the running line."
   (if (eq key :control-c)
       (ars-magna.cli:interrupt-session (window-session window))
-      (give-key (window-conversation window) key)))
+      (pass-key (window-conversation window) key)))
 
-(defun do-key-in-window (window event)
+(defun handle-key-in-input-line (window event)
   "Handle the key of EVENT for the input line of WINDOW. Return true if the key has an effect."
-  (let ((action (own-action event)) (key (key-of event)))
-    (cond ((do-key-in-popup window (clim:keyboard-event-key-name event)) t)
+  (let ((action (window-key-action event)) (key (editor-key-of-event event)))
+    (cond ((handle-key-in-popup window (clim:keyboard-event-key-name event)) t)
           (action (funcall action window) t)
-          (key (take-key window key) t))))
+          (key (pass-key-to-prompt window key) t))))
 
 ;;; CLIM has one place for the keys of all windows; they must go to the window that has the focus.
 
@@ -182,13 +185,13 @@ transcript."
 ;;; The events say which window that is, in their order, in the thread that reads them. A window's
 ;;; own thread may get to them late, so it only says which of its panes gets the keys.
 
-(defun window-with-keys (port)
+(defun focused-window (port)
   (let ((sheet (clim:port-keyboard-input-focus port)))
     (and sheet (robot-window-of sheet))))
 
-(defun give-keys-by (port event)
+(defun direct-keys-by-event (port event)
   "Direct the keys of PORT to the window of EVENT, if that window shows a robot."
-  (let ((window (robot-window-of (clim:event-sheet event))) (before (window-with-keys port)))
+  (let ((window (robot-window-of (clim:event-sheet event))) (before (focused-window port)))
     (unless (member window (list before nil))
       (setf (clim:port-keyboard-input-focus port)
             (or (window-focus window) (clim:frame-top-level-sheet window)))
@@ -199,7 +202,7 @@ transcript."
 (defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:event))
   (when (typep event '(or clim:keyboard-event clim:pointer-button-press-event
                        clime:window-manager-focus-event))
-    (give-keys-by port event)))
+    (direct-keys-by-event port event)))
 
 (defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clime:window-manager-focus-event))
@@ -208,16 +211,16 @@ transcript."
 (defun focus-on (pane)
   (let ((window (window-of pane)) (port (clim:port pane)))
     (setf (window-focus window) pane)
-    (when (member (window-with-keys port) (list window nil))
+    (when (member (focused-window port) (list window nil))
       (setf (clim:port-keyboard-input-focus port) pane))))
 
-(defun type-into (pane)
+(defun focus-and-repaint (pane)
   (focus-on pane)
   (repaint-if-changed pane))
 
 (defmethod handle-click ((pane interactor-pane) button x y)
   (declare (ignore x y))
-  (type-into pane)
+  (focus-and-repaint pane)
   (when (eq button :middle)
     (with-guarded-command ((window-of pane) "Pasting") (paste-text (window-of pane) :primary))))
 

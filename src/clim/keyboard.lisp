@@ -6,28 +6,28 @@
 ;;; transcript, or a character that is none of their keys gives it back to the prompt. While a line
 ;;; is half typed, all characters go to it.
 
-(defun give-keys-to-prompt (window)
-  (type-into (pane-named window 'interactor)))
+(defun focus-input-line (window)
+  (focus-and-repaint (pane-named window 'interactor)))
 
-(defun take-keys (pane)
+(defun focus-clicked-pane (pane)
   "Direct keys to PANE, which was clicked, from now on; or to the prompt, if PANE is the
 transcript."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
      (focus-on pane))
-    (transcript-pane (give-keys-to-prompt (window-of pane)))))
+    (transcript-pane (focus-input-line (window-of pane)))))
 
 (defun type-at-prompt (window character)
   "Send CHARACTER, and the keys typed after it, to the input line of WINDOW."
   ;; What is typed fast may still come to a display.
   (setf (window-typing-p window) t)
-  (take-key window (string character))
-  (give-keys-to-prompt window))
+  (pass-key-to-prompt window (string character))
+  (focus-input-line window))
 
 (defconstant +arrow-step+ 60 "The number of pixels that an arrow key moves the view.")
 
-(defun arrow (key-name)
+(defun arrow-key-offset (key-name)
   "Return the pixels to the right and down that the key KEY-NAME moves the view, as two values.
 Return NIL for other keys than arrows."
   (case key-name
@@ -36,13 +36,13 @@ Return NIL for other keys than arrows."
     (:up (values 0 (- +arrow-step+)))
     (:down (values 0 +arrow-step+))))
 
-(defun do-key (window key-name character)
+(defun handle-key (window key-name character)
   "Handle the key KEY-NAME in WINDOW. CHARACTER is its character, or NIL. Return true if the key has
 an effect."
   (let ((button (and character (find character *buttons* :key #'button-key)))
-        (shown (line-shown (window-conversation window))))
-    (multiple-value-bind (dx dy) (arrow key-name)
-      (cond ((do-key-in-popup window key-name) t)
+        (shown (shown-input-line (window-conversation window))))
+    (multiple-value-bind (dx dy) (arrow-key-offset key-name)
+      (cond ((handle-key-in-popup window key-name) t)
             ((eq key-name :f10) (open-first-menu window) t)
             ((and (or (window-typing-p window) (and shown (string/= "" (second shown))))
                   character
@@ -55,21 +55,21 @@ an effect."
                     t)
             (dx (move-view (pane-named window 'world) dx dy) t)
             ((member key-name '(:return :escape))
-             (or (close-popup window) (give-keys-to-prompt window))
+             (or (close-popup window) (focus-input-line window))
              t)
             ((and character (graphic-char-p character))
              (type-at-prompt window character)
              t)))))
 
-(defun modified-p (event)
+(defun key-modified-p (event)
   (or (pressed-with-p event clim:+control-key+) (pressed-with-p event clim:+meta-key+)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
   (let ((window (window-of pane)))
     (with-guarded-command (window "That key")
-      (if (or (typep pane 'interactor-pane) (modified-p event))
-          (do-key-in-window window event)
-          (do-key window (clim:keyboard-event-key-name event)
+      (if (or (typep pane 'interactor-pane) (key-modified-p event))
+          (handle-key-in-input-line window event)
+          (handle-key window (clim:keyboard-event-key-name event)
             (clim:keyboard-event-character event))))))
 
 ;;;; Keyboards that are not American
@@ -81,7 +81,7 @@ an effect."
 
 (defconstant +altgr+ #x80 "The bit for AltGr in the keyboard state of an X event.")
 
-(defun altgr-symbol (symbol-at state)
+(defun altgr-key-symbol (symbol-at state)
   "Return the X key symbol for a key that is pressed with AltGr. Return NIL if STATE has no AltGr or
 the key has no separate symbol for it. SYMBOL-AT is a function from an index in X's list of symbols
 of the key to the symbol."
@@ -95,40 +95,41 @@ of the key to the symbol."
 
 (defconstant +euro-symbol+ #x20AC "The X key symbol of the Euro sign.")
 
-(defun symbol-character (display symbol)
+(defun key-symbol-character (display symbol)
   "Return the character of the X key symbol SYMBOL, or NIL if it has none."
   (cond ((xlib:keysym->character display symbol))
         ((= symbol +euro-symbol+) (code-char symbol))
         ;; The symbols of all other characters are made of their codes.
         ((< #x1000000 symbol #x1110000) (code-char (- symbol #x1000000)))))
 
-(defun key-function (name)
+(defun mcclim-key-function (name)
   "Return the symbol of McCLIM's internal function NAME for X keys. Return NIL if this version of
 McCLIM has no such function."
   (let* ((package (find-package "CLIM-XCOMMON"))
          (symbol (and package (find-symbol name package))))
     (and symbol (fboundp symbol) symbol)))
 
-(defvar *key-reader* (key-function "X-EVENT-TO-KEY-NAME-AND-MODIFIERS")
+(defvar *mcclim-key-reader-name* (mcclim-key-function "X-EVENT-TO-KEY-NAME-AND-MODIFIERS")
   "The name of McCLIM's function that returns the character, modifiers and name of a key, or NIL.")
 
-(defvar *mcclim-reads-key* (and *key-reader* (fdefinition *key-reader*))
+(defvar *mcclim-key-reader* (and *mcclim-key-reader-name* (fdefinition *mcclim-key-reader-name*))
   "McCLIM's original function that READ-KEY replaces, or NIL.")
 
 (defun read-key (port kind code state)
   "Return the character, modifiers and name of the key with the X key code CODE. KIND is the kind of
 the event, a press or a release, and STATE the X keyboard state."
   (let* ((display (clim-clx:clx-port-display port))
-         (symbol (altgr-symbol (lambda (index)
-                                 ;; The list may be shorter.
-                                 (or (ignore-errors (xlib:keycode->keysym display code index)) 0))
-                               state)))
+         (symbol (altgr-key-symbol (lambda (index)
+                                     ;; The list may be shorter.
+                                     (or (ignore-errors (xlib:keycode->keysym display code index))
+                                         0))
+                                   state)))
     (if symbol
-        (values (symbol-character display symbol) 0
-                (funcall (key-function "KEYSYM-TO-KEYSYM-NAME") symbol))
-        (funcall *mcclim-reads-key* port kind code state))))
+        (values (key-symbol-character display symbol) 0
+                (funcall (mcclim-key-function "KEYSYM-TO-KEYSYM-NAME") symbol))
+        (funcall *mcclim-key-reader* port kind code state))))
 
-(when *key-reader* (setf (fdefinition *key-reader*) #'read-key))
+(when *mcclim-key-reader-name* (setf (fdefinition *mcclim-key-reader-name*) #'read-key))
 
 ;;; Dead keys.
 
@@ -145,7 +146,7 @@ the event, a press or a release, and STATE the X keyboard state."
 dead key and a space. PAIRS is a string of pairs: a letter and the result of the dead key and that
 letter.")
 
-(defun composed (dead character)
+(defun compose-after-dead-key (dead character)
   "Return, as a string, the result of typing CHARACTER after a dead key. DEAD is the element of
 *DEAD-KEYS* for that key."
   (destructuring-bind (own pairs) (rest dead)
@@ -160,14 +161,14 @@ letter.")
   "The element of *DEAD-KEYS* for the dead key that waits for a character, or NIL. All windows share
 one keyboard.")
 
-(defun key-press (character event)
+(defun make-key-press (character event)
   "Return an event like EVENT, a key press, that types CHARACTER."
   (make-instance 'clim:key-press-event
                  :sheet (clim:event-sheet event) :key-name (make-keyword (string character))
                  :key-character character :modifier-state 0
                  :x 0 :y 0 :timestamp (clim:event-timestamp event)))
 
-(defun wait-after (name character)
+(defun update-dead-key (name character)
   "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
 Return two elements of *DEAD-KEYS*, each of which may be NIL: that of the dead key that was waiting,
 and that of the key NAME."
@@ -177,20 +178,20 @@ and that of the key NAME."
       (setf *dead-key* (if (eq now before) nil now)))
     (values before now)))
 
-(defun after-dead-key (event)
+(defun events-after-dead-key (event)
   "Return a list of the events to handle in place of EVENT, a key press, when dead keys are combined
 with the characters after them."
   (let ((character (clim:keyboard-event-character event)))
     (multiple-value-bind (before now)
-        (wait-after (clim:keyboard-event-key-name event) character)
+        (update-dead-key (clim:keyboard-event-key-name event) character)
       (flet ((typed (text)
-               (map 'list (lambda (character) (key-press character event)) text)))
+               (map 'list (lambda (character) (make-key-press character event)) text)))
         (cond (now (typed (if before (string (second before)) "")))
-              ((and before character (graphic-char-p character) (not (modified-p event)))
-               (typed (composed before character)))
+              ((and before character (graphic-char-p character) (not (key-modified-p event)))
+               (typed (compose-after-dead-key before character)))
               (t (list event)))))))
 
 (defmethod clim:distribute-event :around ((port clim:basic-port) (event clim:key-press-event))
   (if (robot-window-of (clim:event-sheet event))
-      (dolist (event (after-dead-key event)) (call-next-method port event))
+      (dolist (event (events-after-dead-key event)) (call-next-method port event))
       (call-next-method)))

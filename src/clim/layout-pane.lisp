@@ -43,82 +43,82 @@ them.")
 HEIGHT is 0."
   (let ((there-p (and (plusp width) (plusp height))))
     ;; Move it before it is shown, so that it never appears at the old place.
-    (when there-p (put-pane pane left top width height))
+    (when there-p (move-and-resize-pane pane left top width height))
     (setf (clim:sheet-enabled-p pane) there-p)))
 
 ;;; A display grows when it has more to show, but does not shrink when it has less: titles and
 ;;; switches should not move from under the mouse during a run. It shrinks when the user changes the
 ;;; arrangement or what is shown, or when another display needs the room.
 
-(defun needs-now (layout)
+(defun current-needs (layout)
   "Return lists (section pixels): the height that each open section in the column of LAYOUT needs."
   (let* ((window (clim:pane-frame layout)) (preferences (pane-preferences layout))
          (width (pane-size layout)) (column (details-width preferences width)))
     (loop for section in (column-sections preferences width)
           unless (member section (preferences-folded preferences))
             collect (list section
-                          (section-need (pane-named window section) section column)))))
+                          (needed-section-height (pane-named window section) section column)))))
 
-(defun need-in (needs)
+(defun need-function (needs)
   "Return a function from a section to its height in NEEDS, lists (section pixels), or to 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
-(defun arranged (layout needs)
+(defun arrange-layout (layout needs)
   "Return the places of all parts of LAYOUT. NEEDS are lists (section pixels): the height that each
 section needs."
-  (multiple-value-call #'arrange (pane-preferences layout) (need-in needs) (pane-size layout)
-    (rows-typed layout)))
+  (multiple-value-call #'arrange (pane-preferences layout) (need-function needs) (pane-size layout)
+    (input-line-rows layout)))
 
-(defun rows-typed (layout)
+(defun input-line-rows (layout)
   "Return the number of rows that the window of LAYOUT needs for the input line."
   (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
     (if (and interactor (window-conversation (clim:pane-frame layout)))
-        (rows-wanted interactor)
+        (needed-rows interactor)
         +prompt-rows+)))
 
-(defun enough-p (places needs)
+(defun needs-met-p (places needs)
   "True if PLACES give each section of NEEDS, lists (section pixels), at least that height. The
 section of plans is ignored, because it takes any height."
   (loop for (section pixels) in needs
         always (or (eq section 'plan)
                    (<= pixels (fifth (assoc section places))))))
 
-(defun settled-needs (layout)
+(defun lasting-needs (layout)
   "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
 section has needed so far. If these heights do not fit but the present needs do, it is what each
 section needs now."
-  (let* ((now (needs-now layout))
-         (before (need-in (pane-needed layout)))
+  (let* ((now (current-needs layout))
+         (before (need-function (pane-needed layout)))
          (most (loop for (section pixels) in now
                      collect (list section (max pixels (funcall before section))))))
-    (flet ((enough-for-all-p (needs) (enough-p (arranged layout needs) now)))
+    (flet ((enough-for-all-p (needs) (needs-met-p (arrange-layout layout needs) now)))
       (if (and (not (enough-for-all-p most)) (enough-for-all-p now))
           now
           most))))
 
-(defun places (layout)
+(defun places-of-parts (layout)
   "Return the places of all parts of LAYOUT by the user's preferences and the needs of the
 sections."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
       (setf (pane-needed layout) '())))
-  (arranged layout (setf (pane-needed layout) (settled-needs layout))))
+  (arrange-layout layout (setf (pane-needed layout) (lasting-needs layout))))
 
-(defun put-parts (layout places)
+(defun place-parts (layout places)
   (let ((window (clim:pane-frame layout)))
-    (clear-pointing window)
+    (clear-description window)
     (setf (pane-places layout) places)
     (loop for (name . place) in places
-          for pane = (child-with layout (pane-named window name))
+          for pane = (child-holding layout (pane-named window name))
           when pane do (apply #'place-pane pane place))))
 
 (defun arrange-panes (layout)
   "Arrange all parts of LAYOUT by what they need now, without regard to what they needed before."
   (setf (pane-needed layout) '())
-  (put-parts layout (places layout)))
+  (place-parts layout (places-of-parts layout)))
 
-(defun child-with (layout pane)
+(defun child-holding (layout pane)
   "Return the child of LAYOUT that is PANE or contains PANE, since CLIM may put borders around
 panes."
   (loop for sheet = pane then (clim:sheet-parent sheet)
@@ -129,19 +129,19 @@ panes."
   (clim:resize-sheet pane width height)
   (arrange-panes pane))
 
-(defparameter *first-needs*
+(defparameter *initial-heights*
   '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
   "Lists (section pixels): the height of each section before its contents are known. It is also the
 least height of the designators.")
 
-(defun first-need (section) (second (assoc section *first-needs*)))
+(defun initial-height (section) (second (assoc section *initial-heights*)))
 
-(defgeneric section-need (pane section width)
+(defgeneric needed-section-height (pane section width)
   (:documentation "Return the height in pixels that PANE, which shows SECTION, needs if it is WIDTH
 pixels wide.")
   (:method (pane section width)
     (declare (ignore width))
-    (max (pane-extent pane) (first-need section)))
+    (max (pane-extent pane) (initial-height section)))
   ;; Tasks come and go while a plan runs. If their room changed with that, other displays would move
   ;; from under the mouse. So plans get what the others leave, at least half of it.
   (:method ((pane plan-pane) section width)
@@ -149,9 +149,9 @@ pixels wide.")
     10000)
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
-        (max (detail-height pane (max 1 (- width +scroll-bar+)))
-             (if (eq section 'designators) (first-need section) 0))
-        (first-need section))))
+        (max (detail-height pane (max 1 (- width +scroll-bar-width+)))
+             (if (eq section 'designators) (initial-height section) 0))
+        (initial-height section))))
 
 (defun window-layout (window)
   (pane-named window 'layout))
@@ -161,21 +161,21 @@ pixels wide.")
   (arrange-panes (window-layout window))
   (repaint-all window))
 
-(defun settle (window)
+(defun rearrange-if-needed (window)
   "Arrange and paint the parts of WINDOW again if the contents of its displays need other heights."
-  (let* ((layout (window-layout window)) (places (places layout)))
+  (let* ((layout (window-layout window)) (places (places-of-parts layout)))
     (unless (equal places (pane-places layout))
-      (put-parts layout places)
+      (place-parts layout places)
       (repaint-all window))))
 
 ;;; Folding.
 
-(defun folded-p (window section)
+(defun section-folded-p (window section)
   (and (member section (preferences-folded (window-preferences window))) t))
 
-(defun fold (window section &optional (folded-p t))
+(defun fold-section (window section &optional (folded-p t))
   "Fold SECTION of WINDOW, so that only its title is shown. If FOLDED-P is false, unfold SECTION."
-  (unless (eq folded-p (folded-p window section))
+  (unless (eq folded-p (section-folded-p window section))
     (let ((preferences (window-preferences window)))
       (setf (preferences-folded preferences)
             (if folded-p
@@ -187,34 +187,35 @@ pixels wide.")
 
 (defclass splitter-pane (display-pane) ()
   (:default-initargs :background clim:+gray75+)
-  (:documentation "A bar between two parts of the window that can be dragged."))
+  (:documentation "A bar between two parts of the window. The user can drag the bar."))
 
 (defgeneric drag-splitter (name preferences layout x y)
   (:documentation "Change PREFERENCES so that the splitter called NAME moves to X, Y of the pane
 LAYOUT.")
   (:method ((name (eql 'side-splitter)) preferences layout x y)
     (declare (ignore y))
-    (let* ((width (pane-size layout)) (right (max 120 (- width x +splitter+))))
+    (let* ((width (pane-size layout)) (right (max 120 (- width x +splitter-width+))))
       (if (plan-column-p preferences width)
           (setf (preferences-plan-width preferences)
-                (max 120 (- right (details-width preferences width) +splitter+)))
+                (max 120 (- right (details-width preferences width) +splitter-width+)))
           (setf (preferences-details-width preferences) right))))
   (:method ((name (eql 'plan-splitter)) preferences layout x y)
     (declare (ignore y))
     ;; The world keeps its size: what one of the columns gains the other loses.
     (let* ((width (pane-size layout))
            (both (+ (plan-width preferences width) (details-width preferences width))))
-      (setf (preferences-details-width preferences) (clamp (- width x +splitter+) 120 (- both 120))
+      (setf (preferences-details-width preferences)
+            (clamp (- width x +splitter-width+) 120 (- both 120))
             (preferences-plan-width preferences) (- both (preferences-details-width preferences)))))
   (:method ((name (eql 'low-splitter)) preferences layout x y)
     (declare (ignore x))
     (setf (preferences-transcript-height preferences)
           (max 40 (- (nth-value 1 (pane-size layout))
-                     y +splitter+ +prompt-height+ +strip-height+)))))
+                     y +splitter-width+ +prompt-height+ +strip-height+)))))
 
 (defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
 
-(defmethod paint ((pane splitter-pane)) (clear pane))
+(defmethod paint ((pane splitter-pane)) (clear-pane pane))
 
 (defmethod handle-press ((pane splitter-pane) button x y)
   (declare (ignore button x y))
@@ -226,7 +227,7 @@ LAYOUT.")
 
 (defmethod handle-drag ((pane splitter-pane) x y)
   (let ((layout (clim:sheet-parent pane)))
-    (multiple-value-bind (x y) (place-outside pane x y)
+    (multiple-value-bind (x y) (position-in-parent pane x y)
       (drag-splitter (clim:pane-name pane) (pane-preferences layout) layout x y)
       (rearrange (window-of pane)))))
 
@@ -235,9 +236,9 @@ LAYOUT.")
 (defclass title-pane (display-pane)
   ((section :initarg :section :reader pane-section))
   (:default-initargs :background clim:+gray88+)
-  (:documentation "The title of a display. A click folds the display or unfolds it."))
+  (:documentation "The title of a display. A click on the title folds or unfolds the display."))
 
-(defun foldable-p (section) (and (member section +sections+) t))
+(defun section-foldable-p (section) (and (member section +sections+) t))
 
 (defun world-title (window)
   "Return the title of the world in WINDOW: the map, the fork or trial if the run is one, and the
@@ -258,16 +259,16 @@ robot if there are several."
 
 (defmethod pane-content ((pane title-pane))
   (let ((window (window-of pane)) (section (pane-section pane)))
-    (list (section-title window section) (folded-p window section)
+    (list (section-title window section) (section-folded-p window section)
           (multiple-value-list (pane-size pane)))))
 
 (defmethod paint ((pane title-pane))
   (let* ((window (window-of pane)) (section (pane-section pane))
-         (foldable-p (foldable-p section)))
-    (painting (canvas pane)
+         (foldable-p (section-foldable-p section)))
+    (with-pane-canvas (canvas pane)
       (when foldable-p
         (draw-lines canvas draw-gcontext*
-                    (if (folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
+                    (if (section-folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
                     :fill-p t))
       (draw-glyphs canvas draw-gcontext* (if foldable-p 18 6) 13
                    (section-title window section)))))
@@ -282,8 +283,8 @@ robot if there are several."
 (defmethod handle-click ((pane title-pane) button x y)
   (declare (ignore button))
   (let ((window (window-of pane)) (section (pane-section pane)))
-    (cond ((foldable-p section)
-           (fold window section (not (folded-p window section))))
+    (cond ((section-foldable-p section)
+           (fold-section window section (not (section-folded-p window section))))
           ((eq section 'world)
-           (multiple-value-bind (x y) (place-outside pane x y)
+           (multiple-value-bind (x y) (position-in-parent pane x y)
              (open-popup window (robot-rows window) x y))))))

@@ -11,7 +11,8 @@
   :documentation "The width and height, in window pixels, of the smallest window in which everything
 is visible.")
 
-(defconstant +most-magnified+ 6 "The largest magnification, in screen pixels per window pixel.")
+(defconstant +greatest-magnification+ 6
+  "The largest magnification, in screen pixels per window pixel.")
 
 (defun magnification (pane)
   "Return the magnification of the window of PANE, in screen pixels per window pixel."
@@ -29,7 +30,7 @@ is visible.")
     (values (floor (clim:bounding-rectangle-width region))
             (floor (clim:bounding-rectangle-height region)))))
 
-(defun put-pane (pane left top width height)
+(defun move-and-resize-pane (pane left top width height)
   "Move PANE to LEFT, TOP of its parent and make it WIDTH x HEIGHT large, all in window pixels."
   (let ((magnification (magnification pane)))
     (flet ((on-screen (pixels) (* magnification pixels)))
@@ -37,13 +38,13 @@ is visible.")
                                   (on-screen width) (on-screen height))
       (clim:allocate-space pane (on-screen width) (on-screen height)))))
 
-(defun place-outside (pane x y)
+(defun position-in-parent (pane x y)
   "Return X, Y of PANE in the coordinates of its parent."
   (let ((magnification (magnification pane)))
     (multiple-value-bind (left top) (clim:transform-position (clim:sheet-transformation pane) 0 0)
       (values (+ x (floor left magnification)) (+ y (floor top magnification))))))
 
-(defun event-place (pane event)
+(defun event-position (pane event)
   (let ((magnification (magnification pane)))
     (values (floor (clim:pointer-event-x event) magnification)
             (floor (clim:pointer-event-y event) magnification))))
@@ -60,28 +61,28 @@ is visible.")
 default depends on the screen's resolution."
   (or (preferences-magnification (window-preferences window)) (window-usual-magnification window)))
 
-(defun most-magnified (width height)
+(defun greatest-magnification (width height)
   "Return the largest magnification with which a window of +SMALLEST-SIZE+ fits on a screen of WIDTH
 x HEIGHT pixels. An unknown WIDTH or HEIGHT is NIL."
   (destructuring-bind (least-width least-height) +smallest-size+
-    (clamp (min (if width (floor width least-width) +most-magnified+)
-                (if height (floor height least-height) +most-magnified+))
-           1 +most-magnified+)))
+    (clamp (min (if width (floor width least-width) +greatest-magnification+)
+                (if height (floor height least-height) +greatest-magnification+))
+           1 +greatest-magnification+)))
 
 (defun usual-magnification (resolution &optional width height)
   "Return the default magnification for a screen of WIDTH x HEIGHT pixels with RESOLUTION in dots
 per inch. An unknown argument is NIL."
-  (clamp (round (or resolution 96) 96) 1 (most-magnified width height)))
+  (clamp (round (or resolution 96) 96) 1 (greatest-magnification width height)))
 
-(defun magnify (window magnification)
+(defun set-magnification (window magnification)
   "Set the magnification of WINDOW to MAGNIFICATION screen pixels per window pixel. If it is too
 small or too large, say so in WINDOW."
-  (cond ((< magnification 1) (say-in-window window "The window is at its smallest size: smaller ~
-                                                    letters could not be read.~%"))
-        ((< (multiple-value-call #'most-magnified (screen-size (window-layout window)))
+  (cond ((< magnification 1) (write-in-window window "The window is at its smallest size: smaller ~
+                                                      letters could not be read.~%"))
+        ((< (multiple-value-call #'greatest-magnification (screen-size (window-layout window)))
             magnification)
-         (say-in-window window "The window is at its largest size: a larger one would not fit on ~
-                                this screen.~%"))
+         (write-in-window window "The window is at its largest size: a larger one would not fit on ~
+                                  this screen.~%"))
         ((/= magnification (window-magnification window))
          (setf (preferences-magnification (window-preferences window)) magnification)
          (rearrange window))))

@@ -9,34 +9,34 @@
 
 ;;; A line without arguments runs at once; another is put where the user can type its arguments.
 
-(defparameter *line-groups*
+(defparameter *prompt-menu-titles*
   '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
     (:manipulating "Manipulating") (:seeing "Seeing") (:planning "Plans") (:running "Running")
     (:general "Prompt"))
   "Lists (family title): the title of the menu for each family of prompt lines, in the order of the
 menus.")
 
-(defun line-group (line)
+(defun prompt-menu-title (line)
   "Return the title of the menu for the prompt line LINE. It is the menu Prompt if the family of
 LINE has no menu."
-  (second (or (assoc (ars-magna.cli:line-family line) *line-groups*)
-              (assoc :general *line-groups*))))
+  (second (or (assoc (ars-magna.cli:line-family line) *prompt-menu-titles*)
+              (assoc :general *prompt-menu-titles*))))
 
-(defun line-items (group)
+(defun prompt-line-items (group)
   (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
                           :key #'ars-magna.cli:line-name)
-        when (string= group (line-group line))
+        when (string= group (prompt-menu-title line))
           collect (let ((name (ars-magna.cli:line-name line)))
-                    (list name (lambda () (choose-line clim:*application-frame* name))))))
+                    (list name (lambda () (choose-prompt-line clim:*application-frame* name))))))
 
-(defun choose-line (window name)
+(defun choose-prompt-line (window name)
   "Run the prompt line NAME if it has no parameters. Otherwise start it in the input line, for the
 user to add arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
     (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
-           (begin-line-with conversation (format nil "~A " text))
-           (type-into (pane-named window 'interactor)))
-          (t (give-line conversation text)))))
+           (replace-input-line conversation (format nil "~A " text))
+           (focus-and-repaint (pane-named window 'interactor)))
+          (t (run-line-at-prompt conversation text)))))
 
 ;;; Menus.
 
@@ -48,9 +48,9 @@ and NIL for a gap."
 
 (defmethod subject-title ((menu menu)) (format nil "Menu ~A" (menu-title menu)))
 
-(defun line-menus ()
-  (loop for (nil group) in *line-groups*
-        for items = (line-items group)
+(defun prompt-line-menus ()
+  (loop for (nil group) in *prompt-menu-titles*
+        for items = (prompt-line-items group)
         when items collect (make-menu group items)))
 
 (defparameter *menus*
@@ -69,13 +69,13 @@ and NIL for a gap."
                             ("Layers ..." com-layers) ("Colours on or off" com-color)
                             nil
                             ("All larger" com-larger) ("All smaller" com-smaller)))
-        (make-menu "Robot" #'line-menus)
+        (make-menu "Robot" #'prompt-line-menus)
         (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
                               nil
                               ("Keys and mouse" com-help) ("Close window" com-close))))
   "The menus of the menu bar, from left to right.")
 
-(defun menu-items-now (menu)
+(defun current-menu-items (menu)
   (let ((items (menu-items menu)))
     (if (functionp items) (funcall items) items)))
 
@@ -91,7 +91,7 @@ and NIL for a gap."
 
 (defun open-menu (window menu x y &optional outer)
   "Show MENU at X, Y of WINDOW. OUTER is the menu that contains MENU, or NIL."
-  (let ((rows (loop for item in (menu-items-now menu)
+  (let ((rows (loop for item in (current-menu-items menu)
                     collect (item-row window item menu x y))))
     (when outer
       (push (make-row (format nil "< ~A" (menu-title outer))
@@ -106,7 +106,7 @@ and NIL for a gap."
   (:documentation "The menu bar."))
 
 (defmethod pane-content ((pane menu-pane))
-  (list (multiple-value-list (pane-size pane)) (open-opener (window-of pane))))
+  (list (multiple-value-list (pane-size pane)) (popup-opener (window-of pane))))
 
 (defun draw-menu-title (canvas menu x open-p)
   "Draw the title of MENU in the menu bar from X on, highlighted if OPEN-P. Return the x coordinate
@@ -121,16 +121,16 @@ of its end."
     (+ x width)))
 
 (defmethod paint ((pane menu-pane))
-  (painting (canvas pane)
+  (with-pane-canvas (canvas pane)
     (loop with x = 0
-          with opener = (open-opener (window-of pane))
+          with opener = (popup-opener (window-of pane))
           for menu in *menus*
           do (setf x (draw-menu-title canvas menu x (eq menu opener))))))
 
 (defun menu-left (pane menu)
   (second (assoc menu (pane-subjects pane))))
 
-(defun open-menu-of-bar (pane menu)
+(defun open-bar-menu (pane menu)
   (open-menu (window-of pane) menu (floor (menu-left pane menu)) +menus-height+)
   (repaint-if-changed pane))
 
@@ -139,22 +139,22 @@ of its end."
 (defmethod handle-click ((pane menu-pane) button x y)
   (declare (ignore button))
   (let ((menu (menu-at pane x y)))
-    (when menu (open-menu-of-bar pane menu))))
+    (when menu (open-bar-menu pane menu))))
 
-(defmethod handle-press-past-popup ((pane menu-pane) button x y opener)
+(defmethod handle-press-after-popup ((pane menu-pane) button x y opener)
   (unless (eq opener (menu-at pane x y)) (handle-click pane button x y)))
 
 ;;; Keys in the menu or list on top of the window, and the key that opens it.
 
 ;;; They work whatever has the focus, because the list is on top.
 
-(defun show-row (popup row)
+(defun scroll-to-row (popup row)
   (let* ((top (* +row-height+ (position row (pane-rows popup))))
          (height (nth-value 1 (pane-size popup)))
          (offset (pane-offset popup)))
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
-(defun point-further (popup step)
+(defun highlight-further-row (popup step)
   "Highlight the row of POPUP that is STEP rows after the highlighted one. Without a highlighted
 row, highlight the first row, or the last if STEP is negative. Return true if POPUP has rows to
 choose."
@@ -166,37 +166,37 @@ choose."
                    rows)))
     (when row
       (setf (pane-pointed popup) row)
-      (show-row popup row)
+      (scroll-to-row popup row)
       t)))
 
-(defun turn-menu (window step)
+(defun open-neighbouring-menu (window step)
   "If a menu of the menu bar is open in WINDOW, open the menu STEP places to its right, and return
 true."
-  (let ((place (position (open-opener window) *menus*)))
+  (let ((place (position (popup-opener window) *menus*)))
     (when place
-      (open-menu-of-bar (pane-named window 'menus)
-                        (nth (mod (+ place step) (length *menus*)) *menus*))
+      (open-bar-menu (pane-named window 'menus)
+                     (nth (mod (+ place step) (length *menus*)) *menus*))
       t)))
 
-(defun choose-pointed (popup)
+(defun choose-highlighted-row (popup)
   (let ((row (pane-pointed popup)))
     (when (and row (row-action row))
       (choose-row popup row)
       t)))
 
-(defun do-key-in-popup (window name)
+(defun handle-key-in-popup (window name)
   "Handle the key called NAME in the popup of WINDOW. Return true if the key has an effect."
   (let ((popup (window-popup window)))
     (when (popup-open-p window)
       (case name
-        (:down (point-further popup 1))
-        (:up (point-further popup -1))
-        (:right (turn-menu window 1))
-        (:left (turn-menu window -1))
-        ((:return :kp-enter) (choose-pointed popup))))))
+        (:down (highlight-further-row popup 1))
+        (:up (highlight-further-row popup -1))
+        (:right (open-neighbouring-menu window 1))
+        (:left (open-neighbouring-menu window -1))
+        ((:return :kp-enter) (choose-highlighted-row popup))))))
 
 (defun open-first-menu (window)
   "Open the first menu of the menu bar of WINDOW. If a menu is open, close it instead."
   (unless (menu-p (close-popup window))
-    (open-menu-of-bar (pane-named window 'menus) (first *menus*))
-    (point-further (window-popup window) 1)))
+    (open-bar-menu (pane-named window 'menus) (first *menus*))
+    (highlight-further-row (window-popup window) 1)))

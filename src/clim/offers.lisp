@@ -16,7 +16,7 @@
   "Return NUMBER, rounded to hundredths, as a text that the prompt can read."
   (format nil "~,2F" number))
 
-(defun go-there (x y)
+(defun go-there-offer (x y)
   (list "Go there" (format nil "go-to ~A ~A" (coordinate-text x) (coordinate-text y))))
 
 (defun camera-offers (window title line &rest arguments)
@@ -29,7 +29,7 @@ format string for the camera's number, and LINE is one for the number and ARGUME
 
 ;;; Looking into.
 
-(defun looking-into (form)
+(defun inspection-offers (form)
   "Return the menu entries to describe the value of FORM, a string, and to inspect it in an editor
 if one is connected."
   (cons (list "Describe its Lisp object" (format nil "(describe ~A)" form))
@@ -38,7 +38,7 @@ if one is connected."
 
 ;;; Things.
 
-(defun thing-form (image)
+(defun find-thing-form (image)
   (format nil "(find-thing ~S)" (subject-title image)))
 
 (defun designators-of (image window)
@@ -75,7 +75,7 @@ to the robot if that thing is there, and farther away otherwise."
         when (and track (member (designator-image-number track) numbers))
           collect (camera-image-index camera)))
 
-(defun denoted-offers (numbers window)
+(defun start-tracking-offers (numbers window)
   "Return the menu entries to start tracking each designator whose number is in the list NUMBERS,
 one for each camera that does not track it."
   (loop for number in numbers
@@ -85,7 +85,7 @@ one for each camera that does not track it."
                        collect (list (format nil "Track designator ~D with camera ~D" number index)
                                      (format nil "cam-track ~D ~D" index number)))))
 
-(defun reaching-offers (camera window)
+(defun approach-and-grasp-offers (camera window)
   (cons (list (format nil "Approach it, guided by camera ~
                            ~D" camera) (format nil "goto-desig ~D" camera))
         (loop for hand in (robot-image-hands (window-robot window))
@@ -98,13 +98,13 @@ one for each camera that does not track it."
   "Return the menu entries for a thing that cameras track by a designator whose number is in the
 list NUMBERS. If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
   (loop for camera in (cameras-tracking numbers window)
-        unless held-p append (reaching-offers camera window)
+        unless held-p append (approach-and-grasp-offers camera window)
         collect (list (format nil "Stop tracking it with camera ~D" camera)
                       (format nil "cam-untrack ~D" camera))))
 
 ;;; What is held.
 
-(defun hand-with (image window)
+(defun hand-image-holding (image window)
   "Return the image of the hand with which the robot of WINDOW holds the thing of IMAGE, or NIL."
   (find-if (lambda (hand)
              (and (hand-image-contents hand)
@@ -136,7 +136,7 @@ for the numbers of hand and bin."
   "Return the menu entries for the thing of IMAGE if the robot of WINDOW holds it or has it in a
 bin."
   (let* ((robot (window-robot window))
-         (hand (hand-with image window))
+         (hand (hand-image-holding image window))
          (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
                        (robot-image-bins robot))))
     (cond (hand (letting-go-offers hand window))
@@ -152,22 +152,22 @@ bin."
 (defmethod offers ((image thing-image) window)
   (let ((numbers (designators-of image window)))
     (append (when (on-floor-p image window)
-              (list (go-there (thing-image-x image) (thing-image-y image))))
+              (list (go-there-offer (thing-image-x image) (thing-image-y image))))
             (held-offers image window)
             (search-offers image window)
-            (denoted-offers numbers window)
-            (tracked-offers numbers window :held-p (hand-with image window))
-            (looking-into (thing-form image)))))
+            (start-tracking-offers numbers window)
+            (tracked-offers numbers window :held-p (hand-image-holding image window))
+            (inspection-offers (find-thing-form image)))))
 
 ;;; Designators and parts.
 
 (defmethod offers ((image designator-image) window)
   (let ((numbers (list (designator-image-number image)))
         (thing (designator-image-denotation image)))
-    (append (denoted-offers numbers window)
+    (append (start-tracking-offers numbers window)
             (tracked-offers numbers window
                             :held-p (and (typep thing 'thing-image)
-                                          (hand-with thing window))))))
+                                          (hand-image-holding thing window))))))
 
 (defmethod offers ((image camera-image) window)
   (declare (ignore window))
@@ -201,13 +201,13 @@ bin."
                   ("Show at what place it is" "place"))
                 (list (list "Command this robot"
                                 (format nil "robot ~A" (text-as-typed (robot-image-name image))))))
-            (looking-into form))))
+            (inspection-offers form))))
 
 (defmethod offers ((cell cell) window)
   (declare (ignore window))
   (let ((x (+ (cell-x cell) 1/2)) (y (+ (cell-y cell) 1/2)))
     (unless (cell-filled? cell)
-      (list (go-there x y)
+      (list (go-there-offer x y)
             (list "Put the robot here"
                   (format nil "pos ~A ~A" (coordinate-text x) (coordinate-text y)))))))
 
@@ -216,9 +216,9 @@ bin."
 (defun offer-row (window title line)
   (make-row (format nil "~A   ~A" title line)
             :action (lambda ()
-                      (give-line (window-conversation window) line)
+                      (run-line-at-prompt (window-conversation window) line)
                       ;; If you continue typing, you mean the next line.
-                      (type-into (pane-named window 'interactor)))))
+                      (focus-and-repaint (pane-named window 'interactor)))))
 
 (defun subject-heading (subject)
   (if (typep subject 'cell)
@@ -228,23 +228,24 @@ bin."
 (defun offer-rows (window subject)
   (append (list (make-row (subject-heading subject))
                 (make-row "Describe it"
-                          :action (lambda () (describe-to window subject))))
+                          :action (lambda () (describe-in-transcript window subject))))
           (loop for offer in (offers subject window)
                 collect (apply #'offer-row window offer))))
 
-(defun also-rows (window subjects x y)
+(defun rows-for-other-subjects (window subjects x y)
   "Return menu rows for all SUBJECTS except the first. Each row opens the menu of its subject at X,
 Y of WINDOW."
   (loop for rest on (rest subjects)
         collect (let ((turned (append rest (ldiff subjects rest))))
                   (make-row (format nil "Also here: ~A" (subject-heading (first turned)))
                             :action (lambda ()
-                                      (select window (first turned))
-                                      (offer-at window turned x y))))))
+                                      (select-subject window (first turned))
+                                      (open-offers-menu window turned x y))))))
 
-(defun offer-at (window subjects x y)
+(defun open-offers-menu (window subjects x y)
   "Open the context menu of the first of SUBJECTS at X, Y of WINDOW. Further rows open the menus of
 the other SUBJECTS."
   (open-popup window
-              (append (offer-rows window (first subjects)) (also-rows window subjects x y))
+              (append (offer-rows window (first subjects))
+                      (rows-for-other-subjects window subjects x y))
               x y))

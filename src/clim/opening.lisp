@@ -10,7 +10,7 @@
   "The settings of the window that was closed last: a list of its layers, whether it had colours,
 and its preferences; or NIL.")
 
-(defstruct (legacy (:copier nil))
+(defstruct (window-state (:copier nil))
   "The state of a closed window for the next window of its robot. LINES are the lines of the
 transcript, newest first. TYPED is the text of the input line, or NIL. LEFT-RUN-P is true if the
 window has left a trial or fork. QUIET-P is true if its prompt hid messages from commands of plans."
@@ -19,44 +19,45 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
   (left-run-p nil :read-only t)
   (quiet-p nil :read-only t))
 
-(defvar *legacies* '()
+(defvar *window-states* '()
   "An alist from names of robots to the states of their last windows.")
 
-(defun take-legacy (window legacy)
+(defun restore-window-state (window state)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
-    (setf (ars-magna.cli:session-quiet-p (window-session window)) (legacy-quiet-p legacy))
-    (go-on-from transcript (legacy-lines legacy))
-    (when (legacy-left-run-p legacy)
-      (say transcript (format nil "From here on: ~A in ~A.~%" (shown-robot window)
-                              (ars-magna.cli:words-for-run (window-simulation window)))))
-    (when (legacy-typed legacy) (give-key conversation (legacy-typed legacy)))))
+    (setf (ars-magna.cli:session-quiet-p (window-session window)) (window-state-quiet-p state))
+    (set-initial-lines transcript (window-state-lines state))
+    (when (window-state-left-run-p state)
+      (write-to-transcript transcript
+                           (format nil "From here on: ~A in ~A.~%" (shown-robot window)
+                                   (ars-magna.cli:words-for-run (window-simulation window)))))
+    (when (window-state-typed state) (pass-key conversation (window-state-typed state)))))
 
-(defun keep-settings (window)
+(defun save-settings (window)
   (let* ((settings (list (window-layers window) (window-color-p window)
                          (window-preferences window)))
          (session (window-session window))
-         (legacy (make-legacy :lines (transcript-lines (window-transcript window))
-                              :typed (being-typed (window-conversation window))
-                              :left-run-p (and (ars-magna.cli:in-trial-or-fork-p session) t)
-                              :quiet-p (ars-magna.cli:session-quiet-p session))))
+         (state (make-window-state :lines (transcript-lines (window-transcript window))
+                                   :typed (text-in-input-line (window-conversation window))
+                                   :left-run-p (and (ars-magna.cli:in-trial-or-fork-p session) t)
+                                   :quiet-p (ars-magna.cli:session-quiet-p session))))
     (with-lock (*last-settings-lock*)
       (setf *last-settings* settings)
       (dolist (name (window-robots-shown window))
-        (setf *legacies* (acons name legacy (remove name *legacies* :key #'first)))))))
+        (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
-(defun take-settings (window)
+(defun restore-settings (window)
   "Give WINDOW, which is new, the settings of the window closed last, and the state of the last
 window of its robot."
-  (destructuring-bind (settings legacy)
+  (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
-        (list *last-settings* (rest (assoc (shown-robot window) *legacies*))))
+        (list *last-settings* (rest (assoc (shown-robot window) *window-states*))))
     (when settings
       (destructuring-bind (layers color-p preferences) settings
         (setf (window-layers window) layers
               (window-color-p window) color-p
               (window-preferences window) (copy-preferences preferences))))
-    (if legacy
-        (take-legacy window legacy)
+    (if state
+        (restore-window-state window state)
         (ars-magna.cli:tell-first-messages (window-session window)))))
 
 ;;;; Coming and going
@@ -83,7 +84,7 @@ window of its robot."
 
 ;;; A window's life.
 
-(defun forget-window (window)
+(defun remove-from-open-windows (window)
   "Remove WINDOW from the list of open windows. Return true if WINDOW was open."
   (with-lock (*windows-lock*)
     (when (member window *windows*)
@@ -97,7 +98,7 @@ window of its robot."
   "End the running line, the waiting lines and a break at the prompt of WINDOW, which has been lost.
 Return a text about what was ended, to append to a sentence."
   (let* ((session (window-session window))
-         (line (busy-with (window-conversation window)))
+         (line (running-line (window-conversation window)))
          (place (and (ars-magna.cli:in-trial-or-fork-p session)
                      (ars-magna.cli:words-for-run (window-simulation window))))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
@@ -111,7 +112,7 @@ Return a text about what was ended, to append to a sentence."
             (loop for line in lines repeat 10 collect (cut (one-line line) 200))
             (ars-magna.cli:asked-of-others-p session))))
 
-(defun run-to-tell (window)
+(defun run-to-notify (window)
   "Return the run whose message queue reports that WINDOW has closed. It is the run that WINDOW
 shows, or, if that is a trial or fork, the run outside."
   (let ((simulation (window-simulation window)))
@@ -121,43 +122,43 @@ shows, or, if that is a trial or fork, the run outside."
             simulation)
         simulation)))
 
-(defun words-for-closing (window condition)
+(defun closing-message (window condition)
   "Return the message that WINDOW has closed because of CONDITION, a condition or a text. The
 message says whether the run continues, and how to open another window."
   (format nil "The window of ~A has closed: ~A~:[~;. The run continues; the ~
                line WINDOW opens another~]"
           (shown-robot window)
           (one-line (text-of-condition condition))
-          (and (window-simulation window) (not (over-p window)))))
+          (and (window-simulation window) (not (run-over-p window)))))
 
 (defun warn-of-closing (window condition)
   "Report once that WINDOW has closed because of CONDITION, and what was lost."
-  (when (forget-window window)
-    (let* ((simulation (run-to-tell window))
+  (when (remove-from-open-windows window)
+    (let* ((simulation (run-to-notify window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
-      (warning-set (words-for-closing window condition) (clear-lost-prompt window)))))
+      (warning-set (closing-message window condition) (clear-lost-prompt window)))))
 
 ;;; Which robot a window shows.
 
-(defun note-shown (window name)
+(defun record-shown-robot (window name)
   (setf (watcher-robot (window-watcher window)) name)
   (pushnew name (window-robots-shown window)))
 
 (defun show-robot-called (window name simulation)
-  (note-shown window name)
+  (record-shown-robot window name)
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-fitting-p (pane-named window 'world)) t))
-  (retitle window)
+  (update-title window)
   (request-refresh window))
 
-(defun shows-p (window name simulation)
+(defun window-shows-p (window name simulation)
   (and (eq name (watcher-robot (window-watcher window)))
        (eq simulation (window-simulation window))))
 
-(defun shown-beside-p (window name simulation)
+(defun shown-in-other-window-p (window name simulation)
   "True if a window other than WINDOW shows the robot called NAME of SIMULATION."
-  (some (lambda (other) (shows-p other name simulation))
+  (some (lambda (other) (window-shows-p other name simulation))
         (remove window (open-windows))))
 
 (defun robot-to-show (window)
@@ -168,19 +169,19 @@ window shows that robot. Return NIL if there is none."
       (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
     (when simulation
       (let ((names (mapcar #'robot-name (simulation-robots simulation))))
-        (values (find-if-not (lambda (name) (shown-beside-p window name simulation))
+        (values (find-if-not (lambda (name) (shown-in-other-window-p window name simulation))
                              (cons name names))
                 simulation)))))
 
-(defun stay-when-over (window reason)
+(defun report-run-over (window reason)
   "Report once in WINDOW that the run it shows is over because of REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
-      (say-in-window window "The run of ~A is over: ~A. This window shows its end until another ~
-                             run starts, by the line WORLD, or by SIMULATOR in Lisp.~%"
-                     (shown-robot window) reason))))
+      (write-in-window window "The run of ~A is over: ~A. This window shows its end until another ~
+                               run starts, by the line WORLD, or by SIMULATOR in Lisp.~%"
+                       (shown-robot window) reason))))
 
-(defun leave-run (window reason)
+(defun leave-finished-run (window reason)
   "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows
 show all robots of that run."
   (multiple-value-bind (name simulation) (robot-to-show window)
@@ -189,25 +190,25 @@ show all robots of that run."
            (ars-magna.cli:tell-of-run (window-session window) simulation name))
           ;; There is a run to show, but other windows show all of its robots.
           ((ars-magna.cli:run-after (window-simulation window) (shown-robot window))
-           (warn-of-closing window (format nil "its run is over, ~A" reason))
+           (warn-of-closing window (format nil "its run is over (~A)" reason))
            (close-window window))
-          (t (stay-when-over window reason)))))
+          (t (report-run-over window reason)))))
 
-(defun match-robot (window)
+(defun match-window-and-prompt (window)
   "Make WINDOW and its prompt agree on the robot. The prompt enters the run that WINDOW shows. If
 its user has chosen another robot of the same run, WINDOW shows that robot. Only the thread of the
 prompt calls this."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
-      (when reason (leave-run window reason)))
+      (when reason (leave-finished-run window reason)))
     (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
       (cond ((not (eq simulation *simulation*))
              (ars-magna.cli:go-to-run simulation)
              (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
             ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
              (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
-             (say-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
-                            (simulation-name simulation)))))))
+             (write-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
+                              (simulation-name simulation)))))))
 
 ;;; When the X server goes, the thread that reads the events finds out, or a window's thread that
 ;;; paints at the time.
@@ -216,7 +217,7 @@ prompt calls this."
   (with-lock (*windows-lock*)
     (remove port *windows* :key #'clim:port :test-not #'eq)))
 
-(defun lose-windows (port)
+(defun close-lost-windows (port)
   "Close all windows on PORT, whose X server has gone, and report their closing."
   ;; None of them can answer for another.
   (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
@@ -232,24 +233,24 @@ prompt calls this."
                         (watcher-robot (window-watcher window)))
     (unwind-protect
          (handler-case (without-debugger
-                         (handler-bind ((warning 'muffle-servers-warning))
+                         (handler-bind ((warning 'muffle-x-server-warning))
                            (clim:run-frame-top-level window)))
            ;; The X server has gone.
-           ((or stream-error xlib:closed-display) () (lose-windows (clim:port window)))
+           ((or stream-error xlib:closed-display) () (close-lost-windows (clim:port window)))
            (error (condition) (warn-of-closing window condition))
-           (:no-error (&rest values) (declare (ignore values)) (forget-window window)))
+           (:no-error (&rest values) (declare (ignore values)) (remove-from-open-windows window)))
       (warn-of-closing window "its thread was ended")
-      (keep-settings window)
+      (save-settings window)
       (ars-magna.cli:end-session (window-session window))
       (stop-watching (window-watcher window))
       ;; The X server may have gone.
       (ignore-errors
-       (forget-terrain (pane-named window 'world))
-       (mapc #'forget-buffer (cons (window-popup window) (display-panes window)))
+       (free-terrain-pixmap (pane-named window 'world))
+       (mapc #'free-buffer (cons (window-popup window) (display-panes window)))
        (clim:disown-frame (clim:frame-manager window) window)))))
 
 (defmethod clim:run-frame-top-level :before ((window robot-window) &key &allow-other-keys)
-  (painted (window-watcher window)))
+  (report-painted (window-watcher window)))
 
 ;;; Opening.
 
@@ -259,7 +260,8 @@ prompt calls this."
          (window nil)
          (watcher (make-watcher (robot-name robot)
                                 (lambda () (when window (request-refresh window)))
-                                (lambda (reason) (when window (leave-run window reason))))))
+                                (lambda (reason)
+                                  (when window (leave-finished-run window reason))))))
     (with-lock (*windows-lock*) (pushnew port *ports*))
     (start-watching watcher simulation)
     (setf window (make-robot-window
@@ -267,53 +269,53 @@ prompt calls this."
                           :usual-magnification (multiple-value-call #'usual-magnification
                                                  (screen-resolution port)
                                                  (graft-size (clim:find-graft :port port)))))
-    (take-settings window)
+    (restore-settings window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window window))
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
-(defun own-window ()
+(defun window-of-this-thread ()
   (find (current-thread) (open-windows)
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
 (defun switchable-windows ()
   "Return the open windows that this thread may switch to another run. The window of this thread
 comes first. Other windows are left out while their prompts are in a trial or fork."
-  (let ((own (own-window)))
+  (let ((own (window-of-this-thread)))
     (append (and own (list own))
             (remove-if (lambda (window)
                          (or (eq window own)
                              (ars-magna.cli:in-trial-or-fork-p (window-session window))))
                        (open-windows)))))
 
-(defun over-p (window)
+(defun run-over-p (window)
   (let ((simulation (window-simulation window)))
     (and simulation (simulation-over simulation) t)))
 
-(defun window-for (robot)
+(defun window-to-show-robot (robot)
   "Return the open window in which OPEN-WINDOW shows ROBOT, or NIL if it must open a new one."
   (let ((windows (switchable-windows)) (simulation (robot-simulation robot)))
     (or (find (robot-name robot) windows :key #'shown-robot)
         (and (not (live-p simulation))
              (find simulation windows :key #'window-simulation))
-        (find-if #'over-p windows))))
+        (find-if #'run-over-p windows))))
 
 (defun switch-to-robot (window robot)
   "Show ROBOT in WINDOW. The prompt of WINDOW reports the change, unless this thread is its own."
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
-    (unless (eq window (own-window))
+    (unless (eq window (window-of-this-thread))
       (ars-magna.cli:tell-of-run (window-session window) simulation name))))
 
 (defun open-window (robot)
   "Show ROBOT in a window and raise the window. It is the window of ROBOT, a window that shows its
 trial or fork, a window whose run is over, or else a new one. Return the window. Signals MISUSE if
 there is no X server."
-  (let ((window (window-for robot)))
+  (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
-          (t (unless (shows-p window (robot-name robot) (robot-simulation robot))
+          (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))
                (switch-to-robot window robot))
              (call-in-window #'show-in-front window)
              window))))
@@ -326,11 +328,11 @@ there is no X server."
 (setf *display-opener* #'open-window
       *displays-waiter* #'await-windows)
 
-(defun watch-rewound (old new)
+(defun watch-rewound-run (old new)
   (dolist (window (open-windows))
     (let ((watcher (window-watcher window)))
       (when (eq old (watcher-simulation watcher))
         (remove-observer (watcher-observer watcher) new)
         (watch-simulation watcher new)))))
 
-(attend *rewind-hooks* watch-rewound)
+(attend *rewind-hooks* watch-rewound-run)

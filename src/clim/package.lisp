@@ -23,7 +23,7 @@ are written with package prefixes. Manual B.")
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
                 #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-timeline-page
-                #:scale-for #:tick-at)
+                #:page-scale #:tick-at)
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string))

@@ -13,7 +13,7 @@
    (buffer-size :initform nil :accessor pane-buffer-size))
   (:documentation "A mixin for panes that are painted off-screen."))
 
-(defun forget-buffer (pane)
+(defun free-buffer (pane)
   (let ((old (shiftf (pane-buffer pane) nil)))
     (when old (clim:deallocate-pixmap old))))
 
@@ -21,7 +21,7 @@
   "Return the pixmap of PANE, WIDTH x HEIGHT screen pixels large. Make it if necessary."
   (let ((size (list width height)))
     (unless (and (pane-buffer pane) (equal size (pane-buffer-size pane)))
-      (forget-buffer pane)
+      (free-buffer pane)
       (setf (pane-buffer pane) (clim:allocate-pixmap pane width height)
             (pane-buffer-size pane) size))
     (pane-buffer pane)))
@@ -73,14 +73,14 @@ returned before if PANE would look the same."))
 
 (defun window-of (pane) (clim:pane-frame pane))
 
-(defun clear (pane)
+(defun clear-pane (pane)
   (multiple-value-bind (width height) (pane-size pane)
     (clim:draw-rectangle* pane 0 0 width height :ink (clim:pane-background pane))))
 
-(defun call-painting (function pane)
+(defun call-with-pane-canvas (function pane)
   "Clear PANE and call FUNCTION with a canvas for PANE. The canvas leaves out lines of text that
 would be cut off. Record in PANE what was painted where."
-  (clear pane)
+  (clear-pane pane)
   (let ((canvas (make-instance 'clim-canvas :medium pane :bottom (nth-value 1 (pane-size pane))
                                             :magnification (magnification pane)
                                             :color-p (window-color-p (window-of pane)))))
@@ -88,9 +88,9 @@ would be cut off. Record in PANE what was painted where."
       (with-canvas (canvas) (funcall function canvas)))
     (setf (pane-subjects pane) (canvas-subjects canvas))))
 
-(defmacro painting ((canvas pane) &body body)
+(defmacro with-pane-canvas ((canvas pane) &body body)
   "Run BODY, which paints PANE on CANVAS, clipped to the bounds of PANE."
-  `(call-painting (lambda (,canvas) ,@body) ,pane))
+  `(call-with-pane-canvas (lambda (,canvas) ,@body) ,pane))
 
 (defun draw-button (canvas subject text lit-p x y width height)
   "Draw a button for SUBJECT with TEXT in its middle. Return the x coordinate of its right edge."
@@ -112,11 +112,11 @@ would be cut off. Record in PANE what was painted where."
   (setf (clim:medium-clipping-region (clim:sheet-medium pane)) clim:+everywhere+)
   (repaint pane))
 
-(defun shown-p (pane)
+(defun pane-shown-p (pane)
   (and (clim:sheet-grafted-p pane) (clim:sheet-enabled-p pane)))
 
 (defun repaint (pane)
-  (when (shown-p pane)
+  (when (pane-shown-p pane)
     (setf (pane-painted pane) (pane-content pane))
     (call-buffered (lambda ()
                      (paint pane)
@@ -125,10 +125,10 @@ would be cut off. Record in PANE what was painted where."
                      (paint-scroll-bar pane))
                    pane)
     (paint-popup-over pane)
-    (update-pointing pane)))
+    (update-description pane)))
 
 (defun repaint-if-changed (pane)
-  (when (and (shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
+  (when (and (pane-shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
     (repaint pane)))
 
 ;;; The mouse: see pointing.lisp.
@@ -160,11 +160,11 @@ PANE."))
 down.")
   (:method (pane steps x y)
     (declare (ignore x y))
-    (scroll pane (* steps +scroll-step+))))
+    (scroll-pane pane (* steps +scroll-step+))))
 
 (defgeneric hover-text (pane x y)
   (:documentation "Return a description of what PANE shows at X, Y, on one line.")
-  (:method (pane x y) (subject-text (subject-at (pane-subjects pane) x y))))
+  (:method (pane x y) (subject-description (subject-at (pane-subjects pane) x y))))
 
 ;;; Details of the robot.
 
@@ -196,7 +196,7 @@ down.")
 
 (defmethod paint ((pane detail-pane))
   (let ((window (window-of pane)))
-    (painting (canvas pane)
+    (with-pane-canvas (canvas pane)
       (with-origin (canvas 0 (- (pane-offset pane)))
         (when (window-robot window)
           (setf (pane-extent pane)
@@ -206,7 +206,7 @@ down.")
 
 ;;;; Scrolling
 
-(defconstant +scroll-bar+ 10 "The width of scroll bars, in pixels.")
+(defconstant +scroll-bar-width+ 10 "The width of scroll bars, in pixels.")
 
 (defgeneric scroll-state (pane)
   (:documentation "Return three values in one unit: the position in its contents where PANE begins,
@@ -229,7 +229,7 @@ SCROLL-STATE.")
 
 (defun content-width (pane)
   "Return the width of PANE without its scroll bar, in pixels."
-  (max 1 (- (pane-size pane) +scroll-bar+)))
+  (max 1 (- (pane-size pane) +scroll-bar-width+)))
 
 (defgeneric limit-offset (pane)
   (:documentation
@@ -241,13 +241,13 @@ scrolled.")
         (setf (pane-offset pane) room)
         t))))
 
-(defun scroll (pane pixels)
+(defun scroll-pane (pane pixels)
   "Scroll PANE down by PIXELS, but not beyond its contents."
   (scroll-to pane (+ (scroll-state pane) pixels)))
 
 ;;; The bar.
 
-(defun thumb (pane)
+(defun thumb-bounds (pane)
   "Return the top and the bottom of the thumb, the movable part of the scroll bar of PANE, in
 pixels."
   (multiple-value-bind (position page total) (scroll-state pane)
@@ -259,9 +259,9 @@ pixels."
 (defun paint-scroll-bar (pane)
   (when (scrollable-p pane)
     (multiple-value-bind (width height) (pane-size pane)
-      (multiple-value-bind (top bottom) (thumb pane)
-        (clim:draw-rectangle* pane (- width +scroll-bar+) 0 width height :ink clim:+gray90+)
-        (clim:draw-rectangle* pane (- width +scroll-bar+ -2) top (- width 2) bottom
+      (multiple-value-bind (top bottom) (thumb-bounds pane)
+        (clim:draw-rectangle* pane (- width +scroll-bar-width+) 0 width height :ink clim:+gray90+)
+        (clim:draw-rectangle* pane (- width +scroll-bar-width+ -2) top (- width 2) bottom
                               :ink clim:+gray55+)))))
 
 (defun on-scroll-bar-p (pane x)
@@ -271,7 +271,7 @@ pixels."
   "Scroll PANE so that the middle of its scroll bar's thumb moves to Y, as far as possible."
   (multiple-value-bind (position page total) (scroll-state pane)
     (declare (ignore position))
-    (multiple-value-bind (top bottom) (thumb pane)
+    (multiple-value-bind (top bottom) (thumb-bounds pane)
       (let ((length (- bottom top)) (height (nth-value 1 (pane-size pane))))
         (scroll-to pane (* (- total page)
                            (/ (clamp (- y (/ length 2)) 0 (max 0 (- height length)))
@@ -298,7 +298,7 @@ Return NIL if SUBJECT cannot be selected.")
     (remove-duplicates (subjects-at (pane-subjects pane) x y)
                        :test #'same-subject-p :from-end t)))
 
-(defun picked-first (window subjects)
+(defun selected-first (window subjects)
   "Return SUBJECTS, rotated so that the selected subject of WINDOW comes first, if SUBJECTS has it."
   (let* ((key (window-selection window))
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))
@@ -320,6 +320,6 @@ Return NIL if SUBJECT cannot be selected.")
   (:method (pane)
     (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
 
-(defun select (window subject)
+(defun select-subject (window subject)
   (setf (window-selection window) (subject-key subject))
   (refresh window))

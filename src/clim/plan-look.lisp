@@ -10,15 +10,16 @@
 (defconstant +most-rows+ 300 "The largest number of tasks, or of rows of a timeline, to show.")
 (defconstant +longest-trace+ 200000
   "The largest number of entries of a trace for which the window draws a timeline.")
-(defconstant +rest-factor+ 9
+(defconstant +pause-per-look+ 9
   "The pause after a look at the plans, as a multiple of the time that the look took.")
 
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
   "What a window shows of the plans of SIMULATION, and when to look again. VIEW is the display,
 :TREE or :TIMELINE. SHOWN-P is a function that returns true while the display is visible. FOLDED
-lists the numbers of the tasks whose parts are folded. MARK is the value of PLANS-MARK at the last
-look. DUE is the time of the next look, in seconds. TREE is an image of the tasks, or NIL. PAGE is a
-timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text that says how the last plan ended, or NIL."
+lists the numbers of the tasks whose parts are folded. MARK is the value of PLANS-STATE-MARK at the
+last look. DUE is the time of the next look, in seconds. TREE is an image of the tasks, or NIL. PAGE
+is a timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text that says how the last plan ended, or
+NIL."
   (simulation nil)
   (view :tree :type (member :tree :timeline))
   (shown-p (constantly nil) :type function)
@@ -31,11 +32,11 @@ timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text that says how the last pl
   (traced-p nil)
   (ended nil :type (or null string)))
 
-(defun interface-of (simulation)
+(defun plan-interface-of (simulation)
   "Return the interface that runs the plans of SIMULATION, or NIL."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
-(defun traced-p (interface)
+(defun plans-traced-p (interface)
   "True if the running plans of INTERFACE are traced. If no plan is running, true if the next plans
 will be traced."
   (let ((runner (and interface (interface-runner interface))))
@@ -43,13 +44,13 @@ will be traced."
              (and *trace-plans* (not (and runner (plan-runner-tasks runner)))))
          t)))
 
-(defun plans-mark (look interface)
+(defun plans-state-mark (look interface)
   "Return a value that represents what LOOK shows of the plans of INTERFACE. Two such values are
 EQUAL if LOOK would show the same."
   (let ((runner (and interface (interface-runner interface)))
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
-          (traced-p interface)
+          (plans-traced-p interface)
           (and runner (runner-mark runner))
           (and runner timeline-p (plan-runner-tasks runner)
                (simulation-tick (plan-look-simulation look))))))
@@ -62,7 +63,7 @@ EQUAL if LOOK would show the same."
 reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to rest."
   (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
 
-(defun update-timeline (look interface)
+(defun update-plan-timeline (look interface)
   "Store the timeline of the plans of INTERFACE in LOOK. Return NIL if the plans are busy."
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
@@ -79,7 +80,7 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
                           (and bars (make-timeline-page bars +most-rows+))))))
             t)))))
 
-(defun see-tree (look interface)
+(defun update-plan-tree (look interface)
   "Store the tree of the tasks of INTERFACE in LOOK. Return NIL if the plans are busy."
   (let ((seen (call-at-rest interface
                             (lambda ()
@@ -90,55 +91,55 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
       (setf (plan-look-tree look) seen)
       t)))
 
-(defun see-plans (look interface)
+(defun update-plan-image (look interface)
   "Store in LOOK the tree or timeline of the plans of INTERFACE, or NIL if INTERFACE is NIL. Return
 NIL if the plans are busy."
   (setf (plan-look-robot look) (and interface (interface-robot interface)
                                     (robot-name (interface-robot interface)))
-        (plan-look-traced-p look) (traced-p interface))
+        (plan-look-traced-p look) (plans-traced-p interface))
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)
-        ((eq :timeline (plan-look-view look)) (update-timeline look interface))
-        (t (see-tree look interface))))
+        ((eq :timeline (plan-look-view look)) (update-plan-timeline look interface))
+        (t (update-plan-tree look interface))))
 
-(defun look-now (look interface mark)
-  "Store in LOOK what it shows of the plans of INTERFACE, and MARK, their value of PLANS-MARK.
+(defun update-look (look interface mark)
+  "Store in LOOK what it shows of the plans of INTERFACE, and MARK, their value of PLANS-STATE-MARK.
 Return NIL if the plans are busy, else true."
   (let ((began (seconds-now)))
-    (when (see-plans look interface)
+    (when (update-plan-image look interface)
       (setf (plan-look-mark look) mark
-            (plan-look-due look) (+ (seconds-now) (* +rest-factor+ (- (seconds-now) began))))
+            (plan-look-due look) (+ (seconds-now) (* +pause-per-look+ (- (seconds-now) began))))
       t)))
 
-(defun look-at-plans (look)
+(defun update-look-if-changed (look)
   "Update LOOK if its display is visible and its plans have changed. Return true if LOOK was
 updated."
   (when (and (funcall (plan-look-shown-p look))
              (plan-look-simulation look)
              (>= (seconds-now) (plan-look-due look)))
-    (let* ((interface (interface-of (plan-look-simulation look)))
-           (mark (plans-mark look interface)))
+    (let* ((interface (plan-interface-of (plan-look-simulation look)))
+           (mark (plans-state-mark look interface)))
       (unless (equal mark (plan-look-mark look))
         ;; A plan that does not return blocks the plans of its run. That is reported elsewhere.
-        (handler-case (look-now look interface mark)
+        (handler-case (update-look look interface mark)
           (misuse () nil))))))
 
-(defun look-as-it-stands (look)
+(defun update-look-of-own-plans (look)
   "Update LOOK at once if this thread runs the reactions of its plans. Return true if LOOK was
 updated."
-  (let* ((simulation (plan-look-simulation look)) (interface (interface-of simulation)))
+  (let* ((simulation (plan-look-simulation look)) (interface (plan-interface-of simulation)))
     (and interface
          (holding-p interface)
          (funcall (plan-look-shown-p look))
-         (look-now look interface (plans-mark look interface)))))
+         (update-look look interface (plans-state-mark look interface)))))
 
 ;;; Which looks there are, and how plans end.
 
 (defvar *plan-looks* '() "The PLAN-LOOK objects of the open windows.")
 (defvar *plan-looks-lock* (make-lock "looks at plans"))
 
-(defun direct-look (look simulation)
+(defun set-look-simulation (look simulation)
   "Make LOOK show the plans of SIMULATION from now on, or no plans if SIMULATION is NIL."
   (with-lock (*plan-looks-lock*)
     (setf (plan-look-simulation look) simulation
@@ -147,7 +148,7 @@ updated."
                            (adjoin look *plan-looks*)
                            (remove look *plan-looks*)))))
 
-(defun ending-text (task)
+(defun plan-ending-text (task)
   (format nil "~A ~A at tick ~A~@[: ~A~]" (task-label task)
           (case (task-state task)
             (:succeeded "succeeded") (:failed "failed") (t "was ended"))
@@ -155,14 +156,14 @@ updated."
           (and (eq :failed (task-state task))
                (cut (one-line (failure-text (task-result task))) 300))))
 
-(defun note-ending (task)
+(defun record-plan-ending (task)
   "Record the end of TASK, a plan, for the windows that show its run. Return NIL, because the
 failure of TASK is reported elsewhere."
   (let ((interface (runner-client (task-runner task))))
     (when (and *plan-looks* (interface-p interface))
       (dolist (look (with-lock (*plan-looks-lock*) (copy-list *plan-looks*)))
         (when (eq (plan-look-simulation look) (interface-simulation interface))
-          (setf (plan-look-ended look) (ending-text task))))))
+          (setf (plan-look-ended look) (plan-ending-text task))))))
   nil)
 
-(attend *plan-end-hooks* note-ending)
+(attend *plan-end-hooks* record-plan-ending)

@@ -5,7 +5,7 @@
 ;;; It paints what the watcher's look at the plans has (plan-look.lisp). A row of buttons stays on
 ;;; top; below it the picture scrolls.
 
-(defconstant +plan-head+ 23 "The height of the row of buttons, in pixels.")
+(defconstant +plan-buttons-height+ 23 "The height of the row of buttons, in pixels.")
 
 (defclass plan-pane (display-pane) ()
   (:documentation "The pane that shows the plans of the run."))
@@ -14,15 +14,15 @@
 
 ;;; Its buttons have no keys.
 
-(defun look-again (pane)
+(defun request-new-look (pane)
   "Request new images of the plans, because the user has changed what PANE shows of them."
-  (painted (window-watcher (window-of pane)))
+  (report-painted (window-watcher (window-of pane)))
   (repaint-if-changed pane))
 
-(defun show-plans-as (pane view)
+(defun set-plan-view (pane view)
   (setf (plan-look-view (plan-look-of pane)) view
         (pane-offset pane) 0)
-  (look-again pane))
+  (request-new-look pane))
 
 (defun fold-task (pane serial)
   (let ((look (plan-look-of pane)))
@@ -30,24 +30,25 @@
           (if (member serial (plan-look-folded look))
               (remove serial (plan-look-folded look))
               (cons serial (plan-look-folded look))))
-    (look-again pane)))
+    (request-new-look pane)))
 
 (defun line-button (pane label line help &optional lit-p)
   "Return a button with LABEL that makes the prompt of the window of PANE run LINE."
-  (make-button label nil (lambda () (give-line (window-conversation (window-of pane)) line)) help
+  (make-button label nil
+               (lambda () (run-line-at-prompt (window-conversation (window-of pane)) line)) help
                lit-p))
 
 (defun plan-buttons (pane)
   (let* ((look (plan-look-of pane))
          (view (plan-look-view look))
          (traced-p (plan-look-traced-p look)))
-    (list (make-button "Tree" nil (lambda () (show-plans-as pane :tree))
+    (list (make-button "Tree" nil (lambda () (set-plan-view pane :tree))
                        "Show what the tasks of the plans do and wait for" (eq view :tree))
-          (make-button "Timeline" nil (lambda () (show-plans-as pane :timeline))
+          (make-button "Timeline" nil (lambda () (set-plan-view pane :timeline))
                        "Show what the tasks have done, as bars over ticks" (eq view :timeline))
           (line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
                        (format nil "~:[Keep a trace of what plans do, for the timeline and for ~
-                                    WHY~;A trace of plans is kept; click to forget it~]"
+                                    WHY~;A trace of plans is kept; click to discard the trace~]"
                                traced-p)
                        traced-p))))
 
@@ -56,7 +57,7 @@
     (draw-button canvas button label (button-lit-p button) x y
                  (+ 10 (* +character-width+ (length label))) 17)))
 
-(defun draw-plan-head (canvas pane)
+(defun draw-plan-buttons (canvas pane)
   (let ((x 4) (robot (plan-look-robot (plan-look-of pane))))
     (dolist (button (plan-buttons pane)) (setf x (+ 5 (draw-plan-button canvas button x 3))))
     (when robot
@@ -64,7 +65,7 @@
 
 ;;; If there is nothing to show, it says how to change that.
 
-(defun say-lines (canvas y &rest lines)
+(defun draw-plan-lines (canvas y &rest lines)
   "Draw LINES, strings and buttons, below each other from Y down. Return the y coordinate of their
 end."
   (dolist (line lines y)
@@ -72,35 +73,36 @@ end."
           ((button-p line) (draw-plan-button canvas line 8 (+ y 2)) (incf y 24))
           (t (draw-glyphs canvas draw-gcontext* 8 (+ y 13) line) (incf y +line-height+)))))
 
-(defun say-text (canvas pane y text)
+(defun draw-plan-text (canvas pane y text)
   "Draw TEXT from Y down, wrapped to the width of PANE. Return the y coordinate of its end."
-  (apply #'say-lines canvas y
+  (apply #'draw-plan-lines canvas y
          (wrapped-text text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
 
-(defun say-ending (canvas pane y)
+(defun draw-plan-ending (canvas pane y)
   "Draw a text that says how the last plan ended, if one has ended, from Y down. Return the y
 coordinate of its end."
   (let ((ended (plan-look-ended (plan-look-of pane))))
     (if ended
-        (say-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
+        (draw-plan-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
         y)))
 
-(defun say-no-plan (canvas pane)
-  (let ((interface (interface-of (plan-look-simulation (plan-look-of pane)))))
+(defun draw-no-plan-text (canvas pane)
+  (let ((interface (plan-interface-of (plan-look-simulation (plan-look-of pane)))))
     ;; There may be running plans that have not been looked at yet.
     (if (and interface (plan-runner-tasks (interface-runner interface)))
-        (say-text canvas pane +plan-head+ "Looking at the plans ...")
-        (let ((y (say-text canvas pane +plan-head+
-                           "No plan is running. The line PLAN name ... starts a plan.")))
-          (say-ending canvas pane
-                      (say-lines canvas y (line-button pane "List the plans" "plan"
-                                                       "List the plans that can be started")))))))
+        (draw-plan-text canvas pane +plan-buttons-height+ "Looking at the plans ...")
+        (let ((y (draw-plan-text canvas pane +plan-buttons-height+
+                                 "No plan is running. The line PLAN name ... starts a plan.")))
+          (draw-plan-ending canvas pane
+                            (draw-plan-lines canvas y
+                                             (line-button pane "List the plans" "plan"
+                                                          "List plans that can be started")))))))
 
 ;;; Painting.
 
 (defmethod pane-content ((pane plan-pane))
   (let ((look (plan-look-of pane)))
-    (setf (plan-look-shown-p look) (lambda () (shown-p pane)))
+    (setf (plan-look-shown-p look) (lambda () (pane-shown-p pane)))
     (list (pane-offset pane) (multiple-value-list (pane-size pane))
           (window-selection (window-of pane))
           (plan-look-view look) (plan-look-robot look) (plan-look-tree look)
@@ -110,37 +112,38 @@ coordinate of its end."
   "Draw the tree of tasks for PANE. Return the y coordinate of its end."
   (let ((tree (plan-look-tree (plan-look-of pane))))
     (if (and tree (plusp (tree-image-plans tree)))
-        (say-ending canvas pane
-                    (draw-task-tree canvas tree :width (content-width pane) :top +plan-head+))
-        (say-no-plan canvas pane))))
+        (draw-plan-ending canvas pane
+                          (draw-task-tree canvas tree :width (content-width pane)
+                                                :top +plan-buttons-height+))
+        (draw-no-plan-text canvas pane))))
 
 (defun draw-plan-timeline (canvas pane)
   "Draw the timeline for PANE. Return the y coordinate of its end."
   (let ((page (plan-look-page (plan-look-of pane))))
     (case page
-      ((nil) (say-no-plan canvas pane))
-      (:untraced (say-lines canvas
-                            (say-text canvas pane +plan-head+
-                                      "No trace is kept of these plans, so there is no timeline.")
-                            (line-button pane "Keep a trace from now on" "trace-plans on"
-                                         "Keep a trace of what plans do")))
-      (:too-long (say-text canvas pane +plan-head+
-                           (format nil "The trace is too long to be drawn in the window. ~
-                                        The line PLAN-TIMELINE plans.svg saves a picture.")))
-      (t (draw-page canvas page :width (content-width pane) :top +plan-head+
+      ((nil) (draw-no-plan-text canvas pane))
+      (:untraced (draw-plan-lines canvas
+                                  (draw-plan-text canvas pane +plan-buttons-height+
+                                                  "These plans have no trace, so no timeline.")
+                                  (line-button pane "Keep a trace from now on" "trace-plans on"
+                                               "Keep a trace of what plans do")))
+      (:too-long (draw-plan-text canvas pane +plan-buttons-height+
+                                 (format nil "The trace is too long to be drawn in the window. ~
+                                              The line PLAN-TIMELINE plans.svg saves a picture.")))
+      (t (draw-page canvas page :width (content-width pane) :top +plan-buttons-height+
                                 :from (pane-offset pane)
                                 :to (+ (pane-offset pane) (nth-value 1 (pane-size pane))))))))
 
 (defmethod paint ((pane plan-pane))
   (multiple-value-bind (width height) (pane-size pane)
-    (painting (canvas pane)
-      (with-clipping (canvas 0 +plan-head+ width (max 1 (- height +plan-head+)))
+    (with-pane-canvas (canvas pane)
+      (with-clipping (canvas 0 +plan-buttons-height+ width (max 1 (- height +plan-buttons-height+)))
         (with-origin (canvas 0 (- (pane-offset pane)))
           (setf (pane-extent pane)
                 (ceiling (if (eq :timeline (plan-look-view (plan-look-of pane)))
                              (draw-plan-timeline canvas pane)
                              (draw-plan-tree canvas pane))))))
-      (draw-plan-head canvas pane))))
+      (draw-plan-buttons canvas pane))))
 
 ;;;; The mouse
 
@@ -201,32 +204,32 @@ coordinate of its end."
 
 ;;; Where the mouse is.
 
-(defun tick-under (pane x y)
+(defun tick-at-mouse (pane x y)
   (let* ((look (plan-look-of pane)) (page (plan-look-page look)))
     (and (eq :timeline (plan-look-view look))
          page
          (not (symbolp page))
-         (> y +plan-head+)
-         (tick-at x (scale-for page (content-width pane))))))
+         (> y +plan-buttons-height+)
+         (tick-at x (page-scale page (content-width pane))))))
 
 (defun plan-subject-at (pane x y)
   "Return the subject that PANE shows at X, Y: a button, the fold mark or image of a task, or a
 point of the timeline. Return NIL if there is none."
   (let* ((subjects (pane-subjects pane))
-         (subject (subject-at (if (< y +plan-head+)
+         (subject (subject-at (if (< y +plan-buttons-height+)
                                   (remove-if-not #'button-p subjects :key #'first)
                                   subjects)
                               x y))
-         (tick (tick-under pane x y)))
+         (tick (tick-at-mouse pane x y)))
     (if tick (make-plan-moment tick subject) subject)))
 
-(defmethod hover-text ((pane plan-pane) x y) (subject-text (plan-subject-at pane x y)))
+(defmethod hover-text ((pane plan-pane) x y) (subject-description (plan-subject-at pane x y)))
 
-(defun go-back-to (pane tick)
+(defun rewind-pane-to-tick (pane tick)
   "Make the prompt rewind the run of PANE to TICK."
   (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
-      (give-line (window-conversation (window-of pane)) (rewind-line tick))
-      (hint (window-of pane) "The run is at this tick now.")))
+      (run-line-at-prompt (window-conversation (window-of pane)) (rewind-line tick))
+      (show-hint (window-of pane) "The run is at this tick now.")))
 
 (defmethod handle-click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))
@@ -235,6 +238,6 @@ point of the timeline. Return NIL if there is none."
              (etypecase subject
                (button (funcall (button-command subject)))
                (fold-mark (fold-task pane (fold-mark-serial subject))))))
-          ((eq button :right) (offer pane (and subject (list subject)) x y))
-          ((plan-moment-p subject) (go-back-to pane (plan-moment-tick subject)))
-          (t (pick (window-of pane) subject)))))
+          ((eq button :right) (open-offers-at pane (and subject (list subject)) x y))
+          ((plan-moment-p subject) (rewind-pane-to-tick pane (plan-moment-tick subject)))
+          (t (select-and-describe (window-of pane) subject)))))

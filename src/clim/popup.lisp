@@ -56,7 +56,7 @@ or NIL if the row has no box to tick."
 
 (defmethod paint ((pane popup-pane))
   (multiple-value-bind (width height) (pane-size pane)
-    (painting (canvas pane)
+    (with-pane-canvas (canvas pane)
       (with-origin (canvas 0 (- 3 (pane-offset pane)))
         (loop for row in (pane-rows pane)
               for y from 0 by +row-height+
@@ -82,7 +82,7 @@ window."
   (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
     (let* ((rows (pane-rows popup))
            (columns (loop for row in rows maximize (length (row-text row))))
-           (width (min room-x (+ 34 +scroll-bar+ (* +character-width+ columns))))
+           (width (min room-x (+ 34 +scroll-bar-width+ (* +character-width+ columns))))
            (extent (+ 6 (* +row-height+ (length rows))))
            (height (min room-y extent)))
       (setf (pane-extent popup) extent
@@ -101,17 +101,17 @@ opens the popup, a symbol, or the menu that is shown, or T."
     (clim:raise-sheet popup)
     (repaint popup)))
 
-(defun open-opener (window)
+(defun popup-opener (window)
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
   "Close the popup of WINDOW. Return the command or menu that had opened the popup, or NIL if no
 popup was open."
-  (let ((opener (open-opener window)))
+  (let ((opener (popup-opener window)))
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
       (repaint-all window)
-      (point-at-mouse window)
+      (show-description-at-mouse window)
       opener)))
 
 ;;; The mouse.
@@ -138,12 +138,12 @@ popup was open."
 ;;; A click on a row may replace the rows. The second click of a double click is not meant for
 ;;; these.
 
-(defconstant +double-click+ 500
+(defconstant +double-click-time+ 500
   "The longest time between the two clicks of a double click, in milliseconds.")
 
 (defmethod clim:handle-event :around ((pane popup-pane) (event clim:pointer-button-press-event))
   (let ((rows (pane-rows pane)) (turned (pane-turned pane)) (time (clim:event-timestamp event)))
-    (unless (and turned time (<= 0 (- time turned) +double-click+))
+    (unless (and turned time (<= 0 (- time turned) +double-click-time+))
       (setf (pane-turned pane) nil)
       (call-next-method)
       (unless (eq rows (pane-rows pane)) (setf (pane-turned pane) time)))))
@@ -164,7 +164,7 @@ popup was open."
   (mapcar #'make-row
           (append (list "Keys, after a click on a display")
                   (loop for button in *buttons*
-                        collect (format nil "  ~7A ~A" (key-text (button-key button))
+                        collect (format nil "  ~7A ~A" (key-label (button-key button))
                                         (button-help button)))
                   (list "  arrows  move the view" "  return  go back to the input line"
                         "  escape  close this panel, or go back to the input line"
@@ -173,30 +173,30 @@ popup was open."
 
 ;;; Layers.
 
-(defun switch-layer (window layer)
+(defun toggle-layer (window layer)
   (let ((layers (window-layers window)))
     (setf (window-layers window)
           (if (member layer layers) (remove layer layers) (cons layer layers)))
     (repaint-if-changed (pane-named window 'world))))
 
-(defun layer-text (layer)
+(defun layer-row-text (layer)
   "Return the text for LAYER in the panel of layers: its title, and its names at the prompt if they
 differ."
-  (let ((title (layer-title layer)) (words (layer-words layer)))
+  (let ((title (layer-title layer)) (words (layer-prompt-names layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 
 (defun layer-rows (window)
   "Return the rows of the panel of layers. The layers for title and legend have no rows, because the
 window has a title and the mouse shows what things are."
   (flet ((layer-row (layer)
-           (make-row (layer-text layer)
+           (make-row (layer-row-text layer)
                      :tick (lambda () (member layer (window-layers window)))
-                     :action (lambda () (switch-layer window layer)) :stays-p t)))
+                     :action (lambda () (toggle-layer window layer)) :stays-p t)))
     (append (mapcar #'layer-row (remove :legend (remove :title (picture-layers))))
             (list (make-row "In colour" :tick (lambda () (window-color-p window))
-                                        :action (lambda () (switch-color window)) :stays-p t)))))
+                                        :action (lambda () (toggle-color window)) :stays-p t)))))
 
-(defun switch-color (window)
+(defun toggle-color (window)
   (setf (window-color-p window) (not (window-color-p window)))
   (repaint-all window))
 
@@ -217,6 +217,6 @@ the window shows the same robot."
            (make-row (format nil "~A" name)
                      :tick (lambda () (same-name-p name (shown-robot window)))
                      :action (lambda ()
-                               (give-line (window-conversation window)
-                                          (format nil "robot ~(~A~)" name))))))
+                               (run-line-at-prompt (window-conversation window)
+                                                   (format nil "robot ~(~A~)" name))))))
     (cons (make-row "Which robot?") (mapcar #'robot-row (window-robots window)))))

@@ -14,7 +14,7 @@
   (:documentation "A console that writes its output to a transcript. Another pane shows the input
 line."))
 
-(defun tell-news (console)
+(defun notify-window (console)
   (funcall (transcript-news (console-transcript console))))
 
 (defmethod ars-magna.cli:wipe ((console window-console) stream)
@@ -23,7 +23,7 @@ line."))
          (shown (and line (shiftf (ars-magna.cli:drawn-line-shown line) '()))))
     ;; What was written last may have become what stands before the line.
     (when (and shown (string/= "" (first shown)))
-      (unsay (console-transcript console) (first shown)))))
+      (erase-last-line (console-transcript console) (first shown)))))
 
 (defmethod ars-magna.cli:draw ((console window-console) stream)
   (declare (ignore stream))
@@ -32,20 +32,20 @@ line."))
       (setf (ars-magna.cli:drawn-line-shown line)
             (list (ars-magna.cli:drawn-line-label line) (ars-magna.cli:drawn-line-text line)
                   (ars-magna.cli:drawn-line-point line)))
-      (tell-news console))))
+      (notify-window console))))
 
 (defmethod ars-magna.cli:leave-line ((console window-console) stream)
   (let ((line (ars-magna.cli:console-line console)))
     (unless (ars-magna.cli:console-asked-p console)
       (setf (console-entered console) (ars-magna.cli:drawn-line-text line)))
     (fresh-line stream)
-    (say-entered (console-transcript console)
-                 (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)
-                         (ars-magna.cli:drawn-line-text line)))))
+    (write-entered-line (console-transcript console)
+                        (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)
+                                (ars-magna.cli:drawn-line-text line)))))
 
 ;; The interactor and the strip say so meanwhile.
 (defmethod ars-magna.cli:tell-asking ((console window-console))
-  (tell-news console))
+  (notify-window console))
 
 ;; The transcript breaks its lines itself, again whenever its width changes.
 (defmethod ars-magna.cli:fitted (text (console window-console) &optional label)
@@ -82,7 +82,7 @@ line, and OVER when the user leaves the prompt."
                         :package (ars-magna.cli:package-of-caller))
                        console over)))
 
-(defun converse (conversation simulation robot-name)
+(defun run-conversation (conversation simulation robot-name)
   "Read and run lines until the user leaves the prompt. Record in CONVERSATION if its thread ends
 for another reason."
   (let ((lost-p t))
@@ -91,67 +91,68 @@ for another reason."
                                                  simulation robot-name)
                 (setf lost-p nil))
       (setf (conversation-lost-p conversation) lost-p)
-      (tell-news (conversation-console conversation))))
+      (notify-window (conversation-console conversation))))
   (funcall (conversation-over conversation)))
 
 (defun start-conversation (conversation simulation robot-name)
   (setf (conversation-lost-p conversation) nil
         (conversation-thread conversation)
-        (start-thread (lambda () (converse conversation simulation robot-name))
+        (start-thread (lambda () (run-conversation conversation simulation robot-name))
                       (format nil "prompt of ~A's window" robot-name))))
 
 ;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
-(defun restart-if-lost (conversation simulation robot-name)
+(defun restart-prompt-if-lost (conversation simulation robot-name)
   "Start a new thread for the prompt if a line or a program has ended the old one."
   (when (conversation-lost-p conversation)
-    (say-in conversation "The thread of this prompt was ended, and its running line with it. A new ~
-                          thread starts.~%")
+    (write-at-prompt conversation "The thread of this prompt was ended, and its running line with ~
+                                   it. A new thread starts.~%")
     (start-conversation conversation simulation robot-name)))
 
-(defun being-typed (conversation)
+(defun text-in-input-line (conversation)
   "Return the text in the input line of CONVERSATION that has not been entered yet, or NIL if the
 line is empty."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line
-         (not (busy-with conversation))
+         (not (running-line conversation))
          (string/= "" (ars-magna.cli:drawn-line-text line))
          (ars-magna.cli:drawn-line-text line))))
 
-(defun say-in (conversation &rest arguments)
-  (say (console-transcript (conversation-console conversation)) (apply #'format nil arguments)))
+(defun write-at-prompt (conversation &rest arguments)
+  (write-to-transcript (console-transcript (conversation-console conversation))
+                       (apply #'format nil arguments)))
 
-(defun tell-to-answer (conversation what)
-  (say-in conversation "~A: answer the break first, with one of ~A.~%"
-          what (ars-magna.cli:ways-awaited (conversation-session conversation))))
+(defun request-answer-first (conversation what)
+  (write-at-prompt conversation "~A: answer the break first, with one of ~A.~%"
+                   what (ars-magna.cli:ways-awaited (conversation-session conversation))))
 
 ;; While a break waits for an answer, other lines would be taken for a wrong answer.
-(defun answered-first-p (conversation line)
+(defun refuse-line-at-break-p (conversation line)
   "Return true if LINE cannot run because a break waits for an answer at the prompt and LINE is no
 answer. Print a message in this case."
   (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))
              (not (ars-magna.cli:answers-break-p line)))
-    (tell-to-answer conversation (string-upcase (string-right-trim " " line)))
+    (request-answer-first conversation (string-upcase (string-right-trim " " line)))
     t))
 
-(defun give-line (conversation line)
+(defun run-line-at-prompt (conversation line)
   "Make the prompt run LINE, a string, as if the user had entered it. The input line does not
 change."
-  (unless (answered-first-p conversation line)
+  (unless (refuse-line-at-break-p conversation line)
     (ars-magna.cli:enter-line (conversation-session conversation) line)
-    (tell-news (conversation-console conversation))))
+    (notify-window (conversation-console conversation))))
 
-(defun give-key (conversation key)
+(defun pass-key (conversation key)
   (ars-magna.cli:send-key (ars-magna.cli:session-input (conversation-session conversation)) key)
   ;; It is shown even before it is read.
-  (tell-news (conversation-console conversation)))
+  (notify-window (conversation-console conversation)))
 
-(defun begin-line-with (conversation text)
+(defun replace-input-line (conversation text)
   "Replace the input line by TEXT, for the user to complete."
-  (unless (answered-first-p conversation text)
-    (mapc (lambda (key) (give-key conversation key))
+  (unless (refuse-line-at-break-p conversation text)
+    (mapc (lambda (key) (pass-key conversation key))
           (list :control-e :control-u text))))
 
-(defun busy-with (conversation)
+(defun running-line (conversation)
   "Return the text of the running line, or NIL if no line is running."
   (and (conversation-thread conversation)
        (ars-magna.cli:at-work-on (conversation-session conversation))

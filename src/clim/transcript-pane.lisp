@@ -55,7 +55,7 @@ characters and ends after a blank, if possible."
     (values (max 10 (floor (- (content-width pane) 8) +character-width+))
             (max 1 (floor (- height 4) +line-height+)))))
 
-(defun last-of-first-page (pane)
+(defun last-line-of-first-page (pane)
   "Return the number of the last line on the first page of the transcript of PANE, or NIL if the
 transcript is shorter than a page."
   (let ((transcript (pane-transcript pane)))
@@ -65,25 +65,26 @@ transcript is shorter than a page."
             sum (length (rows-of-line number line columns)) into above
             when (<= rows above) return number))))
 
-(defun kept-in-view (pane last)
+(defun possible-last-line (pane last)
   "Return the number of the line to show last in PANE, close to LAST, so that the page is full and
 its lines are still kept. Return NIL for the newest line."
-  (let ((oldest (last-of-first-page pane)))
+  (let ((oldest (last-line-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))
          (max last oldest))))
 
-(defun pane-last (pane)
+(defun last-line-in-view (pane)
   "Return the number of the last line that PANE shows, or NIL if it is the newest line."
   (let ((scrolled (pane-scrolled pane)))
     (and scrolled
          (= (pane-entered pane) (transcript-entered (pane-transcript pane)))
-         (kept-in-view pane scrolled))))
+         (possible-last-line pane scrolled))))
 
 (defun rows-in-view (pane count columns)
   "Return the rows that PANE shows, at most COUNT, each of at most COLUMNS characters."
   (let ((rows '()))
-    (loop for (number line) in (numbered-lines (pane-transcript pane) count (pane-last pane))
+    (loop for (number line) in (numbered-lines (pane-transcript pane) count
+                                               (last-line-in-view pane))
           while (< (length rows) count)
           ;; The newest line is empty most of the time: something may be written there.
           do (unless (and (null rows) (string= line ""))
@@ -104,30 +105,30 @@ are dark, because the transcript is white.")
 
 (defun column-x (column) (+ 4 (* column +character-width+)))
 
-(defun paint-words (canvas text column y ink)
+(defun paint-glyphs-at-column (canvas text column y ink)
   (with-gcontext (draw-gcontext* :foreground (or (second (assoc ink *ink-colors*)) black*))
     (draw-glyphs canvas draw-gcontext* (column-x column) y text)))
 
-(defun paint-row (canvas row y)
+(defun paint-text-row (canvas row y)
   (loop with column = 0
         for (text ink) in (text-row-spans row)
         for start = (max column (text-row-start row))
         for end = (min (+ column (length text)) (text-row-stop row))
         when (< start end)
-          do (paint-words canvas (subseq text (- start column) (- end column))
+          do (paint-glyphs-at-column canvas (subseq text (- start column) (- end column))
                          (- start (text-row-start row)) y ink)
         do (incf column (length text))))
 
-(defun before-p (place other)
+(defun position-before-p (place other)
   (or (< (first place) (first other))
       (and (= (first place) (first other)) (< (second place) (second other)))))
 
-(defun selection (pane)
+(defun selection-bounds (pane)
   "Return the start and the end of the selection in PANE, each a list (number column), or NIL if
 nothing is selected."
   (let ((mark (pane-mark pane)) (point (pane-point pane)))
     (cond ((or (null mark) (null point) (equal mark point)) nil)
-          ((before-p mark point) (values mark point))
+          ((position-before-p mark point) (values mark point))
           (t (values point mark)))))
 
 (defun selected-columns (row from to)
@@ -141,7 +142,7 @@ and TO, lists (number column)."
                   ((= number (first to)) (min stop (second to)))
                   (t stop)))))
 
-(defun paint-selected (canvas row y from to)
+(defun paint-selection-in-row (canvas row y from to)
   "Paint the background of the selected part of ROW. The selection is between FROM and TO, lists
 (number column)."
   (multiple-value-bind (start stop) (selected-columns row from to)
@@ -154,12 +155,12 @@ and TO, lists (number column)."
   (multiple-value-bind (columns rows) (columns-and-rows pane)
     (setf (window-text-size (window-of pane)) (list columns rows)
           (pane-rows pane) (rows-in-view pane rows columns)))
-  (painting (canvas pane)
-    (multiple-value-bind (from to) (selection pane)
+  (with-pane-canvas (canvas pane)
+    (multiple-value-bind (from to) (selection-bounds pane)
       (loop for row in (pane-rows pane)
             for y from 14 by +line-height+
-            do (when from (paint-selected canvas row y from to))
-               (paint-row canvas row y)))))
+            do (when from (paint-selection-in-row canvas row y from to))
+               (paint-text-row canvas row y)))))
 
 ;;; Scrolling.
 
@@ -167,7 +168,9 @@ and TO, lists (number column)."
   "Scroll PANE down by COUNT lines, but not beyond the end of the transcript."
   (let ((transcript (pane-transcript pane)))
     (setf (pane-scrolled pane)
-          (kept-in-view pane (+ (or (pane-last pane) (transcript-newest transcript)) count))
+          (possible-last-line pane (+ (or (last-line-in-view pane)
+                                          (transcript-newest transcript))
+                                      count))
           (pane-entered pane) (transcript-entered transcript))
     (repaint-if-changed pane)))
 
@@ -175,7 +178,7 @@ and TO, lists (number column)."
   (let* ((transcript (pane-transcript pane))
          (count (transcript-count transcript))
          (rows (nth-value 1 (columns-and-rows pane)))
-         (last (pane-last pane))
+         (last (last-line-in-view pane))
          (below (if last (- (transcript-newest transcript) last) 0)))
     (values (max 0 (- count rows below)) rows count)))
 
@@ -194,7 +197,7 @@ and TO, lists (number column)."
 
 ;;; Selecting.
 
-(defun place-at (pane x y)
+(defun transcript-position-at (pane x y)
   "Return the line and column of the transcript at X, Y of PANE, as a list (number column). Return
 NIL if PANE shows no text."
   (let* ((rows (pane-rows pane))
@@ -207,7 +210,7 @@ NIL if PANE shows no text."
 (defun selected-text (pane)
   "Return the selected text of PANE, or its whole transcript if nothing is selected."
   (let ((transcript (pane-transcript pane)))
-    (multiple-value-bind (from to) (selection pane)
+    (multiple-value-bind (from to) (selection-bounds pane)
       (if from
           (text-between transcript from to)
           (format nil "~{~A~^~%~}"
@@ -217,17 +220,17 @@ NIL if PANE shows no text."
 (defmethod handle-click ((pane transcript-pane) button x y)
   (when (eq button :left)
     (setf (pane-drag pane) :text
-          (pane-mark pane) (place-at pane x y)
+          (pane-mark pane) (transcript-position-at pane x y)
           (pane-point pane) (pane-mark pane))
     (repaint-if-changed pane)))
 
 (defmethod handle-drag ((pane transcript-pane) x y)
-  (setf (pane-point pane) (place-at pane x y))
+  (setf (pane-point pane) (transcript-position-at pane x y))
   (repaint-if-changed pane))
 
 (defmethod handle-drop ((pane transcript-pane) x y)
   (declare (ignore x y))
-  (when (selection pane) (share-text (clim:port pane) (selected-text pane) '(:primary))))
+  (when (selection-bounds pane) (share-text (clim:port pane) (selected-text pane) '(:primary))))
 
 (defmethod handle-hover ((pane transcript-pane) x y)
   (declare (ignore x y)))

@@ -5,7 +5,7 @@
 ;;; The thread of a window handles its mouse and its keys. If it waited in a debugger, no one could
 ;;; answer there.
 
-(defun refuse-debugger (condition hook)
+(defun signal-debugger-refused (condition hook)
   "Signal MISUSE instead of entering the debugger for CONDITION in the thread of a window."
   (declare (ignore hook))
   (reject-use "Drawing code has called the debugger (~A), which a window does not allow. Call ~
@@ -15,12 +15,12 @@
 (defmacro without-debugger (&body body)
   "Run BODY. An attempt in BODY to enter the debugger signals an error instead."
   `(let ((*break-on-user-error* nil) (*debugger-refused-p* t))
-     (with-debugger-hook (#'refuse-debugger) ,@body)))
+     (with-debugger-hook (#'signal-debugger-refused) ,@body)))
 
 (defun call-guarded-command (window title function)
   (handler-case (funcall function)
     (error (condition)
-      (say-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
+      (write-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
 
 (defmacro with-guarded-command ((window title) &body body)
   "Run BODY, which executes the command TITLE. If BODY signals an error, print it in WINDOW."
@@ -49,27 +49,27 @@ arguments, after each change."
   ;; How many lines the user has entered.
   (entered 0 :type fixnum))
 
-(defun begin-line-of (transcript)
+(defun begin-transcript-line (transcript)
   (push "" (transcript-lines transcript))
   (incf (transcript-count transcript))
   (incf (transcript-newest transcript)))
 
-(defun add-part (transcript part)
+(defun add-to-last-line (transcript part)
   "Add PART to the last line of TRANSCRIPT. A return character in PART erases the line before it."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))
-      (begin-line-of transcript))
+      (begin-transcript-line transcript))
     (setf (first (transcript-lines transcript))
           (uiop:strcat (first (transcript-lines transcript))
                        (subseq part (if return (1+ return) 0))))))
 
 (defun add-text (transcript text)
   (loop for (part . more) on (uiop:split-string text :separator '(#\Newline))
-        do (add-part transcript part)
-           (when more (begin-line-of transcript))))
+        do (add-to-last-line transcript part)
+           (when more (begin-transcript-line transcript))))
 
-(defun forget-lines (transcript)
+(defun drop-old-lines (transcript)
   "Drop the oldest lines of TRANSCRIPT if there are too many. The first line then says that earlier
 lines are gone."
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
@@ -83,22 +83,22 @@ lines are gone."
   (with-lock ((transcript-lock transcript))
     (funcall function)
     (incf (transcript-total transcript))
-    (forget-lines transcript))
+    (drop-old-lines transcript))
   (funcall (transcript-news transcript)))
 
-(defun say (transcript text)
+(defun write-to-transcript (transcript text)
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
-(defun say-in-window (window &rest arguments)
+(defun write-in-window (window &rest arguments)
   "Format ARGUMENTS, as FORMAT does, and add the text to the transcript of WINDOW."
-  (say (window-transcript window) (apply #'format nil arguments)))
+  (write-to-transcript (window-transcript window) (apply #'format nil arguments)))
 
-(defun say-entered (transcript text)
+(defun write-entered-line (transcript text)
   (call-changing-transcript transcript (lambda ()
                                          (incf (transcript-entered transcript))
                                          (add-text transcript text))))
 
-(defun unsay (transcript text)
+(defun erase-last-line (transcript text)
   "Erase the last line of TRANSCRIPT if it is TEXT."
   (call-changing-transcript
    transcript
@@ -106,7 +106,7 @@ lines are gone."
      (when (string= text (first (transcript-lines transcript)))
        (setf (first (transcript-lines transcript)) "")))))
 
-(defun go-on-from (transcript lines)
+(defun set-initial-lines (transcript lines)
   "Make LINES, newest first, the lines of TRANSCRIPT, which has not been shown yet."
   (call-changing-transcript
    transcript
@@ -159,11 +159,11 @@ column) of a line and a column."
   (:documentation "An output stream that adds its output to a transcript."))
 
 (defmethod stream-write-string ((stream transcript-stream) string &optional (start 0) end)
-  (say (stream-transcript stream) (subseq string start end))
+  (write-to-transcript (stream-transcript stream) (subseq string start end))
   string)
 
 (defmethod stream-write-char ((stream transcript-stream) char)
-  (say (stream-transcript stream) (string char))
+  (write-to-transcript (stream-transcript stream) (string char))
   char)
 
 (defmethod stream-line-column ((stream transcript-stream))

@@ -48,7 +48,7 @@ per second, or NIL."
 
 ;;; Looking.
 
-(defun busy-p (simulation sample)
+(defun blocking-code-text (simulation sample)
   "Return a text about the user code that has blocked SIMULATION since the last look, or NIL if no
 code has."
   (multiple-value-bind (text calls) (users-code-under-way simulation)
@@ -56,23 +56,23 @@ code has."
          (= (simulation-tick simulation) (sample-last-tick sample))
          text)))
 
-(defun rate-set (simulation)
+(defun chosen-rate (simulation)
   "Return the tick rate that was set for SIMULATION: ticks per second or :FREE. Return NIL if
 SIMULATION has no rate."
   (if (live-p simulation)
       (simulation-rate simulation)
       (nth-value 1 (ars-magna.cli:pace-of simulation))))
 
-(defun paused-here-p (simulation)
+(defun paused-until-resume-p (simulation)
   "True if SIMULATION is paused, as a live run or as a trial, so that RESUME continues it."
   (if (live-p simulation)
       (paused-p simulation)
       (eq :paused (ars-magna.cli:pace-of simulation))))
 
-(defun state-of (simulation sample)
+(defun time-state (simulation sample)
   "Return two values: the keyword of STATE-WORDS that says how time passes in SIMULATION, and a text
 that continues the words, or NIL."
-  (let ((busy (busy-p simulation sample)))
+  (let ((busy (blocking-code-text simulation sample)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:pace-of simulation))))
            :over)
@@ -87,37 +87,38 @@ that continues the words, or NIL."
           ((let ((*simulation* simulation)) (plans)) :waiting)
           (t :idle))))
 
-(defconstant +measure+ 10 "The least number of ticks for a measurement of the rate.")
+(defconstant +least-measured-ticks+ 10 "The least number of ticks for a measurement of the rate.")
 
-(defun begin-measuring (sample tick seconds)
+(defun begin-rate-measurement (sample tick seconds)
   (setf (sample-tick sample) tick
         (sample-seconds sample) seconds))
 
-(defun measure (sample tick seconds)
+(defun measure-rate (sample tick seconds)
   "Return the measured rate in ticks per second, or NIL if it is unknown. TICK and SECONDS are the
 present tick and time."
   (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
-    (when (or (minusp ticks) (and (> elapsed 0.9) (or (>= ticks +measure+) (> elapsed 5))))
+    (when (or (minusp ticks)
+              (and (> elapsed 0.9) (or (>= ticks +least-measured-ticks+) (> elapsed 5))))
       ;; Rounded to useful digits.
       (setf (sample-reached sample)
             (unless (minusp ticks)
               (let ((rate (/ ticks elapsed)))
                 (if (< rate 20) (/ (round rate 1/10) 10) (round rate)))))
-      (begin-measuring sample tick seconds))
+      (begin-rate-measurement sample tick seconds))
     (sample-reached sample)))
 
-(defun progress-of (simulation sample)
+(defun measure-progress (simulation sample)
   "Return a PROGRESS object for SIMULATION. SAMPLE has the results of the last look, and is
 updated."
-  (multiple-value-bind (state more) (state-of simulation sample)
+  (multiple-value-bind (state more) (time-state simulation sample)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
       (setf (sample-last-tick sample) tick)
       (unless (eq state :running)
         (setf (sample-reached sample) nil)
-        (begin-measuring sample tick seconds))
+        (begin-rate-measurement sample tick seconds))
       (make-progress :state state :more more
-                     :rate (rate-set simulation)
-                     :reached (and (eq state :running) (measure sample tick seconds))))))
+                     :rate (chosen-rate simulation)
+                     :reached (and (eq state :running) (measure-rate sample tick seconds))))))
 
 ;;;; Snapshots
 
@@ -129,9 +130,10 @@ updated."
 ;;; somewhere, a thing moved at the prompt) call no observer, nor does a run that pauses; the pacer
 ;;; looks for such changes twice a second.
 
-(defconstant +pause+ 0.028
+(defconstant +seconds-after-picture+ 0.028
   "The seconds from painting a picture to requesting the next snapshot.")
-(defconstant +patience+ 0.5 "The seconds between two checks for changes between ticks.")
+(defconstant +seconds-between-checks+ 0.5
+  "The seconds between two checks for changes between ticks.")
 
 (defstruct (watcher (:constructor make-watcher (robot news &optional (gone #'values)))
                     (:copier nil))
@@ -148,7 +150,7 @@ quick. The function GONE is called with the reason when the watched run has been
   (snapshot nil)
   (wanted-p t)
   (stale-p nil)
-  ;; What TRACES-OF-CHANGE was when the snapshot was made.
+  ;; What COUNT-OF-CHANGES was when the snapshot was made.
   (traces 0 :type fixnum)
   (painted (make-semaphore "painted") :read-only t)
   (over (make-semaphore "over") :read-only t)
@@ -164,16 +166,16 @@ quick. The function GONE is called with the reason when the watched run has been
   ;; What GRAPHICS-SCALE* was when that was looked at last.
   (scale graphics-scale*))
 
-(defun traces-of-change (simulation)
+(defun count-of-changes (simulation)
   "Return a number that changes whenever a program changes SIMULATION between ticks."
   (let ((journal (simulation-journal simulation)))
     (if journal (journal-length journal) 0)))
 
-(defun publish (watcher simulation)
+(defun publish-snapshot (watcher simulation)
   "Make a snapshot of SIMULATION, whose ticks must not pass meanwhile, and report it to the window."
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
-        (watcher-traces watcher) (traces-of-change simulation)
+        (watcher-traces watcher) (count-of-changes simulation)
         (watcher-snapshot watcher)
         (let ((old (watcher-snapshot watcher)))
           (take-snapshot (simulation-world simulation)
@@ -182,25 +184,25 @@ quick. The function GONE is called with the reason when the watched run has been
                               old))))
   (funcall (watcher-news watcher)))
 
-(defun painted (watcher)
+(defun report-painted (watcher)
   "Record that the last snapshot of WATCHER was painted, so that the next may be made."
   (signal-semaphore (watcher-painted watcher)))
 
-(defun fetch (watcher)
+(defun fetch-snapshot (watcher)
   "Make a snapshot between two ticks if WATCHER still wants one. If a program passes the ticks
 itself, do nothing, because the next tick makes the snapshot."
   (let ((simulation (watcher-simulation watcher)))
     (when (and simulation (live-p simulation))
       (asking (simulation)
-        (when (watcher-wanted-p watcher) (publish watcher simulation))))))
+        (when (watcher-wanted-p watcher) (publish-snapshot watcher simulation))))))
 
 ;;; The pacer.
 
-(defun fetch-if-changed (watcher)
+(defun fetch-snapshot-if-changed (watcher)
   (let ((simulation (watcher-simulation watcher)))
-    (when (and simulation (/= (watcher-traces watcher) (traces-of-change simulation)))
+    (when (and simulation (/= (watcher-traces watcher) (count-of-changes simulation)))
       (setf (watcher-wanted-p watcher) t)
-      (fetch watcher))))
+      (fetch-snapshot watcher))))
 
 ;; A run that is being started again is over for a moment.
 (defun check-run-over (watcher)
@@ -211,31 +213,31 @@ itself, do nothing, because the next tick makes the snapshot."
       (funcall (watcher-gone watcher) reason))
     (setf (watcher-over-before-p watcher) (and reason t))))
 
-(defun look-at-progress (watcher)
+(defun check-progress (watcher)
   "Determine how time passes in the run of WATCHER, and report a change to the window."
   (let ((simulation (watcher-simulation watcher)))
     (when simulation
       ;; The run continues meanwhile, and a look may come when something is half done.
-      (let ((new (or (ignore-errors (progress-of simulation (watcher-sample watcher)))
+      (let ((new (or (ignore-errors (measure-progress simulation (watcher-sample watcher)))
                      (watcher-progress watcher))))
         (unless (equalp new (watcher-progress watcher))
           (setf (watcher-progress watcher) new)
           (funcall (watcher-news watcher)))))))
 
-(defun look-at-scale (watcher)
+(defun check-graphics-scale (watcher)
   (unless (eql graphics-scale* (shiftf (watcher-scale watcher) graphics-scale*))
     (funcall (watcher-news watcher))))
 
-(defun look-for-plans (watcher)
-  (when (look-at-plans (watcher-plans watcher))
+(defun check-plans (watcher)
+  (when (update-look-if-changed (watcher-plans watcher))
     (funcall (watcher-news watcher))))
 
-(defun look-for-changes (watcher)
+(defun check-for-changes (watcher)
   "Check the run of WATCHER for changes that no observer reports."
-  (look-for-plans watcher)
-  (look-at-progress watcher)
-  (look-at-scale watcher)
-  (fetch-if-changed watcher)
+  (check-plans watcher)
+  (check-progress watcher)
+  (check-graphics-scale watcher)
+  (fetch-snapshot-if-changed watcher)
   (check-run-over watcher))
 
 (defun run-pacer (watcher)
@@ -243,17 +245,17 @@ itself, do nothing, because the next tick makes the snapshot."
         until (watcher-over-p watcher)
         do (when (wait-on-semaphore (watcher-painted watcher)
                                     (max 0.001 (- next (seconds-now))))
-             (wait-on-semaphore (watcher-over watcher) +pause+)
-             (look-for-plans watcher)
+             (wait-on-semaphore (watcher-over watcher) +seconds-after-picture+)
+             (check-plans watcher)
              (setf (watcher-wanted-p watcher) t)
-             (when (watcher-stale-p watcher) (fetch watcher)))
+             (when (watcher-stale-p watcher) (fetch-snapshot watcher)))
            (when (<= next (seconds-now))
-             (setf next (+ (seconds-now) +patience+))
-             (look-for-changes watcher))))
+             (setf next (+ (seconds-now) +seconds-between-checks+))
+             (check-for-changes watcher))))
 
 ;;; Beginning and ending.
 
-(defun leave-simulation (simulation observer)
+(defun stop-observing (simulation observer)
   "Remove OBSERVER from SIMULATION, unless SIMULATION is NIL."
   (when simulation
     (asking (simulation) (remove-observer observer simulation))))
@@ -267,16 +269,16 @@ itself, do nothing, because the next tick makes the snapshot."
       (keep-history simulation)
       (setf (watcher-observer watcher) (lambda (simulation)
                                          (if (watcher-wanted-p watcher)
-                                             (publish watcher simulation)
+                                             (publish-snapshot watcher simulation)
                                              (setf (watcher-stale-p watcher) t)))
             (watcher-sample watcher) (make-sample :last-tick tick :tick tick
                                                   :seconds (seconds-now))
             (watcher-simulation watcher) simulation)
-      (leave-simulation old observer)
-      (direct-look (watcher-plans watcher) simulation)
+      (stop-observing old observer)
+      (set-look-simulation (watcher-plans watcher) simulation)
       (asking (simulation)
         (add-observer (watcher-observer watcher) simulation)
-        (publish watcher simulation))))
+        (publish-snapshot watcher simulation))))
   watcher)
 
 (defun pace-pictures (watcher)
@@ -306,8 +308,8 @@ for another reason."
   (setf (watcher-over-p watcher) t)
   (signal-semaphore (watcher-over watcher))
   (signal-semaphore (watcher-painted watcher))
-  (direct-look (watcher-plans watcher) nil)
-  (leave-simulation (shiftf (watcher-simulation watcher) nil) (watcher-observer watcher))
+  (set-look-simulation (watcher-plans watcher) nil)
+  (stop-observing (shiftf (watcher-simulation watcher) nil) (watcher-observer watcher))
   (let ((pacer (watcher-pacer watcher)))
     ;; When Lisp exits, the pacer may have ended before.
     (when (and pacer (not (eq pacer (current-thread))))

@@ -6,19 +6,19 @@
 ;;; is handled. Handling it paints the panes that have changed, as one picture. Everything in the
 ;;; window happens in its own thread.
 
-(defparameter *parts*
+(defparameter *window-parts*
   `((world world-pane) (state detail-pane :display :state)
     (designators designators-pane :display :designators) (cameras detail-pane :display :cameras)
     (hands detail-pane :display :hands) (bins detail-pane :display :bins) (plan plan-pane)
     (transcript transcript-pane) (interactor interactor-pane) (strip strip-pane) (bar bar-pane)
     (menus menu-pane)
     ,@(loop for section in +titled+
-            collect (list (title-name section) 'title-pane :section section))
+            collect (list (title-pane-name section) 'title-pane :section section))
     ,@(loop for name in +splitters+ collect (list name 'splitter-pane)))
   "Lists (name class option...): the parts of a window except its popup, in the order of painting.")
 
-(defun make-parts ()
-  (loop for (name class . options) in *parts*
+(defun make-window-parts ()
+  (loop for (name class . options) in *window-parts*
         collect (apply #'clim:make-pane class :name name options)))
 
 (clim:define-application-frame robot-window ()
@@ -62,13 +62,13 @@
   (:panes
    (popup (clim:make-pane 'popup-pane :name 'popup :enabled-p nil)))
   (:layouts
-   (default (clim:make-pane 'layout-pane :name 'layout :contents (cons popup (make-parts)))))
+   (default (clim:make-pane 'layout-pane :name 'layout :contents (cons popup (make-window-parts)))))
   (:documentation "A window that shows the displays of a robot and has a prompt."))
 
 (defun window-title (robot-name &optional place)
   (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
 
-(defun retitle (window)
+(defun update-title (window)
   (let ((simulation (window-simulation window)))
     ;; Not all of CLIM's ports can do that.
     (ignore-errors
@@ -88,11 +88,11 @@ frames, and :layers, :color-p and :usual-magnification."
           (window-conversation window)
           (begin-conversation (window-transcript window)
                               (lambda () (values-list (window-text-size window)))
-                              (lambda () (match-robot window))
+                              (lambda () (match-window-and-prompt window))
                               (lambda () (close-window window))))
     (push (watcher-robot watcher) (window-robots-shown window))
-    (say-in-window window "Type a command below and press Return, or choose a command from a menu. ~
-                           HELP lists all commands.~%")
+    (write-in-window window "Type a command below and press Return, or choose a command from a ~
+                             menu. HELP lists all commands.~%")
     window))
 
 (defun window-snapshot (window)
@@ -111,7 +111,7 @@ frames, and :layers, :color-p and :usual-magnification."
   (watcher-simulation (window-watcher window)))
 
 (defun display-panes (window)
-  (loop for (name) in *parts*
+  (loop for (name) in *window-parts*
         for pane = (pane-named window name)
         when pane collect pane))
 
@@ -149,18 +149,19 @@ this."
 (defun refresh (window)
   "Paint all panes of WINDOW whose contents have changed, as one picture."
   (let ((snapshot (window-snapshot window)))
-    (restart-if-lost (window-conversation window) (window-simulation window) (shown-robot window))
+    (restart-prompt-if-lost (window-conversation window) (window-simulation window)
+                            (shown-robot window))
     (restart-pacer-if-lost (window-watcher window))
-    (read-events-again (clim:port window))
+    (restart-event-thread (clim:port window))
     (if (shiftf (window-erased-p window) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))
-    (settle window)
+    (rearrange-if-needed window)
     ;; The X server may be slower than we are.
     (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
     (unless (eq snapshot (window-painted window))
       (setf (window-painted window) snapshot)
-      (painted (window-watcher window)))))
+      (report-painted (window-watcher window)))))
 
 (defun request-repaint (window)
   "Request that the whole WINDOW be painted soon. Any thread may call this."
@@ -171,5 +172,5 @@ this."
 
 (defmethod clim:read-frame-command ((window robot-window) &key stream)
   (declare (ignore stream))
-  (type-into (pane-named window 'interactor))
+  (focus-and-repaint (pane-named window 'interactor))
   (call-next-method window :stream nil))

@@ -7,9 +7,9 @@
 ;;; then gets the line that a user would type. (PANE-DRAG PANE) is (subject from-x from-y moved-p).
 
 (defmethod handle-wheel ((pane world-pane) steps x y)
-  (zoom pane (expt 2 (- (signum steps))) x y))
+  (zoom-view pane (expt 2 (- (signum steps))) x y))
 
-(defun point-at (pane x y)
+(defun map-point-at (pane x y)
   "Return the map coordinates of the point that PANE shows at X, Y, in metres, as two values."
   (let ((scale (pane-scale pane)))
     (values (/ (+ x (pane-left pane)) scale) (/ (+ y (pane-top pane)) scale))))
@@ -17,7 +17,7 @@
 (defun cell-at (pane x y)
   (when (in-view-p pane x y)
     (let ((map (view-map pane)))
-      (multiple-value-bind (x y) (point-at pane x y)
+      (multiple-value-bind (x y) (map-point-at pane x y)
         (and (map-index map x y) (map-cell map x y))))))
 
 (defmethod subjects-under ((pane world-pane) x y)
@@ -28,7 +28,8 @@
 (defmethod hover-text ((pane world-pane) x y)
   (let* ((subjects (subjects-under pane x y)) (cell (find-if #'cell-p subjects)))
     (format nil "~{~A~^; ~}"
-            (cl:mapcar #'subject-text (if cell (cons cell (remove cell subjects)) subjects)))))
+            (cl:mapcar #'subject-description
+                        (if cell (cons cell (remove cell subjects)) subjects)))))
 
 (defmethod handle-press ((pane world-pane) button x y)
   (if (eq button :left)
@@ -38,7 +39,7 @@
 ;;; Dragging.
 
 (defun at-middle-p (pane image x y)
-  (multiple-value-bind (to-x to-y) (point-at pane x y)
+  (multiple-value-bind (to-x to-y) (map-point-at pane x y)
     (let ((reach (/ (with-canvas ((make-instance 'canvas) :scale (pane-scale pane))
                       (robot-radius))
                     2 (pane-scale pane))))
@@ -65,7 +66,7 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
         (first (robots-at-middle pane subjects x y))
         (first subjects))))
 
-(defun movable-p (pane subject)
+(defun draggable-now-p (pane subject)
   "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."
   (and (typep subject '(or thing-image robot-image))
        (let ((simulation (window-simulation (window-of pane))))
@@ -74,7 +75,7 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
 (defmethod handle-drag ((pane world-pane) x y)
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
     (when (or moved-p (moved-far-p x y from-x from-y))
-      (cond ((movable-p pane subject)
+      (cond ((draggable-now-p pane subject)
              (setf (pane-drag pane) (list subject from-x from-y t))
              (show-ghost pane subject x y))
             (t (setf (pane-drag pane) (list nil x y t))
@@ -82,13 +83,13 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
 
 (defun show-ghost (pane subject x y)
   "Mark in PANE the place X, Y where SUBJECT would be dropped, and describe the place in the strip."
-  (multiple-value-bind (to-x to-y) (point-at pane x y)
+  (multiple-value-bind (to-x to-y) (map-point-at pane x y)
     (setf (pane-ghost pane) (list x y))
-    (hint (window-of pane)
-          (if (cell-at pane x y)
-              (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]" (subject-title subject)
-                      to-x to-y (wall-at-p (view-map pane) to-x to-y))
-              (format nil "~A: this place is not on the map" (subject-title subject))))
+    (show-hint (window-of pane)
+               (if (cell-at pane x y)
+                   (format nil "~A to ~,2F, ~,2F~:[~;, inside a wall~]" (subject-title subject)
+                           to-x to-y (wall-at-p (view-map pane) to-x to-y))
+                   (format nil "~A: this place is not on the map" (subject-title subject))))
     (repaint-if-changed pane)))
 
 (defun paint-ghost (pane)
@@ -98,11 +99,11 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
         (clim:draw-circle* pane x y radius :filled nil :ink clim:+dark-orange+
                                            :line-thickness 2)))))
 
-(defgeneric moving-line (subject x y window)
+(defgeneric line-that-moves (subject x y window)
   (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, two texts.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
-    (format nil "(move-thing ~A ~A ~A)" (thing-form image) x y))
+    (format nil "(move-thing ~A ~A ~A)" (find-thing-form image) x y))
   (:method ((image robot-image) x y window)
     (if (shown-robot-p window image)
         (format nil "pos ~A ~A" x y)
@@ -113,11 +114,12 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
   (let ((window (window-of pane)))
     (setf (pane-ghost pane) nil)
     (if (cell-at pane x y)
-        (multiple-value-bind (x y) (point-at pane x y)
-          (give-line (window-conversation window)
-                     (moving-line subject (coordinate-text x) (coordinate-text y) window))
-          (hint window ""))
-        (hint window "This place is not on the map."))
+        (multiple-value-bind (x y) (map-point-at pane x y)
+          (run-line-at-prompt (window-conversation window)
+                              (line-that-moves subject (coordinate-text x) (coordinate-text y)
+                                               window))
+          (show-hint window ""))
+        (show-hint window "This place is not on the map."))
     (repaint-if-changed pane)))
 
 (defmethod handle-drop ((pane world-pane) x y)

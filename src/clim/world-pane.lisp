@@ -19,7 +19,7 @@
   (:documentation "The part of the world that a pane shows, with its scale."))
 
 (defconstant +least-scale+ 1/16 "The least scale of a window, in pixels per cell.")
-(defconstant +in-view+ 40 "The number of pixels of the map that always stay in view.")
+(defconstant +pixels-kept-in-view+ 40 "The number of pixels of the map that always stay in view.")
 
 (defun window-map (window)
   (snapshot-map (window-snapshot window)))
@@ -44,34 +44,35 @@ bar."
   (destructuring-bind (left top right bottom) (view-box pane)
     (and (<= left x) (< x right) (<= top y) (< y bottom))))
 
-(defun place-view (pane left top)
+(defun set-view-corner (pane left top)
   "Move the upper left corner of the view of PANE to LEFT, TOP, but keep the map in view."
   (destructuring-bind (from-x from-y to-x to-y) (view-box pane)
     (let ((map (view-map pane)) (scale (pane-scale pane)))
       (flet ((within (value cells from to)
                (clamp (round value)
-                      (- +in-view+ to) (- (floor (* cells scale)) +in-view+ from))))
+                      (- +pixels-kept-in-view+ to)
+                      (- (floor (* cells scale)) +pixels-kept-in-view+ from))))
         (setf (pane-left pane) (within left (map-width map) from-x to-x)
               (pane-top pane) (within top (map-height map) from-y to-y))))))
 
-(defparameter *all-in-view* "The whole map is in view; the wheel zooms in."
+(defparameter *whole-map-hint* "The whole map is in view; the wheel zooms in."
   "The text in the strip if the robot is to be followed but the view shows the whole map.")
 
-(defun fit-no-longer (pane)
+(defun stop-fitting-map (pane)
   "Record that the user has changed the view of PANE, so that it no longer fits the map
 automatically."
   (setf (pane-fitting-p pane) nil)
-  (when (equal *all-in-view* (window-hint (window-of pane)))
+  (when (equal *whole-map-hint* (window-hint (window-of pane)))
     (setf (window-hint (window-of pane)) "")
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 (defun move-view (pane dx dy)
   "Move the view of PANE by DX, DY pixels, but keep the map in view."
-  (fit-no-longer pane)
-  (place-view pane (+ (pane-left pane) dx) (+ (pane-top pane) dy))
+  (stop-fitting-map pane)
+  (set-view-corner pane (+ (pane-left pane) dx) (+ (pane-top pane) dy))
   (repaint-if-changed pane))
 
-(defun zoom (pane factor &optional (x 0) (y 0))
+(defun zoom-view (pane factor &optional (x 0) (y 0))
   "Magnify the view of PANE by FACTOR, so that the point at X, Y of PANE stays in place."
   (let ((old (pane-scale pane)))
     (setf (pane-scale pane) (clamp (* old factor) +least-scale+ 128))
@@ -97,7 +98,7 @@ pixels."
               (pane-left pane) (- (+ left (rest-of width (map-width map))))
               (pane-top pane) (- (+ top (rest-of height (map-height map)))))))))
 
-(defun fit (pane)
+(defun fit-whole-map (pane)
   "Fit the view of PANE to the whole map, now and whenever the size of PANE changes."
   (setf (pane-fitting-p pane) t
         (pane-fitted pane) nil)
@@ -105,7 +106,7 @@ pixels."
 
 ;;; The robot.
 
-(defun robot-place (pane)
+(defun robot-position-in-pane (pane)
   "Return the pixel coordinates in PANE of the window's robot, as two values, or NIL if there is
 none."
   (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
@@ -114,21 +115,21 @@ none."
                  (- (* scale (robot-image-y robot)) (pane-top pane))))))
 
 (defun centre-robot (pane)
-  (multiple-value-bind (x y) (robot-place pane)
+  (multiple-value-bind (x y) (robot-position-in-pane pane)
     (when x
       (destructuring-bind (left top right bottom) (view-box pane)
-        (place-view pane (+ (pane-left pane) (- x (/ (+ left right) 2)))
-                    (+ (pane-top pane) (- y (/ (+ top bottom) 2))))))))
+        (set-view-corner pane (+ (pane-left pane) (- x (/ (+ left right) 2)))
+                         (+ (pane-top pane) (- y (/ (+ top bottom) 2))))))))
 
 (defun off-centre-p (pane)
   "True if the window's robot is outside the middle half of PANE."
-  (multiple-value-bind (x y) (robot-place pane)
+  (multiple-value-bind (x y) (robot-position-in-pane pane)
     (destructuring-bind (left top right bottom) (view-box pane)
       (flet ((off-p (at from to) (> (abs (- at (/ (+ from to) 2))) (/ (- to from) 4))))
         (and x (or (off-p x left right) (off-p y top bottom)))))))
 
 (defun show-robot (pane)
-  (fit-no-longer pane)
+  (stop-fitting-map pane)
   (centre-robot pane)
   (repaint-if-changed pane))
 
@@ -137,7 +138,7 @@ none."
 (defun apply-user-scale (pane)
   "If the user has changed GRAPHICS-SCALE* to a valid scale, give the view of PANE this scale."
   (unless (eql graphics-scale* (shiftf (pane-scale-seen pane) graphics-scale*))
-    (when (handler-case (progn (users-scale) t)
+    (when (handler-case (progn (user-graphics-scale) t)
             (misuse () nil))
       (setf (pane-scale pane) (clamp graphics-scale* 1 128)
             (pane-fitting-p pane) nil)
@@ -208,15 +209,15 @@ none."
                                     :bottom (1+ (cell (+ (pane-top pane) height)))))
                     pane medium))))
 
-(defun forget-terrain (pane)
+(defun free-terrain-pixmap (pane)
   (let ((old (shiftf (pane-terrain pane) nil)))
     (when old (clim:deallocate-pixmap old))))
 
-(defun terrain (pane width height)
+(defun terrain-pixmap (pane width height)
   "Return a pixmap of the terrain that PANE shows, cached while the view does not change."
   (let ((key (terrain-key pane width height)))
     (unless (and (pane-terrain pane) (equal key (pane-terrain-key pane)))
-      (forget-terrain pane)
+      (free-terrain-pixmap pane)
       (setf (pane-terrain pane)
             (multiple-value-bind (screen-width screen-height) (size-on-screen pane)
               (clim:with-output-to-pixmap (medium pane :width screen-width :height screen-height)
@@ -225,7 +226,7 @@ none."
             (pane-terrain-key pane) key))
     (pane-terrain pane)))
 
-(defun show-terrain (pane pixmap)
+(defun copy-terrain-to-pane (pane pixmap)
   "Copy PIXMAP to PANE, which has the same size."
   (clim:with-identity-transformation (pane)
     (multiple-value-bind (width height) (size-on-screen pane)
@@ -235,7 +236,7 @@ none."
   (multiple-value-bind (width height) (pane-size pane)
     (let* ((window (window-of pane)) (snapshot (window-snapshot window)))
       (when (and snapshot (plusp width) (plusp height))
-        (show-terrain pane (terrain pane width height))
+        (copy-terrain-to-pane pane (terrain-pixmap pane width height))
         (clim:with-drawing-options (pane :clipping-region (clim:sheet-region pane))
           (setf (pane-subjects pane)
                 (canvas-subjects

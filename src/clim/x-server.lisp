@@ -9,7 +9,7 @@
 
 ;;; Settings that users make for all programs on a screen, such as its resolution.
 
-(defun resolution-in (resources)
+(defun resolution-in-resources (resources)
   "Return the number of Xft.dpi in RESOURCES, the X resources of a screen as a string, or NIL."
   (loop for line in (uiop:split-string resources :separator '(#\Newline))
         for (name value) = (uiop:split-string line :separator '(#\:))
@@ -22,15 +22,15 @@ or NIL.")
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
-      (resolution-in (or (xlib:get-property (xlib:screen-root screen) :resource_manager
-                                            :type :string :result-type 'string
-                                            :transform #'code-char)
-                         "")))))
+      (resolution-in-resources (or (xlib:get-property (xlib:screen-root screen) :resource_manager
+                                                      :type :string :result-type 'string
+                                                      :transform #'code-char)
+                                   "")))))
 
-(defun lose-port (port)
+(defun close-lost-port (port)
   "Close the windows on PORT, whose X server has gone, and end the thread that reads its events."
   (when (with-lock (*windows-lock*) (member port (shiftf *ports* (remove port *ports*))))
-    (lose-windows port)
+    (close-lost-windows port)
     (ignore-errors (clim:destroy-port port))
     (abort)))
 
@@ -39,25 +39,25 @@ or NIL.")
 ;;; A window manager that comes or goes takes windows off the screen and puts them there again.
 
 ;; McCLIM does not export the names of these events.
-(defun event-called-p (name event)
+(defun event-class-named-p (name event)
   (string= name (type-of event)))
 
 (defmethod clim:handle-event :after ((sheet clime:top-level-sheet-mixin)
                                      (event clim:window-event))
   (let ((window (robot-window-of sheet)))
     (cond ((null window))
-          ((event-called-p "WINDOW-DESTROY-EVENT" event)
+          ((event-class-named-p "WINDOW-DESTROY-EVENT" event)
            (warn-of-closing window "another program has destroyed it")
            (clim:frame-exit window))
-          ((event-called-p "WINDOW-MAP-EVENT" event) (request-repaint window)))))
+          ((event-class-named-p "WINDOW-MAP-EVENT" event) (request-repaint window)))))
 
 ;; McCLIM would now take the window off the screen, after the manager has put it there.
 (defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clim:window-event))
-  (unless (and (robot-window-of sheet) (event-called-p "WINDOW-UNMAP-EVENT" event))
+  (unless (and (robot-window-of sheet) (event-class-named-p "WINDOW-UNMAP-EVENT" event))
     (call-next-method)))
 
-(defun muffle-servers-warning (condition)
+(defun muffle-x-server-warning (condition)
   "Muffle CONDITION if it is McCLIM's warning about a request that the X server could not fulfil."
   (when (eql 0 (search "Received CLX" (princ-to-string condition)))
     (muffle-warning condition)))
@@ -71,7 +71,7 @@ or NIL.")
 
 ;; McCLIM warns of what the server could not do at once, such as giving the focus to a window that
 ;; is just being hidden. That is harmless and not shown at the terminal.
-(defun call-dropping-trouble (port function)
+(defun call-dropping-bad-event (port function)
   "Call FUNCTION, which reads an event of PORT. If it signals an error, discard the event, or close
 PORT if the connection is lost."
   (handler-bind ((warning #'muffle-warning)
@@ -82,8 +82,8 @@ PORT if the connection is lost."
                                  (drop-event port)
                                  ;; The event may have requested painting.
                                  (mapc #'request-repaint (windows-on port))
-                                 (return-from call-dropping-trouble t))
-                                (t (lose-port port))))))
+                                 (return-from call-dropping-bad-event t))
+                                (t (close-lost-port port))))))
     (funcall function)))
 
 ;;; The user may end that thread, as any of Lisp's. Then windows would get no events; one of them
@@ -92,13 +92,13 @@ PORT if the connection is lost."
 (defvar *unread-ports* '()
   "The ports whose events no thread reads, because the thread has ended.")
 
-(defun note-unread (port)
+(defun record-unread-port (port)
   "Record that the thread which reads the events of PORT ends, and refresh the windows on PORT."
   (with-lock (*windows-lock*)
     (when (member port *ports*) (pushnew port *unread-ports*)))
   (mapc #'request-refresh (windows-on port)))
 
-(defun read-events-again (port)
+(defun restart-event-thread (port)
   "Start a new thread that reads the events of PORT, if the old thread has ended."
   (when (with-lock (*windows-lock*)
           (member port (shiftf *unread-ports* (remove port *unread-ports*))))
@@ -106,9 +106,9 @@ PORT if the connection is lost."
 
 (defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)
   (let ((ended-p t))
-    (unwind-protect (multiple-value-prog1 (call-dropping-trouble port #'call-next-method)
+    (unwind-protect (multiple-value-prog1 (call-dropping-bad-event port #'call-next-method)
                       (setf ended-p nil))
-      (when ended-p (note-unread port)))))
+      (when ended-p (record-unread-port port)))))
 
 ;;; Connecting, and the message if that fails.
 
@@ -129,7 +129,7 @@ which keys are down: this answer has 40 bytes."
     (program-fault () t)
     (error () nil)))
 
-(defun words-for-fault (condition clx-fails-p)
+(defun library-fault-message (condition clx-fails-p)
   "Return the message about CONDITION, an error of McCLIM, or of CLX if CLX-FAILS-P, while the X
 server answers."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
@@ -139,16 +139,16 @@ server answers."
           (one-line-text condition)
           (and clx-fails-p ars-magna.clx:*clx-remedy*)))
 
-(defun words-for-no-port (condition)
+(defun connection-failure-message (condition)
   "Return the message about CONDITION, an error that occurred when the connection to the X server
 was opened."
   (typecase condition
-    (program-fault (words-for-fault condition (clx-fails-p)))
+    (program-fault (library-fault-message condition (clx-fails-p)))
     (xlib:connection-failure
      (format nil "No display: the X server ~A, which DISPLAY names, refuses the connection (~A)."
              (environment-value "DISPLAY") (one-line-text condition)))
-    (t (format nil "No display: the X server ~A, which DISPLAY names, does not answer (~A). ~
-                    Start it, or set DISPLAY to another."
+    (t (format nil "No display: the X server ~A, which DISPLAY names, does not answer (~A). Start ~
+                    it, or set DISPLAY to another X server."
                (environment-value "DISPLAY") (one-line-text condition)))))
 
 (defun window-port ()
@@ -158,7 +158,7 @@ was opened."
     (reject-use "No display: the environment variable DISPLAY is not set. ~
                  Set DISPLAY to an X server."))
   (handler-case (clim:find-port)
-    (error (condition) (reject-use "~A" (words-for-no-port condition)))))
+    (error (condition) (reject-use "~A" (connection-failure-message condition)))))
 
 ;;; Waiting for the X server's answers in several threads of one connection.
 
@@ -168,20 +168,20 @@ was opened."
 ;;; event, perhaps for ever, and the picture would stand still until the mouse moves. So it checks
 ;;; once more when no other thread reads.
 
-(defvar *come-p* (constantly nil)
+(defvar *input-arrived-p* (constantly nil)
   "A function that returns true if the input for which this thread reads from the X server has
 arrived.")
 
-(defun read-for (read display timeout force-output-p come-p &rest arguments)
+(defun read-x-server-input (read display timeout force-output-p come-p &rest arguments)
   "Call READ, CLX's function, with the other arguments. COME-P is a function that returns true of
 ARGUMENTS when the awaited input has arrived."
-  (let* ((*come-p* (lambda () (apply come-p arguments)))
+  (let* ((*input-arrived-p* (lambda () (apply come-p arguments)))
          (end (apply read display timeout force-output-p come-p arguments)))
     (if (eq end :come) nil end)))
 
-(defun wait-unless-come (wait display timeout)
+(defun wait-unless-input-arrived (wait display timeout)
   "Call WAIT, CLX's function, unless the awaited input has arrived; in that case return :COME."
-  (if (funcall *come-p*) :come (funcall wait display timeout)))
+  (if (funcall *input-arrived-p*) :come (funcall wait display timeout)))
 
-(wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-for)
-(wrap-function (find-symbol "BUFFER-INPUT-WAIT" "XLIB") #'wait-unless-come)
+(wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-x-server-input)
+(wrap-function (find-symbol "BUFFER-INPUT-WAIT" "XLIB") #'wait-unless-input-arrived)

@@ -8,7 +8,7 @@
 ;;; in its turn. Programs that do not animate show the first frame. A page for browsers can also be
 ;;; stopped and searched: see film.lisp.
 
-(defconstant +frame-limit+ 600
+(defconstant +most-frames+ 600
   "The largest number of frames of a film, unless the user sets :EVERY.")
 
 (defvar *frame-hook* (constantly nil)
@@ -24,7 +24,7 @@ FUNCTION are signalled after the replay."
                ;; Errors in drawing are signalled here. In the replayed run, errors of an observer
                ;; would be messages.
                (let ((*message-queue* queue))
-                 (handler-case (funcall function (in-part last part 'save-animation))
+                 (handler-case (funcall function (snapshot-of-part last part 'save-animation))
                    (error (condition) (setf trouble condition)))))
              (show (simulation)
                (setf last (take-snapshot (simulation-world simulation) last))
@@ -44,7 +44,7 @@ FUNCTION are signalled after the replay."
 (defun frame-step (journal every until)
   (or every
       (max 1 (ceiling (if until (min until (journal-end journal)) (journal-end journal))
-                      +frame-limit+))))
+                      +most-frames+))))
 
 (defun write-frame (canvas index count seconds function)
   "Write frame INDEX, of COUNT frames, as an SVG group that FUNCTION draws. The animation lasts
@@ -67,7 +67,7 @@ SECONDS."
 (defun draw-tick-label (canvas tick)
   "Write TICK in the corner of CANVAS, on a white background, because a wall may be there."
   (let ((text (format nil "tick ~D" tick)))
-    (wipe canvas 0 0 (+ 7 (words-width text)) +line-height+)
+    (fill-with-white canvas 0 0 (+ 7 (monospaced-width text)) +line-height+)
     (draw-text canvas 3 12 text)))
 
 (defun write-frames-of (canvas snapshots rate layers)
@@ -81,9 +81,10 @@ SECONDS."
 
 (defun title-of-journal (journal)
   (let ((header (journal-header journal)))
-    (title-of (mapcar (lambda (robot) (drawn-name (blueprint-name (find-blueprint robot))))
-                      (getf header :robots))
-              (map-name (find-map (getf header :map))))))
+    (robots-and-map-title (mapcar (lambda (robot)
+                                    (drawn-name (blueprint-name (find-blueprint robot))))
+                                  (getf header :robots))
+                          (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)
   "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
@@ -142,15 +143,15 @@ SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the errors of REPLAY."
                      :layers (if (or series title) layers (remove :title layers))
                      :in-color in-color :scale scale :title title :part part)))
     (check-animation series every rate display layers scale title)
-    (check-kinds 'save-animation kinds)
-    (reporting-broken-graphics
+    (check-moment-kinds 'save-animation kinds)
+    (with-broken-graphics-reported
       (replaying (anyway)
         (if series
             (apply #'save-series journal file :display display look)
-            (save-text (if (eq kind :html)
-                           (apply #'film-text journal moments :rate rate :kinds kinds look)
-                           (apply #'animation-text journal :rate rate look))
-                       file))))))
+            (write-picture-file (if (eq kind :html)
+                                    (apply #'film-text journal moments :rate rate :kinds kinds look)
+                                    (apply #'animation-text journal :rate rate look))
+                                file))))))
 
 (defun animation-text (journal &key every until rate layers in-color scale title part)
   (let ((snapshots '()))
@@ -189,7 +190,7 @@ Signals the errors of REPLAY."
                   "a number of frames a second, from 0.001 to 1000")
   (check-map-options 'save-animation :title title :layers layers :scale scale))
 
-(defun files-text (files)
+(defun file-names-text (files)
   "Return a text with the first and the last name of FILES, a list of numbered files in reverse
 order."
   (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
@@ -204,15 +205,15 @@ older files are not deleted, because the user did not request that."
     (when older
       (warning-set (format nil "~A are left from an older and longer series; the new series has ~D ~
                                 files. Delete the older files before you make a film of the series."
-                           (files-text (reverse older)) count)))))
+                           (file-names-text (reverse older)) count)))))
 
-(defun call-for-series (function files)
+(defun call-reporting-written-files (function files)
   "Call FUNCTION, which writes the next file of a series. If FUNCTION signals MISUSE, add the names
 of FILES, the files already written, to the message."
   (handler-case (funcall function)
     (misuse (trouble)
       (if files
-          (reject-use "~A. Written so far: ~A." (one-line-text trouble) (files-text files))
+          (reject-use "~A. Written so far: ~A." (one-line-text trouble) (file-names-text files))
           (error trouble)))))
 
 (defun save-series (journal file &key every until display layers in-color scale title part)
@@ -223,7 +224,8 @@ of FILES, the files already written, to the message."
                             :display display :layers layers
                             :in-color in-color :scale scale :title title)))
       (call-with-frames (lambda (snapshot)
-                          (push (call-for-series (lambda () (save snapshot)) files) files))
+                          (push (call-reporting-written-files (lambda () (save snapshot)) files)
+                                files))
                         journal (frame-step journal every until) until :part part))
     (warn-of-older-frames file (length files))
     (reverse files)))

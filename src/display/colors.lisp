@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.canvas)
 
-(export '(color shade color-called mix-colors +least-contrast+ primaries color-of-primaries
-          luminance color-contrast ink-on tint-grey +textures+ draw-texture))
+(export '(color shade color-named mix-colors +least-contrast+ primaries color-of-primaries
+          luminance color-contrast black-or-white-on tint-grey +textures+ draw-texture))
 
 ;;; A colour is an integer #xRRGGBB, like a pixel in CLX. Vectors run from dark to light. The manual
 ;;; names the vectors; their values are ours. Shade 9 of each is its plain colour. The eight plain
@@ -34,13 +34,14 @@
 (defvar grey* (shades 64 black* white*)
   "A vector of 64 shades of grey: 0 is black, 63 is white (manual B.1).")
 
-(defconstant +plain+ 9 "The index of the plain colour in a vector of 12 shades.")
+(defconstant +plain-shade+ 9 "The index of the plain colour in a vector of 12 shades.")
 
 (defun shades-around (dark plain light)
-  "Return a vector of 12 colours from DARK through PLAIN to LIGHT. PLAIN is at the index +PLAIN+."
+  "Return a vector of 12 colours from DARK through PLAIN to LIGHT. PLAIN is at the index
++PLAIN-SHADE+."
   (concatenate 'simple-vector
-               (shades (1+ +plain+) dark plain)
-               (subseq (shades (- 12 +plain+) plain light) 1)))
+               (shades (1+ +plain-shade+) dark plain)
+               (subseq (shades (- 12 +plain-shade+) plain light) 1)))
 
 (defmacro define-shades (&rest definitions)
   "Define variables whose values are vectors of 12 shades. DEFINITIONS are lists (variable dark
@@ -62,7 +63,7 @@ plain light hue), where HUE is the name of the colour in the documentation."
   (lightblue* #x0A4468 #x9BDBFA #xDAF2FF "light blue")
   (lightviolet* #x421468 #xB585DE #xE8D6F8 "light violet"))
 
-(defun color-called (name)
+(defun color-named (name)
   "Return the vector of shades of the colour NAME, a symbol or string, such as the value of a :color
 attribute. Return NIL if NAME is not a colour."
   (and (typep name '(and (or symbol string) (not null)))
@@ -71,10 +72,10 @@ attribute. Return NIL if NAME is not a colour."
          (and variable (boundp variable) (vectorp (symbol-value variable))
               (symbol-value variable)))))
 
-(defun shade (name &optional (index +plain+))
+(defun shade (name &optional (index +plain-shade+))
   "Return shade INDEX of the colour NAME, the value of a :color attribute. INDEX is from 0, dark, to
 11, light. Return black if NAME is not a colour (manual B; reading 212)."
-  (let ((shades (color-called name)))
+  (let ((shades (color-named name)))
     (if shades (aref shades index) black*)))
 
 ;;; Contrast.
@@ -116,7 +117,7 @@ attribute. Return NIL if NAME is not a colour."
   (let ((a (+ 0.05d0 (luminance color))) (b (+ 0.05d0 (luminance other))))
     (/ (max a b) (min a b))))
 
-(defun ink-on (color)
+(defun black-or-white-on (color)
   "Return black or white, whichever has the higher contrast ratio to COLOR. It is at least 4.5."
   (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
@@ -155,14 +156,14 @@ luminance of GREY, so it is printed in the same grey."
 size of tiles."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
-(defun levels (low high tile part)
+(defun tile-levels (low high tile part)
   "Return the coordinates from LOW up to HIGH at the fraction PART, from 0 to 1, of each tile. TILE
 is the size of tiles."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
 
-(defun slants (left top right bottom tile sign)
+(defun tile-diagonals (left top right bottom tile sign)
   "Return the diagonals of all tiles as lines x1 y1 x2 y2 ..., clipped to the rectangle LEFT, TOP,
 RIGHT, BOTTOM. TILE is the size of tiles. SIGN is 1 for falling diagonals and -1 for rising ones."
   (let* ((ends (list (* sign left) (* sign right)))
@@ -189,10 +190,11 @@ a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
   "Return the lines x1 y1 x2 y2 ... that MARK, a mark of a texture but not a box, draws in the
 rectangle."
   (ecase (first mark)
-    (:across (loop for y in (levels top bottom tile (second mark)) append (list left y right y)))
-    (:down (loop for x in (levels left right tile (second mark)) append (list x top x bottom)))
-    (:rising (slants left top right bottom tile -1))
-    (:falling (slants left top right bottom tile 1))
+    (:across (loop for y in (tile-levels top bottom tile (second mark))
+                   append (list left y right y)))
+    (:down (loop for x in (tile-levels left right tile (second mark)) append (list x top x bottom)))
+    (:rising (tile-diagonals left top right bottom tile -1))
+    (:falling (tile-diagonals left top right bottom tile 1))
     (:stroke (strokes-in-tiles left top right bottom tile (rest mark)))))
 
 (defun mark-boxes (mark left top right bottom tile)

@@ -11,16 +11,16 @@
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
 (defconstant +object-height+ 12 "The height of things in a display, in pixels.")
-(defconstant +largest-unit+ 8
+(defconstant +greatest-size-unit+ 8
   "The greatest width of a thing in a display for each unit of its size, in pixels.")
 
-(defun characters-in (width)
+(defun character-count-in-width (width)
   "Return the number of characters that fit into WIDTH pixels, but at least 1."
   (max 1 (floor width +character-width+)))
 
 (defun draw-line-of-text (canvas x y width text)
   "Write TEXT on one line with its top at Y, cut to end before WIDTH."
-  (let ((count (characters-in (- width x +margin+))))
+  (let ((count (character-count-in-width (- width x +margin+))))
     (draw-text canvas x (+ y 12)
                (if (<= (length text) count)
                    text
@@ -28,7 +28,7 @@
 
 (defun draw-paragraph (canvas x y width text)
   "Write TEXT from Y down, wrapped to end before WIDTH. Return the y coordinate of its end."
-  (dolist (line (wrapped-text text (characters-in (- width x +margin+))) y)
+  (dolist (line (wrapped-text text (character-count-in-width (- width x +margin+))) y)
     (draw-line-of-text canvas x y width line)
     (incf y +line-height+)))
 
@@ -48,7 +48,7 @@
                          (mapcan (lambda (bin) (copy-list (bin-image-contents bin)))
                                  (robot-image-bins robot)))))
 
-(defvar *size-unit* +largest-unit+
+(defvar *size-unit* +greatest-size-unit+
   "The width in pixels of a thing of size 1. It is the same for all things in the displays of a
 robot, so that their widths are in proportion.")
 
@@ -57,8 +57,8 @@ robot, so that their widths are in proportion.")
 ROBOT fits."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
                          :initial-value 0)))
-    (if (< (* largest +largest-unit+) +object-width+)
-        +largest-unit+
+    (if (< (* largest +greatest-size-unit+) +object-width+)
+        +greatest-size-unit+
         (/ +object-width+ largest))))
 
 (defun thing-width (image)
@@ -81,7 +81,7 @@ white."
   (with-color black*
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
 
-(defun draw-block (canvas image x y)
+(defun draw-thing-block (canvas image x y)
   "Draw the thing of IMAGE as a rectangle, which is filled if the thing blocks movement and crossed
 out if the thing obstructs view."
   (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
@@ -90,35 +90,37 @@ out if the thing obstructs view."
       (if solid-p (draw-solid canvas x y width) (draw-hollow canvas x y width)))
     (when (thing-image-obsview-p image)
       (with-gcontext (draw-gcontext* :foreground (if solid-p
-                                                     (ink-on (if in-color*
-                                                                 (thing-image-color image)
-                                                                 black*))
+                                                     (black-or-white-on
+                                                      (if in-color*
+                                                          (thing-image-color image)
+                                                          black*))
                                                      black*))
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
-(defun note-undrawable (image value trouble)
+(defun report-undrawable (image value trouble)
   "Report once that VALUE, the :draw-function of the thing of IMAGE, cannot be used because of
 TROUBLE, a text."
   (unless (gethash value *broken-graphics*)
     (setf (gethash value *broken-graphics*) t)
     (error-set (subject-title image) " is drawn plainly: " trouble)))
 
-(defun draw-by-itself (canvas image x y)
+(defun draw-by-draw-function (canvas image x y)
   "Draw the thing of IMAGE by its :draw-function (reading 211). Return true if the thing has a
 :draw-function that works."
   (let ((value (thing-image-draw-function image)))
     (multiple-value-bind (function trouble) (resolve-draw-function value)
-      (when trouble (note-undrawable image value trouble))
+      (when trouble (report-undrawable image value trouble))
       (and function
-           (or (draw-by-user canvas function (list "the :draw-function of " (subject-title image))
-                             x y +object-width+ +object-height+
-                             (thing-image-thing image) x y +object-width+ +object-height+)
-               (wipe canvas x y +object-width+ +object-height+))))))
+           (or (draw-by-user-code canvas function
+                                  (list "the :draw-function of " (subject-title image))
+                                  x y +object-width+ +object-height+
+                                  (thing-image-thing image) x y +object-width+ +object-height+)
+               (fill-with-white canvas x y +object-width+ +object-height+))))))
 
-(defun draw-object (canvas image x y width)
+(defun draw-thing-with-title (canvas image x y width)
   (with-subject (canvas image)
-    (let ((wide (cond ((draw-by-itself canvas image x y) +object-width+)
-                      (t (draw-block canvas image x y)
+    (let ((wide (cond ((draw-by-draw-function canvas image x y) +object-width+)
+                      (t (draw-thing-block canvas image x y)
                          (thing-width image)))))
       (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
@@ -127,7 +129,7 @@ TROUBLE, a text."
   (cond ((null location))
         ((stringp location) (draw-line-of-text canvas x y width (format nil "in ~A" location)))
         (t (draw-line-of-text canvas x y width "in ")
-           (draw-object canvas location (+ x 21) (+ y 2) width))))
+           (draw-thing-with-title canvas location (+ x 21) (+ y 2) width))))
 
 ;;; Robot state.
 
@@ -149,8 +151,8 @@ TROUBLE, a text."
 (defun draw-denotation (canvas designator x y width)
   (let ((denotation (designator-image-denotation designator)))
     (if (thing-image-p denotation)
-        (draw-object canvas denotation x (+ y 2) width)
-        (draw-line-of-text canvas x y width (denotation-text designator)))))
+        (draw-thing-with-title canvas denotation x (+ y 2) width)
+        (draw-line-of-text canvas x y width (denoted-object-text designator)))))
 
 (defun draw-designators (canvas robot width)
   (loop for y from +margin+ by +line-height+
@@ -163,30 +165,32 @@ TROUBLE, a text."
 
 ;;; Cameras.
 
-(defconstant +dial+ 30 "The radius of the picture of a camera, in pixels.")
+(defconstant +dial-radius+ 30 "The radius of the picture of a camera, in pixels.")
 
-(defun draw-tick (canvas x y angle)
+(defun draw-tracking-line (canvas x y angle)
   (with-color (layer-ink :tracks)
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext*
-                     (append (point-at-distance x y angle (* 1/2 +dial+))
-                             (point-at-distance x y angle +dial+))))))
+                     (append (point-at-distance x y angle (* 1/2 +dial-radius+))
+                             (point-at-distance x y angle +dial-radius+))))))
 
 (defun draw-dial (canvas robot camera y)
   "Draw the field of view of CAMERA as a wedge, in its direction on the map. A short line shows the
 believed direction of the thing that CAMERA tracks."
-  (let* ((x (+ +margin+ +dial+)) (y (+ y +dial+))
+  (let* ((x (+ +margin+ +dial-radius+)) (y (+ y +dial-radius+))
          (half (* 1/2 (camera-image-field-of-view camera)))
          (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
          (track (camera-image-track camera)))
     (with-color (svref lightblue* 9)
-      (draw-arc canvas draw-gcontext* (- x +dial+) (- y +dial+) (* 2 +dial+) (* 2 +dial+)
+      (draw-arc canvas draw-gcontext* (- x +dial-radius+) (- y +dial-radius+)
+                (* 2 +dial-radius+) (* 2 +dial-radius+)
                 (- (+ angle half)) (* 2 half) in-color*))
     (draw-lines canvas draw-gcontext*
-                (append (point-at-distance x y (- angle half) +dial+) (list x y)
-                        (point-at-distance x y (+ angle half) +dial+)))
+                (append (point-at-distance x y (- angle half) +dial-radius+) (list x y)
+                        (point-at-distance x y (+ angle half) +dial-radius+)))
     (when track
-      (draw-tick canvas x y (+ (robot-image-angle robot) (designator-image-angle track))))))
+      (draw-tracking-line canvas x y
+                          (+ (robot-image-angle robot) (designator-image-angle track))))))
 
 (defun view-text (camera)
   "Return a text with the last view that was requested of CAMERA, and its age. Unlike STATUS, a
@@ -202,18 +206,18 @@ denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
     (draw-line-of-text canvas x y width text)
-    (draw-denotation canvas track (+ x (words-width text)) y width)))
+    (draw-denotation canvas track (+ x (monospaced-width text)) y width)))
 
 (defun draw-camera (canvas robot camera y width)
   "Draw CAMERA from Y down. Return the y coordinate of the end of the drawing."
-  (let ((left (+ (* 2 +margin+) (* 2 +dial+))) (track (camera-image-track camera)) (next y))
+  (let ((left (+ (* 2 +margin+) (* 2 +dial-radius+))) (track (camera-image-track camera)) (next y))
     (with-subject (canvas camera)
       (draw-dial canvas robot camera y)
       (setf next (draw-paragraph canvas left (+ y 6) width (view-text camera)))
       (when track (draw-track-line canvas track left next width))
       (draw-location canvas (camera-image-location camera)
                      left (+ next +line-height+) width))
-    (+ +margin+ (max (+ y (* 2 +dial+)) (+ next (* 2 +line-height+))))))
+    (+ +margin+ (max (+ y (* 2 +dial-radius+)) (+ next (* 2 +line-height+))))))
 
 ;;; Hands.
 
@@ -225,7 +229,7 @@ denotes."
     (with-subject (canvas hand)
       (draw-line-of-text canvas +margin+ y width (subject-title hand))
       (if contents
-          (draw-object canvas contents left (+ y 2) width)
+          (draw-thing-with-title canvas contents left (+ y 2) width)
           (draw-line-of-text canvas left y width "empty"))
       (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width)))
   (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
@@ -241,7 +245,7 @@ denotes."
                                (bin-image-closed-p bin)))
     (loop for top from (+ y +line-height+) by +line-height+
           for thing in (bin-image-contents bin)
-          do (draw-object canvas thing (+ (* 4 +margin+)) (+ top 2) width)
+          do (draw-thing-with-title canvas thing (+ (* 4 +margin+)) (+ top 2) width)
           finally (return top))))
 
 ;;;; The displays by name, and all in one picture
@@ -278,7 +282,7 @@ in pixels."
                   (funcall parts robot) :initial-value +margin+)
           (funcall draw canvas robot width)))))
 
-(defun draw-titled (canvas display robot x y)
+(defun draw-titled-display (canvas display robot x y)
   "Draw DISPLAY of ROBOT with its title and a frame, and with its upper left corner at X, Y. Return
 its height in pixels."
   (let ((height 0) (top (+ +line-height+ 2)))
@@ -292,12 +296,12 @@ its height in pixels."
         (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ (+ top height))))
     (+ top height 1)))
 
-(defun draw-all (canvas snapshot robot layers title)
+(defun draw-all-displays (canvas snapshot robot layers title)
   "Draw the world and, beside it, the other five displays. Return the width and height in pixels."
   (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers :title title)
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
-        (incf bottom (+ (draw-titled canvas display robot left bottom) +margin+)))
+        (incf bottom (+ (draw-titled-display canvas display robot left bottom) +margin+)))
       (values (+ left +detail-width+ 1) (max height bottom)))))
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
@@ -306,7 +310,7 @@ its height in pixels."
 Return the width and height in pixels. WIDTH is the width of the displays except the world. LAYERS
 and TITLE are for the world: see DRAW-FRAMED. Call this within WITH-CANVAS."
   (case display
-    (:all (draw-all canvas snapshot robot layers title))
+    (:all (draw-all-displays canvas snapshot robot layers title))
     (:world (draw-framed-world canvas snapshot layers :title title))
     (t (values width (draw-detail canvas display robot width)))))
 

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.canvas)
 
-(export '(*calls-left* draw-rectangle draw-rectangles draw-arc draw-arcs draw-line draw-lines
+(export '(*drawing-calls-left* draw-rectangle draw-rectangles draw-arc draw-arcs draw-line
+          draw-lines
           draw-segments draw-point draw-points draw-glyph draw-glyphs draw-image-glyph
           draw-image-glyphs clear-area +text-font+ text-width paint-text character-width
           draw-words call-with-opacity with-opacity))
@@ -10,11 +11,11 @@
 ;;; Signatures and meanings are those of CLX, so that code written for CLX runs. Arguments are
 ;;; checked here, and the values are of no use.
 
-(defvar *calls-left* nil
+(defvar *drawing-calls-left* nil
   "The number of calls of drawing functions that user code may still make, or NIL for no limit.")
 
 (defun check-drawing (operator canvas gcontext numbers)
-  (when (and *calls-left* (minusp (decf *calls-left*)))
+  (when (and *drawing-calls-left* (minusp (decf *drawing-calls-left*)))
     (reject-use "The drawing code has made too many calls for one thing or cell. ~
                  Correct its endless loop."))
   (unless (canvas-p canvas)
@@ -92,20 +93,20 @@ point before. If FILL-P, fill the polygon. SHAPE has no effect."
     "Draw the separate lines of the sequence SEGMENTS, x1 y1 x2 y2 ...."
   (paint-segments drawable gcontext segments))
 
-(defun pixels (points)
+(defun pixel-rectangles (points)
   "Return a list x y width height ... with a rectangle for the pixel at each of POINTS, x y ...."
   (loop for (x y) on (coerce points 'list) by #'cddr
         append (list (floor x) (floor y) 1 1)))
 
 (define-drawing draw-point (drawable gcontext (x y))
     "Draw the pixel at X, Y."
-  (paint-rectangles drawable gcontext (pixels (list x y)) t))
+  (paint-rectangles drawable gcontext (pixel-rectangles (list x y)) t))
 
 (define-drawing draw-points (drawable gcontext (points 2) &optional relative-p)
     "Draw the pixel at each point of the sequence POINTS, x y .... If RELATIVE-P, each point is
 relative to the point before."
   (paint-rectangles drawable gcontext
-                    (pixels (if relative-p (absolute-points points) points)) t))
+                    (pixel-rectangles (if relative-p (absolute-points points) points)) t))
 
 ;;; Text.
 
@@ -166,7 +167,7 @@ CLX. Signals WRONG-ARGUMENT."
   :test #'equal
   :documentation "The font family of SVG documents in which DRAW-WORDS writes texts.")
 
-(defparameter *widths*
+(defparameter *character-widths*
   (let ((widths (make-array 128 :initial-element 1.02d0)))
     (loop for (width characters) in '((.41d0 " !'(),-./:;I[\\]fijlrt|")
                                       (.59d0 "\"*?J_`ckLsvxyz")
@@ -183,7 +184,7 @@ CLX. Signals WRONG-ARGUMENT."
   (* size (if bold-p 1.2d0 1)
      (loop for character across string
            for code = (char-code character)
-           sum (if (< code 128) (svref *widths* code) 1.1d0))))
+           sum (if (< code 128) (svref *character-widths* code) 1.1d0))))
 
 (defgeneric paint-text (canvas gcontext x y string size anchor upward-p bold-p)
   (:documentation

@@ -20,7 +20,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
   (numbers (make-hash-table :test 'cl:equal) :type hash-table :read-only t)
   (frames '() :type list))
 
-(defun lines-of (text)
+(defun lines-with-newlines (text)
   "Return a list of the lines of TEXT, each with its newline. TEXT ends in a newline."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
@@ -31,7 +31,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
     (flet ((number-of (line)
              (or (gethash line numbers)
                  (setf (gethash line numbers) (hash-table-count numbers)))))
-      (push (cl:map 'vector #'number-of (lines-of text)) (reel-frames reel)))))
+      (push (cl:map 'vector #'number-of (lines-with-newlines text)) (reel-frames reel)))))
 
 (defun reel-lines (reel)
   "Return a vector of the texts of the lines of REEL, by number."
@@ -77,16 +77,16 @@ the differences; other frames are written whole."
              (setf before frame)))
       (write-array #'write-frame frames out))))
 
-(defun frame-at (tick ticks)
+(defun frame-number-at (tick ticks)
   "Return the number of the first frame at or after TICK. TICKS are the ticks of all frames."
   (or (position-if (lambda (shown) (>= shown tick)) ticks)
       (1- (length ticks))))
 
 (defun write-moment (moment ticks several-p out)
   (format out "{\"tick\":~A,\"frame\":~D,\"kind\":\"~(~A~)\",\"text\":"
-          (number-text (moment-tick moment)) (frame-at (moment-tick moment) ticks)
+          (number-text (moment-tick moment)) (frame-number-at (moment-tick moment) ticks)
           (moment-kind moment))
-  (write-quoted (moment-words moment several-p) out)
+  (write-quoted (moment-description moment several-p) out)
   (write-char #\} out))
 
 (defun write-data (reel ticks rate moments several-p out)
@@ -129,7 +129,7 @@ list items. If SEVERAL-P, name the robots of MOMENTS."
   (dolist (moment moments)
     (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
             (number-text (moment-tick moment)))
-    (write-text (moment-words moment several-p) out)
+    (write-text (moment-description moment several-p) out)
     (format out "</button></li>~%"))
   (format out "</ol>~%</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
                <ul id=\"legend\">~%~A</ul></details>~%</aside>~%"
@@ -158,12 +158,12 @@ MOMENTS."
 ;;; Making a film. Its legend stands beside the picture, so that the picture can be large. It lists
 ;;; what any of the frames shows.
 
-(defun movers-text (snapshot layers in-color scale)
+(defun movers-svg (snapshot layers in-color scale)
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
-(defun still-text (snapshot movers layers in-color scale)
+(defun still-svg (snapshot movers layers in-color scale)
   "Return an SVG document of the map of SNAPSHOT with LAYERS. Above the map is the SVG text MOVERS,
 in a group called `movers'."
   (with-output-to-string (out)
@@ -241,13 +241,13 @@ contents."
                                 scale (min (suitable-scale scale snapshot shown)
                                            (fitting-scale snapshot shown))))
                         (add-film-contents snapshot layers contents)
-                        (setf last (movers-text snapshot shown in-color scale)
+                        (setf last (movers-svg snapshot shown in-color scale)
                               first (or first last))
                         (push (snapshot-tick snapshot) ticks)
                         (add-frame last reel))
                       journal (frame-step journal every until) until :part part :watch watch)
     (flet ((still (movers)
-             (still-text (film-contents-opening contents) movers shown in-color scale)))
+             (still-svg (film-contents-opening contents) movers shown in-color scale)))
       (values reel (reverse ticks) (still first) (still last) contents))))
 
 (defun film-text (journal moments &key every until rate kinds layers in-color scale title part)

@@ -31,7 +31,7 @@ simulation itself."
 (defconstant +trail-length+ 4000 "The largest number of points of a trail that are drawn.")
 (defconstant +trail-step+ 0.1d0 "The least distance between the points of a trail, in metres.")
 
-(defun trail-called (name simulation)
+(defun trail-of-robot-named (name simulation)
   "Return the trail of the robot called NAME in SIMULATION, or NIL."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
@@ -50,7 +50,7 @@ pictures show the trail. VARIABLES are bound to the x, y, tick and placements of
              (abs (- y (the double-float (second points)))))
           +trail-step+)))
 
-(defun add-placement (robot tick points)
+(defun add-position-of-placement (robot tick points)
   "Return POINTS of a trail. If ROBOT has been put elsewhere since the newest point, add the place
 where ROBOT was put, because ROBOT may have moved away from there by TICK."
   (if (and points
@@ -59,29 +59,29 @@ where ROBOT was put, because ROBOT may have moved away from there by TICK."
       (list* (robot-put-x robot) (robot-put-y robot) tick (robot-placements robot) points)
       points))
 
-(defun add-place (robot tick points)
+(defun add-present-position (robot tick points)
   "Return POINTS of a trail with a new point for the position of ROBOT at TICK."
   (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
-         (add-placement robot tick points)))
+         (add-position-of-placement robot tick points)))
 
-(defun new-points (points before)
+(defun count-new-points (points before)
   "Return the number of points in POINTS, a trail, before its tail BEFORE."
   (loop for rest on points by #'cddddr until (eq rest before) count t))
 
 (defun extended-trail (trail robot tick)
   "Return a copy of TRAIL, a trail or NIL, with a new point for the position of ROBOT at TICK."
   (let* ((before (and trail (trail-points trail)))
-         (points (add-place robot tick before))
-         (count (+ (if trail (trail-count trail) 0) (new-points points before))))
+         (points (add-present-position robot tick before))
+         (count (+ (if trail (trail-count trail) 0) (count-new-points points before))))
     (if (> count (* 2 +trail-length+))
         (make-trail (subseq points 0 (* 4 +trail-length+)) +trail-length+)
         (make-trail points count))))
 
-(defun note-position (simulation robot)
+(defun record-position (simulation robot)
   "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. This function is called
 in every tick."
   (declare #.*hot* (type robot robot))
-  (let* ((name (robot-name robot)) (trail (trail-called name simulation)))
+  (let* ((name (robot-name robot)) (trail (trail-of-robot-named name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
       (setf (simulation-trails simulation)
             (acons name (extended-trail trail robot (simulation-tick simulation))
@@ -92,10 +92,10 @@ in every tick."
 Return NIL if no trail is recorded. Forks do not record trails, so the last part of their trails is
 a straight line to the present position of ROBOT."
   (let* ((simulation (robot-simulation robot))
-         (trail (trail-called (robot-name robot) simulation)))
+         (trail (trail-of-robot-named (robot-name robot) simulation)))
     (cond ((null trail) '())
           ((moved-p (trail-points trail) (robot-x robot) (robot-y robot))
-           (add-place robot (simulation-tick simulation) (trail-points trail)))
+           (add-present-position robot (simulation-tick simulation) (trail-points trail)))
           (t (trail-points trail)))))
 
 (defun trail-until (tick trail)
@@ -119,7 +119,7 @@ index of a cell that returns true if the cell ends a ray."
                              (map-width map) (map-height map) x y dx dy +no-limit+)
         collect (+ x (* end dx)) collect (+ y (* end dy))))
 
-(defun take-look (camera)
+(defun rays-of-last-view (camera)
   "Return the rays of CAMERA's last view, on the assumption that CAMERA has not moved since."
   (let* ((robot (camera-robot camera))
          (x (robot-x robot)) (y (robot-y robot))
@@ -132,24 +132,24 @@ index of a cell that returns true if the cell ends a ray."
                          (lambda (index) (logtest +opaque+ (aref flags index)))
                          x y first step count))))
 
-(defun note-look (history camera)
+(defun record-last-view (history camera)
   (declare #.*hot* (type history history) (type camera camera))
   (let ((entry (assoc camera (history-looks history) :test #'eq)))
     (unless (or (eq (camera-last-view camera) (and entry (look-view (cdr entry))))
                 (null (robot-cell-index (camera-robot camera))))
-      (let ((look (take-look camera)))
+      (let ((look (rays-of-last-view camera)))
         (if entry
             (setf (cdr entry) look)
             (push (cons camera look) (history-looks history)))))))
 
 ;;; Keeping.
 
-(defun note-moment (history simulation)
+(defun record-present-state (history simulation)
   (declare #.*hot* (type history history))
   (dolist (robot (simulation-robots simulation))
     (declare (type robot robot))
-    (note-position simulation robot)
-    (loop for camera across (robot-cameras robot) do (note-look history camera))))
+    (record-position simulation robot)
+    (loop for camera across (robot-cameras robot) do (record-last-view history camera))))
 
 (defvar *histories* (make-hash-table :test #'eq :weakness :key :synchronized t)
   "A table from simulations to pairs of the history and the observer that records this history.")
@@ -164,14 +164,14 @@ index of a cell that returns true if the cell ends a ray."
 rays of the cameras' last views. Return the history."
   (or (history-of simulation)
       (let* ((history (make-history))
-             (observer (lambda (simulation) (note-moment history simulation))))
+             (observer (lambda (simulation) (record-present-state history simulation))))
         (setf (gethash simulation *histories*) (cons history observer))
         (asking (simulation)
-          (note-moment history simulation)
+          (record-present-state history simulation)
           (add-observer observer simulation))
         history)))
 
-(defun follow-rewind (old new)
+(defun copy-history-after-rewind (old new)
   "Copy the trails of the simulation OLD, up to the present tick of NEW, to the simulation NEW,
 which replaces OLD after a rewind. If a history of OLD is recorded, record a history of NEW
 instead."
@@ -184,4 +184,4 @@ instead."
       (remove-observer (cdr entry) new)
       (keep-history new))))
 
-(attend *rewind-hooks* follow-rewind)
+(attend *rewind-hooks* copy-history-after-rewind)

@@ -78,11 +78,11 @@ pixels from X, Y."
 (defun draw-text (canvas x y text)
   (draw-glyphs canvas draw-gcontext* x y text))
 
-(defun words-width (text)
+(defun monospaced-width (text)
   "Return the width of TEXT in pixels."
   (* +character-width+ (length text)))
 
-(defun wipe (canvas x y width height)
+(defun fill-with-white (canvas x y width height)
   "Fill a box with white. Return NIL."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t)))
@@ -162,7 +162,7 @@ map."
   (hue nil :type (or null color) :read-only t)
   (texture :plain :type keyword :read-only t))
 
-(defun free-texture (name taken)
+(defun choose-texture (name taken)
   "Return a texture for the substance called NAME in a map: its usual texture, or the next one that
 is not in TAKEN, the textures of other substances of the map."
   (let* ((first (or (substance-position name) 0))
@@ -178,7 +178,7 @@ definitions of these substances."
     (loop for name in (stable-sort (copy-list names) #'<
                                    :key (lambda (name)
                                           (or (substance-position name) most-positive-fixnum)))
-          collect (list name (first (push (free-texture name taken) taken))))))
+          collect (list name (first (push (choose-texture name taken) taken))))))
 
 (defun materials-of (map)
   "Return a vector of the materials of the substances of MAP, indexed by the number of the

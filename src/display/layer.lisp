@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(text-layers picture-layers layer-title define-layer layer-named
-          text-layer-named layer-words))
+(export '(text-layers picture-layers layer-title define-layer picture-layer-name
+          text-layer-name layer-prompt-names))
 
 ;;; DEFINE-LAYER defines a layer for menus, the prompt, the documentation, legends, pictures and
 ;;; text maps. The layers themselves are in layers.lisp. A layer is drawn at a depth:
@@ -80,7 +80,7 @@ OPTIONS:
 
 ;;; Layers by name.
 
-(defun layer-called (name)
+(defun find-layer (name)
   "Return the layer called NAME. Signals WRONG-ARGUMENT if there is none."
   (or (find name *layers* :key #'%layer-name)
       (reject-argument 'layer-title "layer" name
@@ -88,16 +88,16 @@ OPTIONS:
 
 (defun layer-title (name)
   "Return the title in menus of the layer NAME, a keyword."
-  (%layer-title (layer-called name)))
+  (%layer-title (find-layer name)))
 
 (defun layer-ink (name)
   "Return the colour of the lines of the layer NAME. If the lines have the colours of robots, return
 the colour of the first robot."
-  (or (%layer-ink (layer-called name)) (nth-ink 0)))
+  (or (%layer-ink (find-layer name)) (nth-ink 0)))
 
-(defun layer-dashes (name) (%layer-dashes (layer-called name)))
+(defun layer-dashes (name) (%layer-dashes (find-layer name)))
 
-(defun layers-at (depth &optional (names (picture-layers)))
+(defun layers-at-depth (depth &optional (names (picture-layers)))
   "Return the layers that are drawn at DEPTH and whose names are in the list NAMES, in the order of
 menus."
   (remove-if-not (lambda (layer)
@@ -110,18 +110,18 @@ menus."
   "Return the names in text maps of the layers that text maps can show."
   (remove nil (mapcar #'%layer-text-name *layers*)))
 
-(defun layer-named (name)
+(defun picture-layer-name (name)
   "Return the name in pictures of a layer. NAME, a keyword, is its name in pictures or in text
 maps."
   (let ((layer (find name *layers* :key #'%layer-text-name)))
     (if layer (%layer-name layer) name)))
 
-(defun text-layer-named (name)
+(defun text-layer-name (name)
   "Return the name in text maps of a layer. NAME, a keyword, is its name in pictures or in text
 maps."
   (let ((layer (find name *layers* :key #'%layer-name)))
     (or (and layer (%layer-text-name layer)) name)))
 
-(defun layer-words (name)
+(defun layer-prompt-names (name)
   "Return a text with the one or two names that the prompt accepts for the layer NAME."
-  (format nil "~A~@[ or ~A~]" name (%layer-text-name (layer-called name))))
+  (format nil "~A~@[ or ~A~]" name (%layer-text-name (find-layer name))))

@@ -7,54 +7,55 @@
 ;;; Terrain never changes, and a canvas may cache it. Movers are drawn over it. Angles grow
 ;;; clockwise from the right, on the map and on the canvas.
 
-(defun shown-at (depth layers image &rest more)
+(defun shown-at-depth (depth layers image &rest more)
   "Return lists (layer shown . MORE) for the layers of the list LAYERS at DEPTH that show something
 of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robot or camera."
-  (loop for layer in (layers-at depth layers)
+  (loop for layer in (layers-at-depth depth layers)
         for shown = (if (%layer-shown layer)
                         (funcall (%layer-shown layer) image)
                         (getf (robot-image-notes image) (%layer-name layer)))
         when shown collect (list* layer shown more)))
 
 (defun shown-below-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT below things, as a list like that of SHOWN-AT, from the
+  "Return what LAYERS show of SNAPSHOT below things, as a list like that of SHOWN-AT-DEPTH, from the
 lowest layer up."
-  (append (shown-at :ways layers snapshot)
+  (append (shown-at-depth :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
-                             append (shown-at :looks layers camera robot snapshot)
-                             append (shown-at :cameras layers camera robot snapshot))
-                append (shown-at :robots layers robot robot snapshot))
-          (shown-at :things layers snapshot)))
+                             append (shown-at-depth :looks layers camera robot snapshot)
+                             append (shown-at-depth :cameras layers camera robot snapshot))
+                append (shown-at-depth :robots layers robot robot snapshot))
+          (shown-at-depth :things layers snapshot)))
 
 (defun shown-above-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT above things, as a list like that of SHOWN-AT."
+  "Return what LAYERS show of SNAPSHOT above things, as a list like that of SHOWN-AT-DEPTH."
   (loop for robot in (snapshot-robots snapshot)
-        append (shown-at :labels layers robot robot snapshot)))
+        append (shown-at-depth :labels layers robot robot snapshot)))
 
-(defun shown-lines (snapshot layers)
-  "Return all that LAYERS show of SNAPSHOT, as a list like that of SHOWN-AT."
+(defun all-shown (snapshot layers)
+  "Return all that LAYERS show of SNAPSHOT, as a list like that of SHOWN-AT-DEPTH."
   (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
 
-(defun draw-shown (canvas shown)
+(defun draw-shown-layers (canvas shown)
   (loop for (layer . arguments) in shown
         do (apply (%layer-draw layer) canvas arguments)))
 
-(defconstant +beyond+ 8
+(defconstant +robot-overhang+ 8
   "The distance in pixels to which robots are drawn beyond the edges of the map. No margin is
 narrower.")
 
 (defun draw-movers (canvas snapshot layers)
   "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them."
-  (let* ((map (snapshot-map snapshot)) (around (* 2 +beyond+))
+  (let* ((map (snapshot-map snapshot)) (around (* 2 +robot-overhang+))
          (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
     (with-clipping (canvas 0 0 width height)
-      (draw-shown canvas (shown-below-things snapshot layers)))
-    (with-clipping (canvas (- +beyond+) (- +beyond+) (+ width around) (+ height around))
+      (draw-shown-layers canvas (shown-below-things snapshot layers)))
+    (with-clipping (canvas (- +robot-overhang+) (- +robot-overhang+)
+                           (+ width around) (+ height around))
       (draw-robots canvas (snapshot-robots snapshot)))
     (with-clipping (canvas 0 0 width height)
       (draw-things canvas (snapshot-things snapshot))
-      (draw-shown canvas (shown-above-things snapshot layers))
+      (draw-shown-layers canvas (shown-above-things snapshot layers))
       (when (member :names layers) (draw-names canvas snapshot layers)))))
 
 ;;;; The layers, in the order of menus
@@ -116,7 +117,7 @@ positions."
 (define-layer :reach "What moves by itself"
   "A dashed ring around each thing that has kickers. The distance that kickers can move a thing is
 unknown."
-  :depth :things :shown 'moving-things :draw 'draw-reach
+  :depth :things :shown 'things-with-kickers :draw 'draw-reach
   :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 
 (define-layer :names "Names"

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(grouped entry-with-sample robot-entry named-entry-with-sample jump-entries))
+(export '(group-by entry-with-sample robot-entry named-entry-with-sample jump-entries))
 
 ;;; An entry is a text with a function of a canvas and of X and Y, in pixels. The function draws a
 ;;; sample around X, Y, at most 16 pixels high and as wide as the entry says.
@@ -35,7 +35,7 @@ MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the samp
   `(named-entry ,name (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)
                 ,@more-and-width))
 
-(defun grouped (objects key)
+(defun group-by (objects key)
   "Return the list OBJECTS divided into lists of the objects for which KEY returns equal values. The
 order of objects is kept."
   (let ((groups '()))
@@ -155,7 +155,7 @@ number and the range of its parameters. The lists are sorted by number."
 
 ;; As the manual says, concave places and beaks have the same mark without colours.
 (defun place-entries (snapshot)
-  (loop for types in (grouped (place-types-of snapshot) #'place-mark-svg)
+  (loop for types in (group-by (place-types-of snapshot) #'place-mark-svg)
         collect (let ((type (first types)))
                   (names-entry (loop for each in types
                                      collect (list (drawn-name (place-type-name each)) ""))
@@ -163,38 +163,39 @@ number and the range of its parameters. The lists are sorted by number."
 
 ;;; Things: each look once, with the names of all things that look so.
 
-(defun sample-half (image)
+(defun sample-half-width (image)
   "Return half the width of the sample of the thing of IMAGE, in pixels. It is as wide as on the map
 if a line of the legend has room for that."
-  (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +largest-thing+))))
-    (half-width image)))
+  (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +greatest-thing-width+))))
+    (thing-half-width image)))
 
 (defun thing-look (image)
   "Return the look of the thing of IMAGE as a list. Things with equal looks can hardly be
 distinguished in a picture."
-  (list (thing-image-color image) (thing-shape image) (round (sample-half image))
+  (list (thing-image-color image) (thing-shape image) (round (sample-half-width image))
         (thing-image-container-p image) (thing-image-obsview-p image)))
 
-(defun thing-kinds (snapshot)
+(defun things-by-look (snapshot)
   "Return lists of images of things that look the same, sorted by the first name in each list."
-  (grouped (stable-sort (coerce (snapshot-things snapshot) 'list)
-                        #'name-before-p :key #'thing-image-name)
-           #'thing-look))
+  (group-by (stable-sort (coerce (snapshot-things snapshot) 'list)
+                         #'name-before-p :key #'thing-image-name)
+            #'thing-look))
 
 (defun names-with-counts (images)
   "Return lists (name more) for the names of IMAGES, images of things. MORE is a text with the
 number of things if several have the same name, else an empty text."
-  (loop for (image . others) in (grouped images #'thing-image-name)
+  (loop for (image . others) in (group-by images #'thing-image-name)
         collect (list (thing-image-name image)
                       (format nil "~@[ (~D)~]" (and others (1+ (length others)))))))
 
 (defun thing-entries (snapshot)
   (if in-color*
-      (loop for images in (thing-kinds snapshot)
+      (loop for images in (things-by-look snapshot)
             collect (let ((image (first images)))
                       (names-entry (names-with-counts images)
                                    (lambda (canvas x y)
-                                     (draw-thing-sample canvas image x y (sample-half image))))))
+                                     (draw-thing-sample canvas image x y
+                                                        (sample-half-width image))))))
       (and (plusp (length (snapshot-things snapshot)))
            (list (entry-with-sample (canvas x y) "thing"
                    (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
@@ -219,7 +220,7 @@ number of things if several have the same name, else an empty text."
   "Return a list with the legend entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump in WAYS.
 A jump is where a robot was put elsewhere. Each of WAYS is a list of pieces, lists x y ... in
 pixels."
-  (and (jumps-seen-p ways (pixels-of (shown-part snapshot)))
+  (and (jump-visible-p ways (pixels-of (shown-part snapshot)))
        (list (entry-with-sample (canvas x y) "put elsewhere"
                (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))
 
@@ -242,18 +243,18 @@ pixels."
       (with-halo ((layer-ink name) :dashes (%layer-dashes layer) :width (%layer-width layer))
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
-(defun further-entries (layers snapshot)
+(defun entries-of-layers (layers snapshot)
   "Return the legend entries that the functions :ENTRIES of LAYERS return for SNAPSHOT."
   (loop for layer in layers
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
 (defun line-entries (snapshot layers)
   "Return the legend entries for the lines that LAYERS draw of SNAPSHOT."
-  (let* ((shown (mapcar #'first (shown-lines snapshot layers)))
+  (let* ((shown (mapcar #'first (all-shown snapshot layers)))
          (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*))
          (drawn (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
     (append (mapcar #'line-entry (remove nil drawn :key #'%layer-legend))
-            (further-entries drawn snapshot))))
+            (entries-of-layers drawn snapshot))))
 
 ;;; The whole.
 
@@ -275,9 +276,9 @@ pixels."
   "Return the legend entries for a picture of SNAPSHOT with LAYERS. LINES are the entries for lines,
 and ROBOTS the entries for robots. OPACITY, from 0 to 1, is the opacity of the map."
   (let* ((terrain (append (wall-entries snapshot)
-                          (further-entries (append (layers-at :under-walls layers)
-                                                   (layers-at :on-walls layers))
-                                           snapshot)))
+                          (entries-of-layers (append (layers-at-depth :under-walls layers)
+                                                     (layers-at-depth :on-walls layers))
+                                             snapshot)))
          (entries (append robots
                           (if (= 1 opacity) terrain (fade-samples terrain opacity))
                           lines

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.display)
 
-(export '(users-scale drawn-scale lines-within draw-framed with-map-svg framed-text))
+(export '(user-graphics-scale drawn-scale wrap-text-to-width draw-framed with-map-svg framed-text))
 
 (defconstant +usual-scale+ 8 "The default of GRAPHICS-SCALE*.")
 
 (define-argument-type 'picture-scale (lambda (value) (and (finite-p value) (<= 1 value 256)))
   "a number of pixels per cell, from 1 to 256")
 
-(defun users-scale ()
+(defun user-graphics-scale ()
   "Return GRAPHICS-SCALE* if the user has set a value other than the default, else NIL. Signals
 MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (cond ((eql graphics-scale* +usual-scale+) nil)
@@ -18,15 +18,18 @@ MISUSE if GRAPHICS-SCALE* is not a valid scale."
                         so that each picture has the scale that suits its map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
-;;; Without a given scale, the map with title, coordinates and scale bar is at most +WIDEST+ by
-;;; +HIGHEST+. The legend is added beside the map or below it, where the page becomes less large.
+;;; Without a given scale, the map with title, coordinates and scale bar is at most
+;;; +GREATEST-MAP-WIDTH+ by +GREATEST-MAP-HEIGHT+ pixels large. The legend is added beside
+;;; the map or below it, where the page becomes less large.
 ;;; The map does not shrink for it.
 
-(defconstant +widest+ 900 "The greatest width of a map if no scale is given, in pixels.")
-(defconstant +highest+ 700 "The greatest height of a map if no scale is given, in pixels.")
+(defconstant +greatest-map-width+ 900
+  "The greatest width of a map if no scale is given, in pixels.")
+(defconstant +greatest-map-height+ 700
+  "The greatest height of a map if no scale is given, in pixels.")
 (defconstant +least-scale+ 4 "The least scale if no scale is given, in pixels per cell.")
 (defconstant +greatest-scale+ 40 "The greatest scale if no scale is given, in pixels per cell.")
-(defconstant +readable-scale+ 20
+(defconstant +greatest-unmagnified-scale+ 20
   "With a scale of more pixels per cell, a picture is magnified as a whole, with its text.")
 
 (defstruct (arrangement (:copier nil))
@@ -37,11 +40,11 @@ SUBTITLE are lists of lines."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
   (title '()) (subtitle '()) (width 0) (height 0))
 
-(defun room-for (layers)
+(defun margins-for-layers (layers)
   "Return a list of the margins at the left, top, right and bottom of the map that LAYERS need,
 without a legend."
   (flet ((shown-p (layer) (member layer layers)))
-    (if (layers-at :margin layers)
+    (if (layers-at-depth :margin layers)
         (list (if (shown-p :coordinates) 36 8)
               (+ (if (shown-p :title) 22 8) (if (shown-p :coordinates) 18 0))
               14
@@ -61,33 +64,34 @@ without a legend."
 (defun scale-bar-width (width)
   "Return the width in pixels of the scale bar and its text for a map WIDTH metres wide."
   (let ((metres (bar-metres width)))
-    (+ (to-pixels metres) 8 (words-width (metres-text metres)))))
+    (+ (to-pixels metres) 8 (monospaced-width (metres-text metres)))))
 
 ;;; Scales.
 
 (defun fitting-scale (snapshot layers)
   "Return the scale, in pixels per cell, with which a picture of SNAPSHOT with LAYERS is at most
-+WIDEST+ by +HIGHEST+ pixels large."
-  (destructuring-bind (left top right bottom) (room-for layers)
++GREATEST-MAP-WIDTH+ by +GREATEST-MAP-HEIGHT+ pixels large."
+  (destructuring-bind (left top right bottom) (margins-for-layers layers)
     (multiple-value-bind (width height) (shown-size snapshot)
-      (clamp (floor (min (/ (- +widest+ left right) width) (/ (- +highest+ top bottom) height)))
+      (clamp (floor (min (/ (- +greatest-map-width+ left right) width)
+                         (/ (- +greatest-map-height+ top bottom) height)))
              +least-scale+ +greatest-scale+))))
 
 (defun suitable-scale (scale snapshot layers)
   "Return SCALE unless it is NIL. Otherwise return GRAPHICS-SCALE* if the user has set a value, else
 the scale that suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (or scale
-      (users-scale)
+      (user-graphics-scale)
       (fitting-scale snapshot layers)))
 
 (defun drawn-scale (scale snapshot layers)
   "Return two values: the scale, in pixels per cell, with which to draw a picture of SNAPSHOT with
 LAYERS, and the factor by which to magnify the drawn picture, with text and lines. SCALE is the
 wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than suits the map and than
-+READABLE-SCALE+."
++GREATEST-UNMAGNIFIED-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
          (zoom (max 1 (/ (rational scale)
-                         (max +readable-scale+ (fitting-scale snapshot layers))))))
+                         (max +greatest-unmagnified-scale+ (fitting-scale snapshot layers))))))
     (values (/ scale zoom) zoom)))
 
 ;;; The legend.
@@ -104,7 +108,7 @@ wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than su
 (defun column-width (column)
   "Return the width in pixels of COLUMN, a list of legend entries."
   (+ 18 (samples-width column)
-     (loop for entry in column maximize (words-width (entry-text entry)))))
+     (loop for entry in column maximize (monospaced-width (entry-text entry)))))
 
 (defun columns-width (columns)
   (reduce #'+ (mapcar #'column-width columns)))
@@ -124,7 +128,7 @@ possible."
 
 (defun arrangement-with (room edge map-height columns below-p)
   "Return an arrangement for a map MAP-HEIGHT pixels high and EDGE pixels wide, with the legend
-COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of ROOM-FOR."
+COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of MARGINS-FOR-LAYERS."
   (destructuring-bind (left top right bottom) room
     (let ((below (if (and columns below-p) (+ 8 (columns-height columns)) 0))
           (beside (if (and columns (not below-p)) (columns-width columns) 0)))
@@ -135,21 +139,21 @@ COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of ROOM-FOR."
        :height (+ top (max (+ map-height bottom below)
                            (if below-p 0 (+ 8 (columns-height columns)))))))))
 
-(defun area (arrangement)
+(defun arrangement-area (arrangement)
   (* (arrangement-width arrangement) (arrangement-height arrangement)))
 
 (defun arrange (snapshot layers entries)
   "Return the smallest arrangement for a picture of SNAPSHOT with LAYERS and a legend of ENTRIES."
   (multiple-value-bind (width height) (shown-size snapshot)
     (flet ((with (columns below-p)
-             (arrangement-with (room-for layers)
+             (arrangement-with (margins-for-layers layers)
                                (max (to-pixels width)
                                     (if (member :scale-bar layers) (scale-bar-width width) 0))
                                (to-pixels height) columns below-p)))
       (let ((beside (with (columns-of entries (max 8 (floor (to-pixels height) +line-height+)))
                           nil))
             (below (with (columns-below entries (max (to-pixels width) 480)) t)))
-        (if (< (area below) (area beside)) below beside)))))
+        (if (< (arrangement-area below) (arrangement-area beside)) below beside)))))
 
 ;;; The title is as wide as the rest, and has as many lines as it needs for that.
 
@@ -159,7 +163,7 @@ COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of ROOM-FOR."
 (defconstant +subtitle-step+ 15 "The distance between lines of a subtitle, in pixels.")
 (defconstant +least-title+ 360 "The least room for a line of a title, in pixels.")
 
-(defun lines-within (text width per-character)
+(defun wrap-text-to-width (text width per-character)
   "Return TEXT, a string or NIL, as a list of lines of at most WIDTH pixels. A character is
 PER-CHARACTER pixels wide."
   (and text
@@ -176,8 +180,8 @@ PER-PIXEL times the height of its font."
          (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
          (title-character (* per-pixel +title-size+))
          (subtitle-character (* per-pixel +subtitle-size+))
-         (titles (lines-within title room title-character))
-         (subtitles (lines-within subtitle room subtitle-character))
+         (titles (wrap-text-to-width title room title-character))
+         (subtitles (wrap-text-to-width subtitle room subtitle-character))
          (more (+ (* +title-step+ (1- (length titles))) (* +subtitle-step+ (length subtitles)))))
     (setf (arrangement-title arrangement) titles
           (arrangement-subtitle arrangement) subtitles
@@ -193,15 +197,15 @@ PER-PIXEL times the height of its font."
 
 ;;; The parts. The origin is that of the map.
 
-(defun title-of (robots map)
+(defun robots-and-map-title (robots map)
   "Return a title for a picture with ROBOTS, a list of their names as drawn, in the map named MAP."
   (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
 (defun map-title (snapshot)
   "Return the default title of a picture of SNAPSHOT: its robots, map and tick."
   (format nil "~A, tick ~D"
-          (title-of (mapcar #'robot-title (snapshot-robots snapshot))
-                    (map-name (snapshot-map snapshot)))
+          (robots-and-map-title (mapcar #'robot-title (snapshot-robots snapshot))
+                                (map-name (snapshot-map snapshot)))
           (snapshot-tick snapshot)))
 
 (defun draw-title (canvas arrangement)
@@ -221,11 +225,11 @@ PER-PIXEL times the height of its font."
       (dolist (metres (marks-between left right 40))
         (let ((x (to-pixels (- metres left))) (text (princ-to-string metres)))
           (draw-segments canvas draw-gcontext* (list x -6 x -2))
-          (draw-text canvas (- x (/ (words-width text) 2)) -8 text)))
+          (draw-text canvas (- x (/ (monospaced-width text) 2)) -8 text)))
       (dolist (metres (marks-between top bottom 40))
         (let ((y (to-pixels (- metres top))) (text (princ-to-string metres)))
           (draw-segments canvas draw-gcontext* (list -6 y -2 y))
-          (draw-text canvas (- -8 (words-width text)) (+ y 4) text))))))
+          (draw-text canvas (- -8 (monospaced-width text)) (+ y 4) text))))))
 
 (defun draw-scale-bar (canvas width y)
   "Draw the scale bar for a map WIDTH metres wide, with its middle at Y."
@@ -255,7 +259,7 @@ the samples in its column."
   (multiple-value-bind (metres-wide metres-high) (shown-size snapshot)
     (let ((width (to-pixels metres-wide)) (height (to-pixels metres-high)))
       (flet ((shown-p (layer) (member layer layers)))
-        (when (layers-at :margin layers)
+        (when (layers-at-depth :margin layers)
           (with-color +frame-ink+
             (draw-rectangle canvas draw-gcontext* -1 -1 (1+ width) (1+ height))))
         (when (shown-p :title) (draw-title canvas arrangement))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(make-moment make-moments-watcher moments-in-remarks checked-moments check-kinds
-          moments-of-kinds sort-moments moment-weight moment-words))
+(export '(make-moment make-moments-watcher moments-in-remarks checked-moments check-moment-kinds
+          moments-of-kinds sort-moments moment-weight moment-description))
 
 ;;; A journal records requests, not their results. So it is replayed. After each tick a watcher
 ;;; compares what each robot holds and has in its bins, and what failed last, with the tick before.
@@ -43,7 +43,7 @@ the contents of each bin. FAILURE is the last failure of a command."
                     (cl:map 'list #'storage-bin-contents (robot-bins robot))
                     (robot-failure robot)))
 
-(defun observation-before (new)
+(defun initial-observation (new)
   "Return the observation to compare NEW, the first one, with. It has empty hands, as at the
 beginning of a run."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
@@ -84,7 +84,7 @@ without arguments, returns the moments found so far, the earliest first."
     (values (lambda (simulation)
               (dolist (robot (simulation-robots simulation))
                 (let* ((new (observe-robot robot))
-                       (old (or (cdr (assoc robot observations)) (observation-before new))))
+                       (old (or (cdr (assoc robot observations)) (initial-observation new))))
                   (setf moments
                         (revappend (moments-between old new robot (simulation-tick simulation))
                                    moments)
@@ -125,7 +125,7 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
                                end)))
     own))
 
-(defun check-kinds (operator kinds)
+(defun check-moment-kinds (operator kinds)
   "Signal WRONG-ARGUMENT unless KINDS, an argument of OPERATOR, is T or a list of kinds of moments."
   (unless (or (eq kinds t)
               (and (proper-list-p kinds) (subsetp kinds +moment-kinds+)))
@@ -154,7 +154,7 @@ all."
     (:part 2)
     (t 1)))
 
-(defun moment-words (moment several-p)
+(defun moment-description (moment several-p)
   "Return a description of MOMENT. If SEVERAL-P, the description names the robot."
   (format nil "~@[~A: ~]~A"
           (and several-p (moment-robot moment) (drawn-name (moment-robot moment)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(draw-ring robot-radius half-width))
+(export '(draw-ring robot-radius thing-half-width))
 
 ;;; Things.
 
@@ -10,19 +10,20 @@
 ;;; :size, the larger the shape. A black outline and a white halo make it visible on any ground,
 ;;; whatever its colour is.
 
-(defconstant +largest-thing+ 3/2 "The greatest width of a thing on the map, in cells.")
-(defconstant +largest-size+ 64
-  "The least :size of things that are drawn as wide as +LARGEST-THING+.")
-(defconstant +least-width+ 5 "The width of a thing of size 0 on the map, in pixels.")
+(defconstant +greatest-thing-width+ 3/2 "The greatest width of a thing on the map, in cells.")
+(defconstant +size-of-widest-things+ 64
+  "The least :size of things that are drawn as wide as +GREATEST-THING-WIDTH+.")
+(defconstant +least-thing-width+ 5 "The width of a thing of size 0 on the map, in pixels.")
 
 ;; As reading 241 says.
-(defun half-width (image)
+(defun thing-half-width (image)
   "Return half the width of the thing of IMAGE on the map, in pixels. The drawn area grows with the
 size of the thing. Without colours all things have the same width."
   (if in-color*
-      (let ((largest (max (1+ +least-width+) (* graphics-scale* +largest-thing+)))
-            (part (/ (clamp (thing-image-size image) 0 +largest-size+) +largest-size+)))
-        (* 1/2 (+ +least-width+ (* (- largest +least-width+) (sqrt part)))))
+      (let ((largest (max (1+ +least-thing-width+) (* graphics-scale* +greatest-thing-width+)))
+            (part (/ (clamp (thing-image-size image) 0 +size-of-widest-things+)
+                     +size-of-widest-things+)))
+        (* 1/2 (+ +least-thing-width+ (* (- largest +least-thing-width+) (sqrt part)))))
       (* 3/8 graphics-scale*)))
 
 ;;; Shapes. Things that move by themselves have a point.
@@ -46,7 +47,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
         (:house (polygon x (- top (/ half 2)) right (- y (/ half 3)) right bottom
                          left bottom left (- y (/ half 3))))))))
 
-(defun draw-body (canvas image x y half)
+(defun draw-thing-body (canvas image x y half)
   "Draw the shape of the thing of IMAGE with a halo and an outline."
   (let ((shape (thing-shape image)) (more (if (thing-image-moving-p image) 3/2 1)))
     (with-gcontext (draw-gcontext* :foreground white*)
@@ -55,7 +56,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
     (with-color (thing-image-color image)
       (draw-shape canvas shape x y (max 1 (- half more))))))
 
-(defun draw-rim (canvas image x y half)
+(defun draw-container-rim (canvas image x y half)
   "Draw the rim of the container of IMAGE, or a dot if there is no room for a rim."
   (let ((inner (- half 3)))
     (cond ((< inner 3/2) (draw-circle canvas x y 1 t))
@@ -71,9 +72,9 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
 
 (defun draw-thing-sample (canvas image x y half)
   "Draw the thing of IMAGE in colour around X, Y. The drawing reaches HALF pixels to each side."
-  (draw-body canvas image x y half)
-  (with-color (ink-on (thing-image-color image))
-    (when (thing-image-container-p image) (draw-rim canvas image x y half))
+  (draw-thing-body canvas image x y half)
+  (with-color (black-or-white-on (thing-image-color image))
+    (when (thing-image-container-p image) (draw-container-rim canvas image x y half))
     (when (thing-image-obsview-p image)
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
@@ -94,10 +95,10 @@ visible on walls."
     (let ((x (to-pixels (thing-image-x image))) (y (to-pixels (thing-image-y image))))
       (with-subject (canvas image)
         (if in-color*
-            (draw-thing-sample canvas image x y (half-width image))
+            (draw-thing-sample canvas image x y (thing-half-width image))
             (draw-upright-line canvas x y))))))
 
-(defun moving-things (snapshot)
+(defun things-with-kickers (snapshot)
   (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
 
 (defun draw-reach (canvas images)
@@ -105,7 +106,7 @@ visible on walls."
         do (with-halo ((layer-ink :reach) :dashes (layer-dashes :reach))
              (draw-circle canvas (to-pixels (thing-image-x image))
                           (to-pixels (thing-image-y image))
-                          (+ (half-width image) (/ graphics-scale* 2) 2) nil))))
+                          (+ (thing-half-width image) (/ graphics-scale* 2) 2) nil))))
 
 ;;; Robots.
 
@@ -118,7 +119,7 @@ visible on walls."
 cells are large, so that the ring fits into a map of one cell."
   (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
-(defconstant +between-rings+ 4 "The distance between the rings of robots on one spot, in pixels.")
+(defconstant +ring-distance+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
 (defun same-spot-p (image other)
   "True if the robots of IMAGE and OTHER are so close that their rings would look like one ring."
@@ -130,14 +131,14 @@ cells are large, so that the ring fits into a map of one cell."
   "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. The ring is around the rings of
 earlier ROBOTS on the same spot."
   (+ (robot-radius)
-     (* +between-rings+ (count-on-spot image (ldiff robots (member image robots))))))
+     (* +ring-distance+ (count-on-spot image (ldiff robots (member image robots))))))
 
 (defun count-on-spot (image robots)
   (count-if (lambda (other) (same-spot-p image other)) robots))
 
 (defun spot-radius (image robots)
   "Return the radius in pixels of the widest ring that ROBOTS have on the spot of IMAGE."
-  (+ (robot-radius) (* +between-rings+ (1- (count-on-spot image robots)))))
+  (+ (robot-radius) (* +ring-distance+ (1- (count-on-spot image robots)))))
 
 (defun draw-arrowhead (canvas x y radius angle fill-p)
   (let ((tip (point-at-distance x y angle radius)))
@@ -298,7 +299,7 @@ from the cross to the real position of the object."
             (draw-segments canvas draw-gcontext*
                            (list x y (to-pixels true-x) (to-pixels true-y)))))
         (with-halo (color :width 2) (draw-cross canvas x y 4))
-        (wipe canvas (+ x 6) (- y 13) (+ 2 (words-width number)) 13)
+        (fill-with-white canvas (+ x 6) (- y 13) (+ 2 (monospaced-width number)) 13)
         (with-color color (draw-text canvas (+ x 7) (- y 3) number))))))
 
 (defun designator-boxes (designators robot snapshot)
@@ -307,7 +308,7 @@ from the cross to the real position of the object."
   (loop for designator in designators
         for (x y) = (pixels-of (believed-place robot designator))
         for text = (princ-to-string (designator-image-number designator))
-        collect (list (- x 5) (- y 13) (+ x 9 (words-width text)) (+ y 5))))
+        collect (list (- x 5) (- y 13) (+ x 9 (monospaced-width text)) (+ y 5))))
 
 (defun draw-designators-on-map (canvas designators robot snapshot)
   (declare (ignore snapshot))

@@ -102,12 +102,12 @@ ambiguous."
           (and (find-overlapping-item (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))
 
-(defun within-shown-p (snapshot box)
+(defun box-within-shown-part-p (snapshot box)
   (destructuring-bind ((left top right bottom) (first-x first-y last-x last-y))
       (list box (pixels-of (shown-part snapshot)))
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
-(defun cells-below (map box function)
+(defun some-cell-under-box-p (map box function)
   "True if FUNCTION, a function of the index of a cell, returns true for a cell of MAP that BOX
 overlaps. BOX must be within MAP."
   (destructuring-bind (left top right bottom) box
@@ -118,12 +118,12 @@ overlaps. BOX must be within MAP."
                                 thereis (funcall function (+ column (* row width)))))))))
 
 (defun on-wall-p (map box)
-  (cells-below map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
+  (some-cell-under-box-p map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
 
 (defun on-mark-p (map box)
-  (cells-below map box (lambda (index)
-                         (drawn-place-type-p (svref (map-place-types map)
-                                                    (aref (map-places map) index))))))
+  (some-cell-under-box-p map box (lambda (index)
+                                   (drawn-place-type-p (svref (map-place-types map)
+                                                              (aref (map-places map) index))))))
 
 (defun on-trail-p (snapshot box)
   (destructuring-bind (left top right bottom) box
@@ -150,7 +150,7 @@ must be in the part of the map that SNAPSHOT shows, and must overlap no box of t
 OWN-P must return true for the box."
   (loop with best = nil and least = nil
         for box in boxes
-        for cost = (and (within-shown-p snapshot box)
+        for cost = (and (box-within-shown-part-p snapshot box)
                         (not (find-overlapping-item box taken))
                         (funcall own-p box)
                         (box-cost snapshot layers box anywhere-p))

@@ -37,14 +37,14 @@ already has lower-case letters."
 (defun pile-key (image)
   "Return a list for the image of a thing. The lists of two images are EQUALP if one thing hides the
 other."
-  (list (thing-image-x image) (thing-image-y image) (half-width image)))
+  (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-spot (image hidden)
   "Return the spot of the thing of IMAGE. HIDDEN is the number of things that this thing hides."
   (make-spot (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
                      (and (plusp hidden) hidden))
              (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
-             (half-width image)))
+             (thing-half-width image)))
 
 (defun thing-spots (images)
   "Return the spots of the things in IMAGES that no other thing hides. IMAGES are in the order of
@@ -86,7 +86,7 @@ with the name of SPOT."
                           (confusable-p spot other)))
                    spots)))
 
-(defun nearest-in (box x y)
+(defun nearest-point-in-box (box x y)
   "Return the point of BOX nearest to X, Y, as two values."
   (destructuring-bind (left top right bottom) box
     (values (clamp x left right) (clamp y top bottom))))
@@ -110,7 +110,7 @@ pixels.")
 overlap."
   (let ((x (spot-x spot)) (y (spot-y spot)) (half (spot-half spot)))
     (flet ((off (x y)
-             (multiple-value-call #'pixel-distance x y (nearest-in box x y))))
+             (multiple-value-call #'pixel-distance x y (nearest-point-in-box box x y))))
       (if (spot-robot spot)
           (- (off x y) half)
           (destructuring-bind (left top right bottom) box
@@ -146,7 +146,7 @@ belong to them."
   :documentation "The possible lengths of lines to names, in pixels. The shortest possible length is
 used.")
 
-(defun box-at-end (x y angle width)
+(defun name-box-at-line-end (x y angle width)
   "Return the box of a name WIDTH pixels wide at the end of a line that ends at X, Y in direction
 ANGLE."
   (flet ((before (share size)
@@ -164,12 +164,12 @@ first."
                      collect (destructuring-bind (x y)
                                  (point-at-distance (spot-x spot) (spot-y spot) angle
                                                     (+ length (spot-half spot)))
-                               (box-at-end x y angle width)))))
+                               (name-box-at-line-end x y angle width)))))
 
 (defun leader-ends (spot box)
   "Return the two ends of the line from SPOT to BOX, as a list x y x y."
   (let ((x (spot-x spot)) (y (spot-y spot)))
-    (multiple-value-bind (to-x to-y) (nearest-in box x y)
+    (multiple-value-bind (to-x to-y) (nearest-point-in-box box x y)
       (append (point-at-distance x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
               (list to-x to-y)))))
 
@@ -219,7 +219,7 @@ return NIL."
 
 (defun marked-boxes (snapshot layers)
   "Return the boxes of the numbers and rings that LAYERS draw of SNAPSHOT."
-  (loop for (layer . arguments) in (shown-lines snapshot layers)
+  (loop for (layer . arguments) in (all-shown snapshot layers)
         when (%layer-boxes layer) append (apply (%layer-boxes layer) arguments)))
 
 (defun boxes-of-robots (robots)
@@ -232,7 +232,7 @@ return NIL."
 (defun write-name (canvas name box)
   "Write NAME in BOX, on a white background."
   (destructuring-bind (left top right bottom) box
-    (wipe canvas left top (- right left) (- bottom top))
+    (fill-with-white canvas left top (- right left) (- bottom top))
     (with-color black*
       (draw-words canvas draw-gcontext* (+ 1 left) (- bottom 2) name :size +name-size+))))
 

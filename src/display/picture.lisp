@@ -54,14 +54,14 @@ Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (check-picture 'svg-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
     (with-output-to-string (stream)
-      (write-picture stream (in-part snapshot part 'svg-picture)
+      (write-picture stream (snapshot-of-part snapshot part 'svg-picture)
                      (snapshot-robot snapshot (robot-name robot))
                      :display display :layers layers :in-color in-color :scale scale
                      :title title))))
 
 ;;; Files.
 
-(defun save-text (text file)
+(defun write-picture-file (text file)
   (write-file-anew (lambda (out) (write-string text out)) file "the picture"))
 
 (defun png-remedy (words)
@@ -105,7 +105,7 @@ possible types."
   "Write the SVG document SVG to FILE, as it is or as PNG if KIND is :PNG. Return the truename of
 FILE."
   (ecase kind
-    (:svg (save-text svg file))
+    (:svg (write-picture-file svg file))
     (:png (let ((file (merge-pathnames file)))
             (write-file-anew (lambda (out) (write-png svg out file)) file "the picture"
                              :kind :image)))))
@@ -113,7 +113,7 @@ FILE."
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does. ROBOT is the image of a robot in
 SNAPSHOT. LOOK are options of WRITE-PICTURE."
-  (save-svg (reporting-broken-graphics
+  (save-svg (with-broken-graphics-reported
               (with-output-to-string (stream)
                 (apply #'write-picture stream snapshot robot :display display look)))
             file (picture-kind 'save-snapshot file)))
@@ -128,7 +128,7 @@ needed but not installed."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
-    (save-snapshot (in-part snapshot part 'save-picture)
+    (save-snapshot (snapshot-of-part snapshot part 'save-picture)
                    (snapshot-robot snapshot (robot-name robot)) file
                    :display display :layers layers :in-color in-color :scale scale
                    :title title)))
@@ -139,18 +139,18 @@ needed but not installed."
   "Return the coordinates of POINT, a PT or a list (x y), as a list (x y)."
   (if (pt-p point) (list (pt-x point) (pt-y point)) point))
 
-(defun in-pixels (point)
+(defun point-in-pixels (point)
   (pixels-of (coordinates-of point)))
 
 (defun draw-ways-on-map (canvas ways)
   (draw-way-lines canvas (loop for way in ways for position from 0
                                collect (make-way-line position
-                                                      (list (mapcan #'in-pixels way)))))
+                                                      (list (mapcan #'point-in-pixels way)))))
   (draw-way-marks canvas
                   (loop for way in ways for position from 0
                         for color = (nth-ink position)
-                        collect `(draw-start ,@(in-pixels (first way)) ,color)
-                        collect `(draw-goal ,@(in-pixels (first (last way))) ,color))))
+                        collect `(draw-way-start ,@(point-in-pixels (first way)) ,color)
+                        collect `(draw-way-end ,@(point-in-pixels (first (last way))) ,color))))
 
 (defun way-p (way)
   (and (consp way) (proper-list-p way)
@@ -182,8 +182,10 @@ way")
                               ((format nil "way~:[~; ~D~]" (rest ways) (1+ position)) "" 38)
                             (draw-way-sample canvas (list (- x 18) y (+ x 18) y)
                                              (nth-ink position) position))))
-          (and ways (list (entry-with-sample (canvas x y) "start" (draw-start canvas x y black*))
-                          (entry-with-sample (canvas x y) "end" (draw-goal canvas x y black*))))))
+          (and ways (list (entry-with-sample (canvas x y) "start"
+                            (draw-way-start canvas x y black*))
+                          (entry-with-sample (canvas x y) "end"
+                            (draw-way-end canvas x y black*))))))
 
 (defun snapshot-of-map (map)
   "Return a snapshot of the current world if its map is MAP, else a snapshot of MAP without robots
@@ -214,7 +216,7 @@ rsvg-convert is needed but not installed."
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
     (check-ways-on map ways)
-    (save-svg (reporting-broken-graphics
+    (save-svg (with-broken-graphics-reported
                 (way-picture-text (snapshot-of-map map) ways
                                   :layers layers :in-color in-color :scale scale
                                   :title (or title (drawn-name (map-name map)))))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.display)
 
 (export '(snapshot take-snapshot snapshot-of snapshot-robot thing-image robot-image camera-image
-          hand-image bin-image designator-image in-part shown-part))
+          hand-image bin-image designator-image snapshot-of-part shown-part))
 
 ;;; A snapshot is taken between ticks and never changes, so that any thread can draw it. It has
 ;;; images of things, robots and their parts. If a thing has not changed since the snapshot before,
@@ -107,7 +107,7 @@ estimate."
 
 ;;; Things.
 
-(defun moving-p (thing) (and (thing-kickers thing) t))
+(defun has-kickers-p (thing) (and (thing-kickers thing) t))
 
 (defun image-of-thing (thing &optional old)
   "Return the image of THING. OLD is an earlier image of THING or NIL. If OLD is still valid, return
@@ -117,14 +117,14 @@ OLD."
              (eq attributes (thing-image-attributes old))
              (= (thing-x thing) (thing-image-x old))
              (= (thing-y thing) (thing-image-y old))
-             (eq (moving-p thing) (thing-image-moving-p old)))
+             (eq (has-kickers-p thing) (thing-image-moving-p old)))
         old
         (make-thing-image
          :thing thing :x (thing-x thing) :y (thing-y thing) :attributes attributes
          :location (thing-holders-text thing)
          :color (shade (get-attribute thing :color)) :size (thing-size thing)
          :obsmove-p (thing-obsmove-p thing) :obsview-p (thing-obsview-p thing)
-         :container-p (plusp (thing-capacity thing)) :moving-p (moving-p thing)
+         :container-p (plusp (thing-capacity thing)) :moving-p (has-kickers-p thing)
          :draw-function (get-attribute thing :draw-function)))))
 
 (defun image-serial (image) (thing-serial (thing-image-thing image)))
@@ -215,7 +215,7 @@ DENOTATION is NIL."
          :axis (odometer-origin-angle odometer)
          :spread (width angle))))))
 
-(defun notes-of (robot)
+(defun layer-notes-of-robot (robot)
   "Return a property list from names of layers to the values of their :note functions for ROBOT."
   (loop for layer in *layers*
         when (%layer-note layer)
@@ -235,7 +235,7 @@ DENOTATION is NIL."
      :designators (images #'image-of-designator (live-designators robot))
      :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
      :trail (points-of-trail robot)
-     :planned-way (robot-remaining-way robot) :notes (notes-of robot))))
+     :planned-way (robot-remaining-way robot) :notes (layer-notes-of-robot robot))))
 
 ;;; The whole.
 
@@ -285,7 +285,7 @@ image of the first robot."
                        (format nil "a list (left top right bottom) of integers within a map of ~D ~
                                     x ~D cells, or NIL" width height)))))
 
-(defun in-part (snapshot part operator)
+(defun snapshot-of-part (snapshot part operator)
   "Return a snapshot of PART of the map of SNAPSHOT. PART is a list (left top right bottom) in
 cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is not a part of the
 map."

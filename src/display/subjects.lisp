@@ -19,15 +19,15 @@ most 180. Radians are never reduced (reading 50), so they can be several turns."
     (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
             (< (+ pi 0.01d0) (abs angle)))))
 
-(defun plain-text (value)
+(defun attribute-value-text (value)
   "Return VALUE, the value of an attribute, as a text in lower case. Numbers are decimals without
 exponents."
   (typecase value
     (float (if (within-reason-p value) (number-text value) (princ-to-string value)))
-    (cons (format nil "(~{~A~^ ~})" (mapcar #'plain-text (ensure-list value))))
+    (cons (format nil "(~{~A~^ ~})" (mapcar #'attribute-value-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 
-(defun denotation-text (image)
+(defun denoted-object-text (image)
   "Return a text that names what the designator of IMAGE denotes, or FALSE if it denotes nothing
 (manual B)."
   (let ((denotation (designator-image-denotation image)))
@@ -42,7 +42,7 @@ lines.")
     (format stream "~A ~:[at ~,2F, ~,2F~;~:*~A~]~%" (subject-title image)
             (thing-image-location image) (thing-image-x image) (thing-image-y image))
     (loop for (name value) in (thing-image-attributes image)
-          do (format stream "  ~(~S~) ~A~%" name (plain-text value)))
+          do (format stream "  ~(~S~) ~A~%" name (attribute-value-text value)))
     (let ((contents (thing-contents (thing-image-thing image))))
       (when contents (format stream "  contains ~{~A~^, ~}~%" contents))))
   (:method ((image robot-image) stream)
@@ -51,7 +51,7 @@ lines.")
   (:method ((image designator-image) stream)
     (format stream "~A, ~(~A~), ~,2F m away at ~A: ~A~%" (subject-title image)
             (designator-image-type image) (designator-image-distance image)
-            (angle-text (designator-image-angle image)) (denotation-text image)))
+            (angle-text (designator-image-angle image)) (denoted-object-text image)))
   (:method ((image camera-image) stream)
     (format stream "~A looks in a direction ~A from the heading~%" (subject-title image)
             (angle-text (camera-image-angle image))))
@@ -78,35 +78,37 @@ lines.")
 ;;; snapshot, so contents are made of their slots. Things, maps and vectors of images are compared
 ;;; themselves.
 
-(defgeneric content (object)
+(defgeneric visible-content (object)
   (:documentation "Return an object that represents what is visible of OBJECT, an image or a list of
 images. It can be compared by EQUAL.")
   (:method (object) object)
-  (:method ((list cons)) (cons (content (car list)) (content (cdr list))))
+  (:method ((list cons)) (cons (visible-content (car list)) (visible-content (cdr list))))
   (:method ((image thing-image))
     (list (thing-image-thing image) (thing-image-attributes image)
           ;; A name may mean another function now.
           (resolve-draw-function (thing-image-draw-function image)))))
 
-(defmacro define-content (image (&rest slots) &rest parts)
+(defmacro define-visible-content (image (&rest slots) &rest parts)
   "Define the method of CONTENT for the image type IMAGE. It returns the values of SLOTS and the
 contents of PARTS, which are slots with images."
   (flet ((reader (slot) (symbolicate image '- slot)))
-    `(defmethod content ((image ,image))
+    `(defmethod visible-content ((image ,image))
        (list ,@(loop for slot in slots collect `(,(reader slot) image))
-             ,@(loop for part in parts collect `(content (,(reader part) image)))))))
+             ,@(loop for part in parts collect `(visible-content (,(reader part) image)))))))
 
-(define-content designator-image (number type angle distance x y) denotation)
-(define-content camera-image (angle look view) track location)
-(define-content hand-image () contents location)
-(define-content bin-image (closed-p) contents)
-(define-content odometer-image (x y heading width height axis spread))
-(define-content robot-image (x y angle trail planned-way) cameras odometer designators notes)
+(define-visible-content designator-image (number type angle distance x y) denotation)
+(define-visible-content camera-image (angle look view) track location)
+(define-visible-content hand-image () contents location)
+(define-visible-content bin-image (closed-p) contents)
+(define-visible-content odometer-image (x y heading width height axis spread))
+(define-visible-content robot-image (x y angle trail planned-way)
+  cameras odometer designators notes)
 
 (defun snapshot-content (snapshot)
   "Return an object that represents the looks of the world in SNAPSHOT. The objects for two
 snapshots are EQUAL if their worlds look the same."
-  (list (snapshot-map snapshot) (snapshot-things snapshot) (content (snapshot-robots snapshot))))
+  (list (snapshot-map snapshot) (snapshot-things snapshot)
+        (visible-content (snapshot-robots snapshot))))
 
 (defun display-content (display robot)
   "Return an object that represents what DISPLAY, one of +DISPLAYS+ except the world, shows of
@@ -115,9 +117,9 @@ ROBOT, an image of a robot. The objects for two images are EQUAL if DISPLAY show
     (:state (list (robot-image-x robot) (robot-image-y robot) (robot-image-angle robot)
                   (robot-image-speed robot) (robot-image-place robot)
                   (robot-image-under-way robot) (robot-image-interruption robot)))
-    (:designators (content (robot-image-designators robot)))
-    (:cameras (list (robot-image-angle robot) (content (robot-image-cameras robot))
+    (:designators (visible-content (robot-image-designators robot)))
+    (:cameras (list (robot-image-angle robot) (visible-content (robot-image-cameras robot))
                     (loop for camera in (robot-image-cameras robot)
                           when (camera-image-view camera) collect (camera-image-view-age camera))))
-    (:hands (content (robot-image-hands robot)))
-    (:bins (content (robot-image-bins robot)))))
+    (:hands (visible-content (robot-image-hands robot)))
+    (:bins (visible-content (robot-image-bins robot)))))

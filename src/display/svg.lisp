@@ -88,7 +88,7 @@ these limits."
   "Write TEXT to STREAM with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
-(defun write-words (canvas gcontext string)
+(defun write-text-element-end (canvas gcontext string)
   "Write the end of a text element with STRING as its text."
   (write-color canvas gcontext "fill")
   (write-svg canvas ">")
@@ -98,7 +98,7 @@ these limits."
 
 ;;; Painting.
 
-(defun note-reach (canvas left top right bottom)
+(defun extend-svg-reach (canvas left top right bottom)
   (let ((reach (svg-reach canvas)))
     (when reach
       (setf (svg-reach canvas)
@@ -114,7 +114,7 @@ these limits."
          (shift (if fill-p 0 1/2))
          (pen (if fill-p 0 (pen-reach gcontext))))
     (flet ((reach (x y width height)
-             (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))))
+             (extend-svg-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))))
       (if (= (length numbers) 4)
           (destructuring-bind (x y width height) numbers
             (let ((x (+ x shift)) (y (+ y shift)))
@@ -129,7 +129,7 @@ these limits."
                 finally (write-svg canvas "\"")))))
   (write-paint canvas gcontext fill-p))
 
-(defun write-slice (canvas x y width height start extent fill-p)
+(defun write-arc-start (canvas x y width height start extent fill-p)
   "Write the beginning of a path element for an arc of less than a full turn."
   (let* ((across (/ width 2)) (down (/ height 2))
          (center-x (+ x across)) (center-y (+ y down)))
@@ -147,7 +147,7 @@ these limits."
 (defun write-ellipse (canvas x y width height pen)
   "Write the beginning of an ellipse element that fits into the box with its line, which reaches PEN
 pixels beyond its path."
-  (note-reach canvas x y (+ x width) (+ y height))
+  (extend-svg-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
              "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))
 
@@ -155,8 +155,8 @@ pixels beyond its path."
   (let ((pen (if fill-p 0 (pen-reach gcontext))))
     (cond ((>= (abs extent) (- (* 2 pi) 1d-9))
            (write-ellipse canvas x y width height pen))
-          (t (note-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))
-             (write-slice canvas x y width height start extent fill-p))))
+          (t (extend-svg-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))
+             (write-arc-start canvas x y width height start extent fill-p))))
   (write-paint canvas gcontext fill-p))
 
 (defun write-points (canvas gcontext numbers shift)
@@ -164,7 +164,7 @@ pixels beyond its path."
   (loop with pen = (pen-reach gcontext)
         for (x y) on numbers by #'cddr
         do (let ((x (+ x shift)) (y (+ y shift)))
-             (note-reach canvas (- x pen) (- y pen) (+ x pen) (+ y pen))
+             (extend-svg-reach canvas (- x pen) (- y pen) (+ x pen) (+ y pen))
              (write-svg canvas x "," y " "))))
 
 (defmethod paint-path ((canvas svg-canvas) gcontext points fill-p)
@@ -184,9 +184,9 @@ pixels beyond its path."
   (write-stroke canvas gcontext))
 
 (defmethod paint-string ((canvas svg-canvas) gcontext x y string)
-  (note-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
+  (extend-svg-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (write-svg canvas "<text x=\"" x "\" y=\"" y "\"")
-  (write-words canvas gcontext string))
+  (write-text-element-end canvas gcontext string))
 
 ;;; Where.
 
@@ -205,8 +205,8 @@ top right bottom) of what it has drawn."
 (defmethod call-with-clipping (function (canvas svg-canvas) x y width height)
   (multiple-value-bind (text reach) (collect-output canvas function)
     (destructuring-bind (left top right bottom) reach
-      (note-reach canvas (max x left) (max y top)
-                  (min (+ x width) right) (min (+ y height) bottom))
+      (extend-svg-reach canvas (max x left) (max y top)
+                        (min (+ x width) right) (min (+ y height) bottom))
       (if (or (string= text "")
               (and (<= x left) (<= y top) (<= right (+ x width)) (<= bottom (+ y height))))
           (write-svg canvas text)
@@ -218,18 +218,18 @@ top right bottom) of what it has drawn."
 (defmethod call-with-origin (function (canvas svg-canvas) x y)
   (multiple-value-bind (text reach) (collect-output canvas function)
     (destructuring-bind (left top right bottom) reach
-      (note-reach canvas (+ x left) (+ y top) (+ x right) (+ y bottom)))
+      (extend-svg-reach canvas (+ x left) (+ y top) (+ x right) (+ y bottom)))
     (write-svg canvas "<g transform=\"translate(" x "," y ")\">
 " text "</g>
 ")))
 
 (defmethod paint-text ((canvas svg-canvas) gcontext x y string size anchor upward-p bold-p)
   (let ((reach (text-width string size bold-p)))
-    (note-reach canvas (- x reach) (- y reach) (+ x reach) (+ y reach)))
+    (extend-svg-reach canvas (- x reach) (- y reach) (+ x reach) (+ y reach)))
   (write-svg canvas "<text x=\"" x "\" y=\"" y "\" font-size=\"" size "\" text-anchor=\""
              (string-downcase anchor) "\"" (if bold-p " font-weight=\"bold\"" ""))
   (when upward-p (write-svg canvas " transform=\"rotate(-90," x "," y ")\""))
-  (write-words canvas gcontext string))
+  (write-text-element-end canvas gcontext string))
 
 (defmethod character-width ((canvas svg-canvas) size)
   (* 61/100 size))

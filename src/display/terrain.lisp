@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(reporting-broken-graphics draw-terrain))
+(export '(with-broken-graphics-reported draw-terrain))
 
 ;;; If users' drawing code fails or does not end, this is reported once, and the code is not called
 ;;; again. The caller then draws something else. Code that is redefined is a new function and is
@@ -17,27 +17,27 @@
   "A table of the drawing functions that have signalled an error, and of names that name no
 function.")
 
-(defmacro reporting-broken-graphics (&body body)
+(defmacro with-broken-graphics-reported (&body body)
   "Run BODY, which draws a picture for a file. Broken graphics are reported in BODY even if they
 have been reported before."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
-(defun give-up-drawing ()
+(defun signal-drawing-timeout ()
   "Signal MISUSE because users' code has drawn for too long. Do nothing while the code waits in a
 debugger."
   (unless (user-calls-waiting-p *user-calls*)
     (reject-use "The drawing code had not ended after ~D seconds. Correct its endless loop."
                 +drawing-seconds+)))
 
-(defun draw-by-user (canvas function origin x y width height &rest arguments)
+(defun draw-by-user-code (canvas function origin x y width height &rest arguments)
   "Call FUNCTION, a user's function, with CANVAS and ARGUMENTS, to draw in the box X, Y, WIDTH,
 HEIGHT. ORIGIN, an item or a list of items, names FUNCTION in messages (reading 214). Return true if
 FUNCTION succeeds. Otherwise an error message has been queued, and the caller must draw over the
 box."
   (flet ((draw ()
-           (let ((*calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
+           (let ((*drawing-calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
              (call-with-limit (lambda () (apply function canvas arguments))
-                              +drawing-seconds+ #'give-up-drawing)
+                              +drawing-seconds+ #'signal-drawing-timeout)
              t)))
     (unless (gethash function *broken-graphics*)
       (with-clipping (canvas x y width height)
@@ -46,7 +46,7 @@ box."
             (setf (gethash function *broken-graphics*) t)))))
     (not (gethash function *broken-graphics*))))
 
-(defun draw-mark (canvas x y width height)
+(defun draw-crossed-out-box (canvas x y width height)
   "Draw a crossed-out box in place of graphics that cannot be drawn."
   (with-color (svref red* 9)
     (with-clipping (canvas x y width height)
@@ -127,14 +127,14 @@ RIGHT and BOTTOM are the first column and row after the part. NIL means the edge
                           (setf (svref above (wall-run-left run)) run))))))
     runs))
 
-(defconstant +least-tile+ 4
+(defconstant +least-tile-width+ 4
   "The least width of a tile of a texture, in pixels. Smaller textures could not be recognized.")
 
 (defun tile-width ()
   "Return the width in pixels of the tiles of textures, a fraction of a cell. Return NIL if tiles
-would be narrower than +LEAST-TILE+."
+would be narrower than +LEAST-TILE-WIDTH+."
   (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
-    (and (<= +least-tile+ width) width)))
+    (and (<= +least-tile-width+ width) width)))
 
 (defun draw-wall-look (canvas look rectangles &optional (tile (tile-width)))
   "Fill RECTANGLES, a list x y width height ..., with the wall look LOOK. Tiles of its texture are
@@ -172,10 +172,10 @@ look."
 
 (defun draw-place-at (canvas type x y)
   "Draw the mark of the place type TYPE in the cell with its upper left corner at X, Y."
-  (or (draw-by-user canvas (place-type-graphics type)
-                    (list "the :graphics of place type " (place-type-name type))
-                    x y graphics-scale* graphics-scale* x y)
-      (draw-mark canvas x y graphics-scale* graphics-scale*)))
+  (or (draw-by-user-code canvas (place-type-graphics type)
+                         (list "the :graphics of place type " (place-type-name type))
+                         x y graphics-scale* graphics-scale* x y)
+      (draw-crossed-out-box canvas x y graphics-scale* graphics-scale*)))
 
 ;; As reading 210 says.
 (defun drawn-place-type-p (type)
@@ -201,7 +201,7 @@ look."
         while (<= unit limit)
         append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
 
-(defun steps-apart (pixels)
+(defun step-for-distance (pixels)
   "Return the least of the numbers 1, 2, 5, 10, 20 and so on for which that many cells are at least
 PIXELS wide."
   (find-if (lambda (step) (<= pixels (to-pixels step)))
@@ -210,7 +210,7 @@ PIXELS wide."
 (defun marks-between (start end pixels)
   "Return the coordinates from START to END, in metres, to mark on an axis. The marks are at least
 PIXELS apart."
-  (loop with step = (steps-apart pixels)
+  (loop with step = (step-for-distance pixels)
         for metres from (* step (ceiling start step)) to end by step collect metres))
 
 (defun draw-grid (canvas map window)
@@ -232,7 +232,7 @@ substance. LEFT, TOP, RIGHT and BOTTOM, columns and rows of cells, are the part 
 default the whole map."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)
-             (dolist (layer (layers-at depth layers))
+             (dolist (layer (layers-at-depth depth layers))
                (funcall (%layer-draw layer) canvas map window))))
       (draw-at :under-walls)
       (draw-walls canvas map window)

@@ -41,7 +41,7 @@ cover WIDTH x HEIGHT cells. If ROWS is NIL, the number of rows is unlimited."
           do (cond ((fits-p wide wide) (return (values wide wide)))
                    ((fits-p wide (* 2 wide)) (return (values wide (* 2 wide))))))))
 
-(defun view-of (snapshot region columns rows)
+(defun text-view-of-region (snapshot region columns rows)
   "Return a text view of REGION, a list (left top right bottom) in metres, or of the whole SNAPSHOT
 if REGION is NIL. The view has at most ROWS lines of COLUMNS characters. If ROWS is NIL, the number
 of lines is unlimited."
@@ -107,7 +107,7 @@ kinds.")
         (concatenate 'string (string-downcase name) (string-upcase name))
         +letters+))
 
-(defun kinds-of (world)
+(defun thing-names-by-size (world)
   "Return the names of the things in WORLD, strings, sorted by the size of the largest thing with
 the name, the largest first, and then by name."
   (let ((sizes (make-hash-table :test #'equal)))
@@ -120,11 +120,11 @@ the name, the largest first, and then by name."
             (let ((size-a (gethash a sizes)) (size-b (gethash b sizes)))
               (if (= size-a size-b) (name-before-p a b) (> size-a size-b)))))))
 
-(defun letters-of (world)
+(defun letters-of-thing-names (world)
   "Return a hash table from the names of the things in WORLD, strings, to their letters. Large
 things choose first among the letters. If WORLD has more names than letters, some names are
 missing."
-  (let ((letters (make-hash-table :test #'equal)) (names (kinds-of world))
+  (let ((letters (make-hash-table :test #'equal)) (names (thing-names-by-size world))
         (free (remove #\v (coerce +letters+ 'list))))   ; v is a robot
     (dotimes (rank 4 letters)
       (dolist (name names)

@@ -21,7 +21,7 @@
 (defun sorted-legend (sheet)
   (sort (copy-list (sheet-legend sheet)) #'glyph<))
 
-(defun in-head-p (glyph)
+(defun glyph-always-below-p (glyph)
   (eq :robot (glyph-kind glyph)))
 
 ;;; An item is a pair of its length in characters and its text.
@@ -61,11 +61,11 @@ longer than COLUMNS has its own line."
     (append (when (< 1 (max (view-wide view) (view-high view)))
               (list (text-item (format nil "Each character is ~D x ~D cells."
                                        (view-wide view) (view-high view)))))
-            (glyph-items (remove-if-not #'in-head-p (sorted-legend sheet)) paint))))
+            (glyph-items (remove-if-not #'glyph-always-below-p (sorted-legend sheet)) paint))))
 
 (defun movable-glyphs (sheet)
   "Return the glyphs of SHEET whose legend items may be beside the map or below it."
-  (remove-if #'in-head-p (sorted-legend sheet)))
+  (remove-if #'glyph-always-below-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
   "Return the complete legend of SHEET, as lists of items that make lines of at most COLUMNS
@@ -74,14 +74,15 @@ characters."
 
 ;;; Beside the map.
 
-(defconstant +least-side+ 12 "The least width of a legend beside a map, in characters.")
+(defconstant +least-side-legend-width+ 12
+  "The least width of a legend beside a map, in characters.")
 
 (defun side-legend (glyphs room rows paint)
   "Return two values: a vector with a list of padded legend items for each of ROWS lines of a map,
 to write beside the map in ROOM characters, and the rest of GLYPHS, for which there is no room."
   (let* ((longest (loop for glyph in glyphs maximize (length (glyph-text glyph))))
          (width (min room (+ 2 longest)))
-         (columns (if (<= +least-side+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
+         (columns (if (<= +least-side-legend-width+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
          (lines (make-array rows :initial-element '())))
     (loop for glyph in glyphs
           for position from 0 below (* rows columns)
@@ -177,11 +178,12 @@ ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
   "Return a sheet of REGION for ROBOT that fits into ROWS lines of COLUMNS characters with the fixed
 part of its legend, if possible. A kind of thing keeps its letter even while none of its things is
 on the floor."
-  (let* ((world (robot-world robot)) (snapshot (take-snapshot world)) (letters (letters-of world))
+  (let* ((world (robot-world robot)) (snapshot (take-snapshot world))
+         (letters (letters-of-thing-names world))
          (image (snapshot-robot snapshot (robot-name robot))))
     (loop for lines from 1
-          for view = (view-of snapshot region (- columns +margin-columns+)
-                              (and rows (max 1 (- rows 1 lines))))
+          for view = (text-view-of-region snapshot region (- columns +margin-columns+)
+                                          (and rows (max 1 (- rows 1 lines))))
           for sheet = (sheet-of image view layers letters colored-p)
           for head = (fill-lines (head-items sheet #'ignore-ink) columns)
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))

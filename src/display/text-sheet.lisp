@@ -5,7 +5,7 @@
 ;;; The layers (see layers.lisp) call these functions. Each returns a list of pairs of the number of
 ;;; a block and the glyph to show there.
 
-(defun mark-at (view x y glyph)
+(defun glyph-mark-at (view x y glyph)
   "Return a list with one pair: the number of the block of VIEW at X, Y, and GLYPH. Return NIL if X,
 Y is outside VIEW."
   (let ((number (block-at view x y)))
@@ -50,7 +50,7 @@ Y is outside VIEW."
 (defun trail-marks (view robot)
   (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" (robot-image-name robot)) :green)))
     (do-trail ((robot-image-trail robot) x y)
-          append (mark-at view x y glyph))))
+          append (glyph-mark-at view x y glyph))))
 
 (defconstant +way-spacing+ 0.2d0
   "The distance between the points of a planned way that are marked on text maps, in metres.")
@@ -68,21 +68,22 @@ Y is outside VIEW."
     (loop for (from to) on (robot-image-planned-way robot)
           while to
           append (loop for (x y) in (points-between from to)
-                       append (mark-at view x y glyph)))))
+                       append (glyph-mark-at view x y glyph)))))
 
 ;;; Beliefs.
 
 (defun own-position-marks (view odometer)
   (let ((x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
-    (mark-at view x y (make-glyph :robot #\@
-                                  (format nil "believed (~,2F,~,2F)" (hundredths x) (hundredths y))
-                                  :bold))))
+    (glyph-mark-at view x y (make-glyph :robot #\@
+                                        (format nil "believed (~,2F,~,2F)" (hundredths x)
+                                               (hundredths y))
+                                        :bold))))
 
 (defun designator-marks (view robot designator)
   (destructuring-bind (x y) (believed-place robot designator)
-    (mark-at view x y
-             (make-glyph :layer (digit-char (mod (designator-image-number designator) 10))
-                         (subject-title designator) :bold))))
+    (glyph-mark-at view x y
+                   (make-glyph :layer (digit-char (mod (designator-image-number designator) 10))
+                               (subject-title designator) :bold))))
 
 (defun belief-marks (view robot)
   (append (and (robot-image-odometer robot)
@@ -161,7 +162,7 @@ first. INDICES are the cells of the block."
 
 (defun sheet-of (robot view layers letters colored-p)
   "Return a sheet of VIEW for ROBOT, the image of a robot. LAYERS are names of layers in text maps.
-LETTERS is a value of LETTERS-OF. If COLORED-P, walls are told apart by colours."
+LETTERS is a value of LETTERS-OF-THING-NAMES. If COLORED-P, walls are told apart by colours."
   (let ((sheet (make-sheet :view view :colored-p colored-p :things (things-by-cell view)
                            :letters letters)))
     (dolist (layer *layers*)

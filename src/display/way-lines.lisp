@@ -2,15 +2,16 @@
 
 (in-package :ars-magna.display)
 
-(export '(make-way-line draw-way-lines draw-way-sample draw-arrows draw-way-marks jumps-of
-          way-seen-p points-along draw-jump-dots draw-start))
+(export '(make-way-line draw-way-lines draw-way-sample draw-way-arrows draw-way-marks jumps-between
+          way-visible-p points-along draw-jump-dots draw-way-start))
 
 ;;; Several ways may go along one line. So each is drawn in its own lane, a few pixels beside its
 ;;; place. They are drawn together: all halos, then all lines, then arrowheads, then the marks of
 ;;; their ends, around each other on one spot. So no way hides another.
 
-(defconstant +arrows-apart+ 90 "The approximate distance between arrowheads on a way, in pixels.")
-(defconstant +least-arrowed+ 24 "The length of the shortest way with an arrowhead, in pixels.")
+(defconstant +arrow-distance+ 90 "The approximate distance between arrowheads on a way, in pixels.")
+(defconstant +least-way-with-arrow+ 24
+  "The length of the shortest way with an arrowhead, in pixels.")
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun segments-along (points)
@@ -52,7 +53,7 @@ there is no room. Overlaps can occur where a way leads back."
   "Return arrowheads (x y angle) for the way through POINTS, x y ... in pixels. They are far apart
 and do not overlap OTHERS. A very short way has none."
   (let* ((pieces (segments-along points)) (whole (reduce #'+ pieces :key #'first))
-         (count (if (< whole +least-arrowed+) 0 (max 1 (round whole +arrows-apart+))))
+         (count (if (< whole +least-way-with-arrow+) 0 (max 1 (round whole +arrow-distance+))))
          (arrows '()))
     (dotimes (index count (reverse arrows))
       (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) (append arrows others))))
@@ -114,22 +115,22 @@ diagonal, where ways would overlap.")
     (with-dashes (+jump-dashes+ :width +jump-width+)
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
-(defun jumps-of (pieces)
+(defun jumps-between (pieces)
   "Return the jumps between the pieces of a way, as lists x y to-x to-y. PIECES are lists x y ... in
 pixels."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
-(defun draw-halos (canvas lines)
+(defun draw-way-halos (canvas lines)
   "Draw the white halos of the ways LINES and of their jumps."
   (dolist (line lines)
     (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 +jump-width+))
-      (dolist (jump (jumps-of (way-line-pieces line)))
+      (dolist (jump (jumps-between (way-line-pieces line)))
         (draw-segments canvas draw-gcontext* jump)))
     (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 (way-line-width line)))
       (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
 
-(defun draw-arrows (canvas lines)
+(defun draw-way-arrows (canvas lines)
   "Draw the arrowheads of the ways LINES, without overlaps."
   (let ((arrows '()))
     (dolist (line (remove-if-not #'way-line-arrows-p lines))
@@ -141,14 +142,14 @@ pixels."
 
 (defun draw-way-lines (canvas lines)
   "Draw the ways LINES and their jumps, so that no way hides another."
-  (draw-halos canvas lines)
+  (draw-way-halos canvas lines)
   (dolist (line lines)
-    (draw-jump-dots canvas (jumps-of (way-line-pieces line)) (way-line-color line)))
+    (draw-jump-dots canvas (jumps-between (way-line-pieces line)) (way-line-color line)))
   (dolist (line lines)
     (with-color (way-line-color line)
       (with-dashes ((way-line-dashes line) :width (way-line-width line))
         (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
-  (draw-arrows canvas lines))
+  (draw-way-arrows canvas lines))
 
 (defun draw-way-sample (canvas points color position)
   "Draw a sample of a way in COLOR along POINTS, x y ... in pixels. POSITION is its position in a
@@ -157,7 +158,7 @@ list of several ways."
 
 ;;; Visible jumps and ways.
 
-(defconstant +tile+ 4 "The side of the square tiles that cover a line, in pixels.")
+(defconstant +tile-side+ 4 "The side of the square tiles that cover a line, in pixels.")
 
 (defun points-along (x y to-x to-y step)
   "Return points (x y) on the line from X, Y to TO-X, TO-Y, about STEP pixels apart."
@@ -166,7 +167,7 @@ list of several ways."
         collect (list (+ x (* share (- to-x x))) (+ y (* share (- to-y y))))))
 
 (defun tile-at (x y)
-  (cons (floor x +tile+) (floor y +tile+)))
+  (cons (floor x +tile-side+) (floor y +tile-side+)))
 
 (defun tiles-along (pieces)
   "Return a hash table whose keys are the tiles that the lines of PIECES, lists x y ... in pixels,
@@ -175,27 +176,27 @@ cross or touch."
     (dolist (piece pieces tiles)
       (loop for (x y next-x next-y) on piece by #'cddr
             while next-y
-            do (loop for (x y) in (points-along x y next-x next-y (/ +tile+ 2))
+            do (loop for (x y) in (points-along x y next-x next-y (/ +tile-side+ 2))
                      do (loop for (dx dy) in '((-1 -1) (-1 1) (1 -1) (1 1))
                               do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))))))
 
-(defun jumps-seen-p (ways box)
+(defun jump-visible-p (ways box)
   "True if a part of a jump in WAYS is visible: within BOX and not covered by a way. Each of WAYS is
 a list of pieces."
-  (loop with jumps = (mapcan #'jumps-of ways)
+  (loop with jumps = (mapcan #'jumps-between ways)
         with tiles = (and jumps (tiles-along (apply #'append ways)))
         for (x y to-x to-y) in jumps
-        thereis (loop for (x y) in (points-along x y to-x to-y +tile+)
+        thereis (loop for (x y) in (points-along x y to-x to-y +tile-side+)
                       thereis (and (overlap-p (list x y (+ x 1/100) (+ y 1/100)) box)
                                    (not (gethash (tile-at x y) tiles))))))
 
-(defun way-seen-p (pieces box)
+(defun way-visible-p (pieces box)
   "True if a part of the way of PIECES is within BOX."
   (some (lambda (piece)
           (loop for (x y next-x next-y) on piece by #'cddr
                 thereis (overlap-p (list (1- x) (1- y) (1+ x) (1+ y)) box)
                 while next-y
-                thereis (loop for (x y) in (points-along x y next-x next-y +tile+)
+                thereis (loop for (x y) in (points-along x y next-x next-y +tile-side+)
                               thereis (overlap-p (list x y (1+ x) (1+ y)) box))))
         pieces))
 
@@ -203,12 +204,12 @@ a list of pieces."
 
 (defconstant +mark-radius+ 4 "The radius of the mark where a way begins or ends, in pixels.")
 
-(defun draw-start (canvas x y color &optional (radius +mark-radius+))
+(defun draw-way-start (canvas x y color &optional (radius +mark-radius+))
   "Draw the mark of the start of a way: a small ring."
   (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
   (with-halo (color :width 2) (draw-circle canvas x y radius nil)))
 
-(defun draw-goal (canvas x y color &optional (radius +mark-radius+))
+(defun draw-way-end (canvas x y color &optional (radius +mark-radius+))
   "Draw the mark of the end of a way: a filled circle."
   (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (1+ radius) t))
   (with-color color (draw-circle canvas x y radius t)))
@@ -274,5 +275,5 @@ around each other."
                                                :arrows-p nil)))
   (draw-way-marks canvas
                   (loop for robot in robots
-                        collect `(draw-start ,@(end-of-planned-way robot)
-                                             ,(nth-ink (robot-image-position robot))))))
+                        collect `(draw-way-start ,@(end-of-planned-way robot)
+                                                 ,(nth-ink (robot-image-position robot))))))

@@ -9,44 +9,44 @@
 ;;; moved to be complete. Coordinates are pixels of the whole map: the view begins at LEFT, TOP.
 
 (defconstant +strip-height+ 17 "The height of the strip of numbers, in pixels.")
-(defconstant +bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
+(defconstant +scale-bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
 
 (defun view-edges (map layers)
   "Return a list of the widths, in pixels, of the strips for coordinates and scale bar at the left,
 top and bottom of a view of MAP. The width is 0 if LAYERS do not show the strip."
   (let ((numbers-p (member :coordinates layers)))
-    (list (if numbers-p (+ 11 (words-width (princ-to-string (map-height map)))) 0)
+    (list (if numbers-p (+ 11 (monospaced-width (princ-to-string (map-height map)))) 0)
           (if numbers-p +strip-height+ 0)
-          (if (member :scale-bar layers) +bar-strip-height+ 0))))
+          (if (member :scale-bar layers) +scale-bar-strip-height+ 0))))
 
-(defun draw-strip (canvas left top width height)
+(defun draw-strip-background (canvas left top width height)
   (with-gcontext (draw-gcontext* :foreground (svref grey* 58))
     (draw-rectangle canvas draw-gcontext* left top width height t)))
 
-(defun draw-notch (canvas x y end-x end-y)
+(defun draw-axis-mark (canvas x y end-x end-y)
   (with-color +frame-ink+
     (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
 
-(defun draw-columns-strip (canvas map left top start end)
+(defun draw-x-coordinates (canvas map left top start end)
   "Draw the strip of x coordinates, in metres, for the pixels from START to END of MAP. The strip
 begins at LEFT, TOP."
-  (draw-strip canvas left top (- end left) +strip-height+)
+  (draw-strip-background canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-width map)) 60))
-    (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (width (words-width text)))
-      (draw-notch canvas x (+ top 14) x (+ top 17))
+    (let* ((text (princ-to-string metres)) (x (to-pixels metres)) (width (monospaced-width text)))
+      (draw-axis-mark canvas x (+ top 14) x (+ top 17))
       (draw-text canvas (clamp (- x (/ width 2)) left (max left (- end width))) (+ top 11)
                  text))))
 
-(defun draw-rows-strip (canvas map left top width end)
+(defun draw-y-coordinates (canvas map left top width end)
   "Draw the strip of y coordinates, in metres, for the pixels from TOP to END of MAP. The strip
 begins at LEFT and is WIDTH pixels wide."
-  (draw-strip canvas left top width (- end top))
+  (draw-strip-background canvas left top width (- end top))
   (dolist (metres (marks-between (/ (max 0 top) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-height map)) 60))
     (let* ((text (princ-to-string metres)) (y (to-pixels metres)) (right (+ left width)))
-      (draw-notch canvas (- right 3) y right y)
-      (draw-text canvas (- right 8 (words-width text)) (min (+ y 4) (- end 2)) text))))
+      (draw-axis-mark canvas (- right 3) y right y)
+      (draw-text canvas (- right 8 (monospaced-width text)) (min (+ y 4) (- end 2)) text))))
 
 (defun draw-view-margins (canvas map layers left top width height)
   "Draw coordinates and scale bar, as far as LAYERS have :COORDINATES and :SCALE-BAR, at the edges
@@ -56,10 +56,10 @@ corner of MAP. Call this within WITH-CANVAS, with the origin in the corner of MA
     (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
       (when (member :coordinates layers)
         ;; In this order: the first number of a row may reach into the empty corner.
-        (draw-columns-strip canvas map left top (+ left left-edge) right)
-        (draw-rows-strip canvas map left (+ top top-edge) left-edge bottom))
+        (draw-x-coordinates canvas map left top (+ left left-edge) right)
+        (draw-y-coordinates canvas map left (+ top top-edge) left-edge bottom))
       (when (member :scale-bar layers)
-        (draw-strip canvas left bottom width bottom-edge)
+        (draw-strip-background canvas left bottom width bottom-edge)
         (with-origin (canvas (+ left 36) 0)
           (draw-scale-bar canvas (map-width map) (+ bottom (floor bottom-edge 2))))))))
 
@@ -84,7 +84,7 @@ can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-mag
   (funcall *display-opener* robot)
   robot)
 
-(defvar *told-reasons* '()
+(defvar *reported-messages* '()
   "The messages already printed about displays that could not be opened, each printed only once.")
 
 (defun announce-display (robot options)
@@ -96,8 +96,8 @@ NIL."
       (error (condition)
         (let ((text (format nil "Note: the run continues without a window. ~A"
                             (one-line (text-of-condition condition)))))
-          (unless (member text *told-reasons* :test #'string=)
-            (push text *told-reasons*)
+          (unless (member text *reported-messages* :test #'string=)
+            (push text *reported-messages*)
             (out text t)))))))
 
 (attend *simulator-hooks* announce-display)

@@ -11,7 +11,7 @@ resumed, on all processors and on many machines. Names lparallel.")
   (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
-                #:open-display #:*display-opener* #:grouped)
+                #:open-display #:*display-opener* #:group-by)
   (:import-from :ars-magna.world #:world-dice-set)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:custody-questions #:timeline-phase

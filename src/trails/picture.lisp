@@ -39,7 +39,7 @@ above others.")
 
 (defun draw-arrows-of (canvas ways)
   "Draw arrowheads on the lines of WAYS, as many as fit without overlaps."
-  (draw-arrows canvas (loop for way in ways
+  (draw-way-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
                                                    :color (second (outcome-look way))))))
 
@@ -62,7 +62,7 @@ points at which SNAPSHOT shows a robot."
                                           (mapcar (lambda (at) (round at 1/10)) point))))
 
 (defun draw-jumps (canvas way)
-  (draw-jump-dots canvas (jumps-of (pieces-in-pixels (way-pieces way)))
+  (draw-jump-dots canvas (jumps-between (pieces-in-pixels (way-pieces way)))
                   (second (outcome-look way))))
 
 (defun draw-marker-of (canvas look x y)
@@ -105,7 +105,7 @@ OUTCOME-ENTRIES."
   (append (outcome-entries ways what)
           (and (starts-of ways snapshot)
                (list (entry-with-sample (canvas x y) "start of a way"
-                       (draw-start canvas x y black*))))
+                       (draw-way-start canvas x y black*))))
           (jump-entries (loop for way in ways collect (pieces-in-pixels (way-pieces way)))
                         snapshot black*)))
 
@@ -122,7 +122,7 @@ WAYS are drawn above robots and things."
     (draw-ways canvas ways)
     (with-opacity (canvas +end-opacity+) (draw-arrows-of canvas ways))
     (loop for (x y) in (starts-of ways snapshot)
-          do (draw-start canvas (to-pixels x) (to-pixels y) black*))
+          do (draw-way-start canvas (to-pixels x) (to-pixels y) black*))
     (draw-movers canvas snapshot (remove :names layers))
     (dolist (way ways)
       (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
@@ -141,7 +141,7 @@ or all WAYS if PART is NIL."
   (if part
       (let ((graphics-scale* 8))
         (remove-if-not (lambda (way)
-                         (way-seen-p (pieces-in-pixels (way-pieces way)) (pixels-of part)))
+                         (way-visible-p (pieces-in-pixels (way-pieces way)) (pixels-of part)))
                        ways))
       ways))
 
@@ -162,10 +162,10 @@ default OWN-TITLE, and SUBTITLE. PART (left top right bottom), in cells, is the 
 show, or NIL for the whole map. Signals WRONG-ARGUMENT, before WAYS-OF is called, and MISUSE."
   (let ((kind (picture-kind operator file)))
     (check-map-options operator :title title :layers layers :scale scale)
-    (let* ((snapshot (in-part snapshot part operator))
+    (let* ((snapshot (snapshot-of-part snapshot part operator))
            (all (funcall ways-of))
            (ways (ways-in-part part all)))
-      (save-svg (reporting-broken-graphics
+      (save-svg (with-broken-graphics-reported
                   (bundle-text snapshot ways what
                                :title (or title own-title)
                                :subtitle (concatenate 'string subtitle

@@ -70,7 +70,7 @@ positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
     (draw-way-lines canvas (loop for (position . pieces) in moved
                                  collect (make-way-line position pieces)))
     (draw-way-marks canvas (loop for (position (x y)) in moved
-                                 collect (list 'draw-start x y (nth-ink position))))))
+                                 collect (list 'draw-way-start x y (nth-ink position))))))
 
 (defconstant +tile+ 6 "The side of the boxes that cover a line, in pixels.")
 
@@ -99,7 +99,7 @@ visible."
         for way in ways
         for position from 0
         for name = (first way)
-        if (and (moved-p way) (way-seen-p (pieces-in-pixels (rest way)) box))
+        if (and (moved-p way) (way-visible-p (pieces-in-pixels (rest way)) box))
           collect (moved-robot-entry (drawn-name name) position)
         else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
                collect (robot-entry (drawn-name name) position)))
@@ -108,13 +108,14 @@ visible."
   "True if the ring at the start of WAY is visible in the part of the map that SNAPSHOT shows."
   (and (moved-p way)
        (destructuring-bind (x . y) (first (second way))
-         (way-seen-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
+         (way-visible-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
 (defun run-entries (snapshot ways spots)
   "Return the entries of the legend for WAYS and SPOTS of a run. SNAPSHOT shows the end of the run."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
-            (list (entry-with-sample (canvas x y) "start of a way" (draw-start canvas x y black*))))
+            (list (entry-with-sample (canvas x y) "start of a way"
+                    (draw-way-start canvas x y black*))))
           (jump-entries (loop for (nil . pieces) in ways collect (pieces-in-pixels pieces))
                         snapshot black*)
           (and spots (list (entry-with-sample (canvas x y) "see below"
@@ -190,7 +191,7 @@ run."
 WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
                   "a whole number, the most lines below the map, or NIL for all")
-  (check-kinds 'save-run-picture kinds)
+  (check-moment-kinds 'save-run-picture kinds)
   (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
                    (checked-end-tick 'save-run-picture journal until)))
@@ -225,8 +226,8 @@ needs or if there is no journal."
          (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
     (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))
-      (save-svg (reporting-broken-graphics
-                  (run-picture-text (in-part snapshot part 'save-run-picture) ways
+      (save-svg (with-broken-graphics-reported
+                  (run-picture-text (snapshot-of-part snapshot part 'save-run-picture) ways
                                     (sort-moments (append (moments-of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
                                     :subtitle (and anyway (repeated-words journal))

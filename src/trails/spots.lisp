@@ -35,7 +35,7 @@ SEVERAL-P is true, texts name the robots."
                         (or (spot-near moment spots reach)
                             (first (push (make-spot (moment-x moment) (moment-y moment))
                                          spots)))))
-             (words (moment-words moment several-p))
+             (words (moment-description moment several-p))
              (group (or (find-if (lambda (other)
                                    (and (eq spot (moment-group-spot other))
                                         (string= words (moment-group-words other))))
@@ -165,7 +165,7 @@ thing lies at the spot, for example because it was released there, the ring is a
   (flet ((reach (image)
            (let ((off (max (abs (- (to-pixels (thing-image-x image)) x))
                            (abs (- (to-pixels (thing-image-y image)) y))))
-                 (half (half-width image)))
+                 (half (thing-half-width image)))
              (if (< off (max +ring-radius+ (/ half 3))) (+ half off 3) 0))))
     (reduce #'max (snapshot-things snapshot) :key #'reach :initial-value +ring-radius+)))
 

@@ -78,7 +78,7 @@ numbers of the rows cover them."
   (let ((watcher (window::window-watcher window)) (pane (world-pane window)))
     (loop repeat count
           do (step-movers movers)
-             (window::publish watcher (window::window-simulation window))
+             (window::publish-snapshot watcher (window::window-simulation window))
              (funcall paint pane))
     (clim:medium-finish-output (clim:sheet-medium pane))))
 

@@ -48,7 +48,7 @@ with equal values make the contrast's WHERE; the other factors make the names of
   "Group PAIRS by the two levels of the factor PLACE that they compare. Return lists (level base
 pair...)."
   (loop with factor = (nth place (results-factors results))
-        for group in (grouped pairs (lambda (pair)
+        for group in (group-by pairs (lambda (pair)
                                       (mapcar (lambda (sample) (factor-text place sample)) pair)))
         collect (append (mapcar (lambda (sample) (level-name factor (factor-text place sample)))
                                 (first group))

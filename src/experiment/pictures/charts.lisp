@@ -48,7 +48,7 @@ only the factor's value."
         (factor-values-name sample places factors))))
 
 (defun group-series (samples places factors)
-  (loop for group in (grouped samples (lambda (sample) (series-name sample places factors)))
+  (loop for group in (group-by samples (lambda (sample) (series-name sample places factors)))
         collect (cons (series-name (first group) places factors) group)))
 
 (defun split-evenly (list most)
@@ -71,7 +71,7 @@ FACTORS make the series."
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (split-into-panels series where title))
           (t (let ((last (last places)))
-               (loop for group in (grouped samples
+               (loop for group in (group-by samples
                                            (lambda (sample)
                                              (factor-values-name sample last factors)))
                      append (panels group (butlast places) factors
