@@ -126,7 +126,7 @@ coordinate of its end."
                                   (draw-plan-text canvas pane +plan-buttons-height+
                                                   "These plans have no trace, so no timeline.")
                                   (line-button pane "Keep a trace from now on" "trace-plans on"
-                                               "Keep a trace of what plans do")))
+                                               "Start to keep a trace of what plans do")))
       (:too-long (draw-plan-text canvas pane +plan-buttons-height+
                                  (format nil "The trace is too long to be drawn in the window. ~
                                               The line PLAN-TIMELINE plans.svg saves a picture.")))
