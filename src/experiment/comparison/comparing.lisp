@@ -235,7 +235,7 @@ name of these results."
         (t (reject-argument operator name value "the name of a directory, or results"))))
 
 (defun distinguishing-names (first second)
-  "FIRST and SECOND are paths. Return their last components if these differ, else the whole paths."
+  "Return the last components of the paths FIRST and SECOND if these differ, else the whole paths."
   (flet ((last-part (name)
            (let ((name (string-right-trim "/" name)))
              (subseq name (1+ (or (position #\/ name :from-end t) -1))))))

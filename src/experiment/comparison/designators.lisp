@@ -231,8 +231,8 @@ values of one factor; else NIL."
          (level-pair-samples results level-pair)))
 
 (defun resolve-condition-numbers (results first second)
-  "Return FIRST and SECOND. Return them as texts if they are levels of one factor and not numbers of
-conditions. Signals MISUSE if they could be levels as well as numbers of conditions."
+  "Return FIRST and SECOND, or their texts if both are levels of one factor and not numbers of
+conditions. Signals MISUSE if FIRST and SECOND could be levels as well as numbers of conditions."
   (let ((level-pair (level-pair-of-integers results first second)))
     (cond ((or (null level-pair) (same-samples-p results first second level-pair))
            (values first second))

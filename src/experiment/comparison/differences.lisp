@@ -100,8 +100,8 @@ only the first, only the second, and neither are true."
     (if (some #'floatp numbers) (nearest-float mean) mean)))
 
 (defun mean-p-value (numbers)
-  "Return the p value of the mean of NUMBERS, which are differences. The test makes fewer draws for
-many numbers; the smallest possible p does not depend on the draws."
+  "Return the p value of the mean of NUMBERS, which are differences. The permutation test makes
+fewer draws for many numbers; the smallest possible p does not depend on the draws."
   (let ((draws (clamp (floor 200000000 (length numbers)) 1000 10000)))
     (values (permutation-test numbers :resamples draws :rare-too t))))
 

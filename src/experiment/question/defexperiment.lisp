@@ -111,10 +111,10 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
                              run; kept in series.csv, see TRIAL-SERIES. The forms must only read.
                              They have their own random numbers; any other change that they make
                              affects the trial
-Without :success and :until the values of :run decide. If RUN-PLAN or the task of BEGIN-PLAN is
-returned, the outcome of the plan counts (unfinished if the task has not ended). Otherwise a true
-first value is success, and the second value, a symbol or string, is the reason. If a plan started
-by BEGIN-PLAN waits for something that can never happen, the trial fails: deadlock. The
+Without :success and :until the values of :run decide. If :run returns the values of RUN-PLAN or the
+task of BEGIN-PLAN, the outcome of the plan counts (unfinished if the task has not ended). Otherwise
+a true first value is success, and the second value, a symbol or string, is the reason. If a plan
+started by BEGIN-PLAN waits for something that can never happen, the trial fails: deadlock. The
 documentation of RUN-EXPERIMENT says what is kept."
   (let ((definition (title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)

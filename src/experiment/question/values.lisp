@@ -103,7 +103,7 @@ that it is the same in each run."
 
 ;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
-  "Return the text for VALUE in a table. It does not depend on variables of the reader and the
+  "Return the text for VALUE in a table, independent of the variables of the reader and the
 printer."
   (case value
     ((t) "TRUE")

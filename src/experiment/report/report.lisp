@@ -263,8 +263,8 @@ page, else the condition's name."
     (when question (write-wrapped question stream))))
 
 (defun former-summaries (results summaries)
-  "Return those SUMMARIES of RESULTS whose conditions the experiment no longer has; NIL if all
-SUMMARIES are of this sort."
+  "Return those SUMMARIES of RESULTS whose conditions the experiment no longer has; NIL if the
+experiment no longer has the conditions of any of SUMMARIES."
   (let ((former (remove-if (lambda (summary)
                              (member (summary-condition summary) (results-conditions results)
                                      :test #'string=))

@@ -18,8 +18,9 @@ the first table first."
 
 (defun find-existing-rows (experiment parts directory)
   "Return two values: a table of the rows of EXPERIMENT present in DIRECTORY, and a list of rows to
-check. That list has the texts of the last row of each condition, then those of the first rows.
-PARTS are the fingerprint parts of all conditions. Signals MISUSE for rows with other fingerprints."
+check. The list of rows to check has the texts of the last row of each condition, then those of the
+first rows. PARTS are the fingerprint parts of all conditions. Signals MISUSE for rows with other
+fingerprints."
   (let ((firsts (make-hash-table :test 'eq)) (lasts (make-hash-table :test 'eq))
         (columns (columns experiment)))
     (multiple-value-bind (presence series)
@@ -181,8 +182,8 @@ returned results.
 UNTIL, a width, adds trials until the interval of each condition's success is at most UNTIL wide.
 The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index
 . count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
-MERGE-RESULTS merges shards. The progress is printed to STREAM unless that is NIL. It names a trial
-that takes much longer than others.
+MERGE-RESULTS merges shards. Unless STREAM is NIL, the progress is printed to STREAM, with the name
+of a trial that takes much longer than others.
 
 TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
 says; NIL for no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,

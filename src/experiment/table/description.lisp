@@ -191,7 +191,7 @@ NIL if there are none."
         unless (string= "" line) collect (string-trim " " line)))
 
 (defun changed-parts (before now)
-  "Return the names of the parts that only BEFORE or only NOW has. Both are lists of lines."
+  "Return the names of the parts that are in only one of BEFORE and NOW, two lists of lines."
   (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
     (remove-duplicates (mapcar #'without-number
                                (append (set-difference before now :test #'string=)

@@ -70,8 +70,8 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
                         (format nil "shard-~D-of-~D/" index count))))
 
 (defun directories-with-rows (directory)
-  "Return the names of directories that have rows: DIRECTORY, and the directories of shards below
-it."
+  "Return the names of those directories that have rows, among DIRECTORY and its directories of
+shards."
   (let* ((path (directory-path directory))
          (shards (remove-if-not (lambda (path)
                                   (starts-with-subseq "shard-"

@@ -249,7 +249,7 @@ Signals MISUSE if a trial has no block but other trials of its condition have bl
                         file))
 
 (defun write-sorted-series (files rows file)
-  "FILES are tables of series. Write their lines for the trials in the table ROWS to FILE, in the
+  "Write the lines for the trials in the table ROWS from FILES, tables of series, to FILE, in the
 order of ROWS, each line once. FILE may be one of FILES. Signals DAMAGED-TABLE and MISUSE; after an
 error FILE is unchanged."
   (let* ((columns (columns-of-file (first files) *series-layout*))

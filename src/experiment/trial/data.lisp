@@ -165,8 +165,8 @@ CALL-WALKING."
                                   (find-package :keyword))))))
 
 (defun no-data-p (value)
-  "True if VALUE is not data, or is NIL or an empty hash table. A variable that holds data later
-often has one of these values first."
+  "True if VALUE is not data, or is NIL or an empty hash table. A variable that will hold data often
+has NIL or an empty table first."
   (or (null value)
       (and (hash-table-p value) (zerop (hash-table-count value)))
       (not (typep value '(or plain-atom compound)))))

@@ -88,8 +88,8 @@ FILE when it was loaded, or NIL."
                    reach))))
 
 (defun note-function (function name reach)
-  "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. This is so for
-closures, and for functions that were set in another way, as by a trial."
+  "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. The file does
+not determine closures, and functions that were set in another way, as by a trial."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
@@ -105,7 +105,8 @@ closures, and for functions that were set in another way, as by a trial."
 
 (defun visit-variable (symbol reach)
   "Visit the variable SYMBOL and its value. A value that is data is noted as a part in REACH. NIL
-and an empty table are not noted, because a variable that holds data later often has them first."
+and an empty table are not noted, because a variable that will hold data often has NIL or an empty
+table first."
   (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
   (let ((value (global-value symbol)))
     (flet ((visit-atom (atom)
