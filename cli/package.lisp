@@ -23,7 +23,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:task-label #:all-tasks #:step-task #:start-trace #:stop-trace
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl.tasks
-                #:task-label #:call-with-care #:misfit #:shape-of #:shape-text
+                #:task-label #:call-with-care #:arguments-misfit-text #:shape-of #:shape-text
                 #:waiting-parts #:text-of-waits #:advice-on-stillness)
   (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans

@@ -44,7 +44,7 @@
   "True if TASK, or what it is part of, claims VALVE, which is another's now."
   (some (lambda (claim)
           (and (rpl::part-of-p task (constructs::claim-task claim))
-               (not (member claim (constructs::holders valve)))))
+               (not (member claim (constructs::owner-claims valve)))))
         (constructs::valve-claims valve)))
 
 (defun runs-wrongly-p (valves task)

@@ -369,7 +369,7 @@
                    (loop for i below count collect (- i))
                    (loop for i below count collect (+ 1/2 (mod (* i 7919) count))))))
     (is (equal (sort (priorities 40) #'>) (order-of-queue (priorities 40))))
-    (is (< (calls-of 'constructs::before-p (lambda () (order-of-queue (priorities 400))))
+    (is (< (calls-of 'constructs::line-before-p (lambda () (order-of-queue (priorities 400))))
            (* 1200 100)))))
 
 (test with-valve.to-queue-takes-the-same-however-many-do

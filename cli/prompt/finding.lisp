@@ -155,7 +155,7 @@ one whose name begins all the others. Signals BAD-LINE."
              (not (macro-function (first form)))
              (not (special-operator-p (first form))))
     (multiple-value-bind (parameters known-p) (function-arguments (first form))
-      (let ((trouble (and known-p (misfit (shape-of parameters) (rest form)))))
+      (let ((trouble (and known-p (arguments-misfit-text (shape-of parameters) (rest form)))))
         (when trouble
           (reject-line "~(~A~) takes ~A, not ~A.~@[ ~A~]" (first form)
                        (shape-text (lambda-list-of (first form))) trouble

@@ -65,7 +65,8 @@
       (if goal
           (enter-goal goal values frame)
           (fail-goal 'unknown-goal task frame
-                     :known (mapcar #'goal-pattern (goals-of (goal-run-operator goal-run))))))))
+                     :known (mapcar #'goal-pattern
+                                    (operator-goals (goal-run-operator goal-run))))))))
 
 (defun ask-belief (frame otherwise)
   "Begin the plan that finds out whether the goal of FRAME is believed. If no plan does so, continue
@@ -78,9 +79,9 @@ with the value OTHERWISE. Return what a step returns."
 (define-construct achieve (goal)
   "Make the robot believe GOAL, in a plan. GOAL is evaluated, such as `(on ,a ,b).
 If the matching DEF-GOAL of BELIEF says that GOAL is believed already, return that value and do
-nothing. Otherwise run the matching DEF-GOAL of ACHIEVE and return its value. Fails with
-UNKNOWN-GOAL if no ACHIEVE matches, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards.
-If no BELIEF matches, the end of the plan counts as success. (From CRAM and XFRM.)"
+nothing. If not, run the matching DEF-GOAL of ACHIEVE and return its value. Fails with UNKNOWN-GOAL
+if no ACHIEVE matches, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards. If no BELIEF
+matches, the end of the plan counts as success. (From CRAM and XFRM.)"
   (:arguments goal)
   (:parts (goal function (value-lambda goal scope)))
   (:steps
@@ -119,8 +120,8 @@ fails. (From CRAM and XFRM, except for the return value.)"
    (checked (values (frame-up frame) value))))
 
 (define-construct belief (goal)
-  "Return whether the robot believes GOAL, in a plan. This is the value of the matching DEF-GOAL of
-BELIEF, whose plan should not change the world. GOAL is evaluated, such as `(on ,a ,b). Fails with
+  "Return whether the robot believes GOAL, in a plan: the value of the matching DEF-GOAL of BELIEF.
+The plan of BELIEF should not change the world. GOAL is evaluated, such as `(on ,a ,b). Fails with
 UNKNOWN-GOAL if no BELIEF matches. (From XFRM, except for the syntax.)"
   (:like achieve)
   (:steps

@@ -7,7 +7,8 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
-  "The stays of one plan runner's tasks at places. STAYS is a fluent whose value is a list of them."
+  "The stays of one plan runner's tasks at places. STAYS is a fluent whose value is a list of the
+stays."
   (valve (make-valve 'whereabouts) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
@@ -31,7 +32,7 @@
     (set-value (whereabouts-stays whereabouts)
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))
 
-(defun others-gone (whereabouts)
+(defun no-other-stays (whereabouts)
   "Return a fluent that is true while no task stays, except the current task and the tasks around
 it."
   (let ((task (current-task)))
@@ -76,7 +77,7 @@ PLACE."
             (evap-protect
              (seq (with-valve ((whereabouts-valve ,here))
                     (if (not ,there)
-                        (seq (wait-for (others-gone ,here))
+                        (seq (wait-for (no-other-stays ,here))
                              ,go))
                     (setq ,stay (begin-stay ,here)))
                   (if (not ,there) (go ,lost))

@@ -26,7 +26,7 @@ returns."
 
 (define-construct par (&body branches)
   "Run BRANCHES in parallel, in a plan. PAR succeeds when all branches have succeeded, with the
-first value of the last form written. It fails as soon as one branch fails, and evaporates the
+first value of the last form written. PAR fails as soon as one branch fails, and evaporates the
 others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches (single-scope scope))))
@@ -50,16 +50,16 @@ that branch, or fails as it failed, and evaporates the others (manual D.4; readi
   (:like par)
   (:child-ended
    (cond ((fail-or-escape task how result))
-         ((eq how :succeeded) (complete task result))
+         ((eq how :succeeded) (end-with-value task result))
          (t (complete-when-alone task nil)))))
 
-(defun all-failed (failures task frame)
+(defun composite-failure-from (failures task frame)
   "Return the failure of TASK at FRAME that contains FAILURES, a list with the newest first."
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
   "Run BRANCHES in parallel, in a plan. TRY-ALL succeeds as soon as one branch succeeds, with the
-value of that branch, and evaporates the others. If all branches fail, it fails with a
+value of that branch, and evaporates the others. If all branches fail, TRY-ALL fails with a
 COMPOSITE-FAILURE."
   (:like par)
   (:steps
@@ -67,16 +67,16 @@ COMPOSITE-FAILURE."
     (next inside)
     (if (plusp (length branches))
         (start-branches branches task environment)
-        (unwind task (frame-up frame) (all-failed '() task frame))))
+        (unwind task (frame-up frame) (composite-failure-from '() task frame))))
    (inside (values (frame-up frame) value)))
   (:child-ended
    (ecase how
-     (:succeeded (complete task result))
-     (:escaped (decide task result))
+     (:succeeded (end-with-value task result))
+     (:escaped (end-with-signal task result))
      (:failed (push result memory))
      (:evaporated))
    (unless (or (task-newest-child task) (task-signal task) (member how '(:succeeded :escaped)))
-     (decide task (all-failed memory task frame)))))
+     (end-with-signal task (composite-failure-from memory task frame)))))
 
 ;;;; One after the other
 
@@ -86,14 +86,14 @@ attempts left, each a cons (node . environment)."
   (order '() :type list)
   (failures '() :type list))
 
-(defun order-as-written (attempts environment dice)
+(defun in-written-order (attempts environment dice)
   (declare (ignore dice))
   (loop for attempt across attempts collect (cons attempt environment)))
 
-(defun order-by-chance (attempts environment dice)
-  "Do as ORDER-AS-WRITTEN, in a random order drawn from DICE. Without DICE, keep the order as
+(defun in-random-order (attempts environment dice)
+  "Do as IN-WRITTEN-ORDER, in a random order drawn from DICE. Without DICE, keep the order as
 written."
-  (loop with left = (order-as-written attempts environment dice)
+  (loop with left = (in-written-order attempts environment dice)
         while left
         collect (let ((chosen (if dice (roll-element left dice) (first left))))
                   (setf left (remove chosen left :test #'eq))
@@ -103,7 +103,7 @@ written."
   "Run ATTEMPTS in a plan one after the other until one succeeds; return the value of that attempt.
 If all attempts fail, fail with a COMPOSITE-FAILURE."
   (:parts (attempts simple-vector (branches-code attempts scope))
-          (order function '(function order-as-written)))
+          (order function '(function in-written-order)))
   (:steps
    (begin
     (setf memory (make-attempt-record
@@ -116,7 +116,7 @@ If all attempts fail, fail with a COMPOSITE-FAILURE."
              (next trying)
              (enter (the node attempt) inner frame))
             (t (unwind task (frame-up frame)
-                       (all-failed (attempt-record-failures memory) task frame)))))))
+                       (composite-failure-from (attempt-record-failures memory) task frame)))))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
      (push signal (attempt-record-failures memory))
@@ -128,7 +128,7 @@ If all attempts fail, fail with a COMPOSITE-FAILURE."
 has no dice, keep the order as written."
   (:like try-in-order)
   (:parts (attempts simple-vector (branches-code attempts scope))
-          (order function '(function order-by-chance))))
+          (order function '(function in-random-order))))
 
 ;;; For each element.
 
@@ -148,12 +148,12 @@ succeeds. Return the value of BODY. If BODY succeeds for no element, fail with a
 
 ;;;; For each element of a sequence
 
-(defun turn-environment (environment item tags)
+(defun iteration-environment (environment item tags)
   "Return a new environment inside ENVIRONMENT, with ITEM and a new task for each of TAGS."
   (coerce (list* environment item (loop for tag in tags collect (make-task tag +nothing+)))
           'simple-vector))
 
-(defun turn-code (variable body scope)
+(defun iteration-code (variable body scope)
   "Return code for BODY in the environment of one turn, with its own VARIABLE and its own tags."
   (let ((tags (tags-in body)))
     (binding-body-code body (tagged-scope (variable-scope (single-scope scope)
@@ -166,7 +166,7 @@ and tags. PAR-LOOP succeeds and fails as PAR does."
   (:arguments sequence)
   (:parts (items function (value-lambda sequence scope))
           (tags list `',(tags-in body))
-          (body node (turn-code variable body scope)))
+          (body node (iteration-code variable body scope)))
   (:code (block-code nil form scope #'build))
   (:steps
    (begin
@@ -176,7 +176,7 @@ and tags. PAR-LOOP succeeds and fails as PAR does."
       (setf memory (cons (1- (length items)) nil))
       (loop for item in items
             for index from 0
-            do (start-branch body task (turn-environment environment item tags) index
+            do (start-branch body task (iteration-environment environment item tags) index
                               (task-level task)))
       (if items
           (await-parts task)
@@ -198,30 +198,31 @@ FAILURES are lists with the newest first."
   (values '() :type list)
   (failures '() :type list))
 
-(defun count-end (tally how result)
+(defun count-outcome (tally how result)
   (decf (tally-left tally))
   (case how
     (:succeeded (decf (tally-missing tally))
      (push result (tally-values tally)))
     (:failed (push result (tally-failures tally)))))
 
-(defun decide-by-tally (task frame tally branches)
+(defun complete-by-tally (task frame tally branches)
   "End the construct in which TASK waits at FRAME, if TALLY decides its outcome. BRANCHES is the
 number of branches."
   (cond ((zerop (tally-missing tally))
-         (complete task (reverse (tally-values tally))))
+         (end-with-value task (reverse (tally-values tally))))
         ((> (tally-missing tally) (tally-left tally))
-         (decide task (failure-of (make-condition 'composite-failure
-                                                  :failures (reverse (tally-failures tally))
-                                                  :attempts branches)
-                                  task frame)))))
+         (end-with-signal
+          task
+          (failure-of (make-condition 'composite-failure :failures (reverse (tally-failures tally))
+                                                         :attempts branches)
+                      task frame)))))
 
 (define-construct par-at-least (count &body branches)
   "Run BRANCHES in parallel, in a plan. PAR-AT-LEAST succeeds as soon as COUNT branches have
-succeeded, and evaporates the others. Its value is the list of the branches' values in the order in
-which they came. It fails with a COMPOSITE-FAILURE as soon as too many branches have failed. COUNT
-is an integer from 0 to the number of branches. (Not from CRAM, whose statecharts of 2026 have a PAR
-with minimum_success.)"
+succeeded, and evaporates the others. The value of PAR-AT-LEAST is the list of the branches' values
+in the order in which they came. PAR-AT-LEAST fails with a COMPOSITE-FAILURE as soon as too many
+branches have failed. COUNT is an integer from 0 to the number of branches. (Not from CRAM, whose
+statecharts of 2026 have a PAR with minimum_success.)"
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
           (branches simple-vector (branches-code branches (single-scope scope))))
@@ -237,6 +238,6 @@ with minimum_success.)"
           (values (frame-up frame) '()))))
    (over (values (frame-up frame) value)))
   (:child-ended
-   (cond ((eq how :escaped) (decide task result))
-         (t (count-end memory how result)
-            (decide-by-tally task frame memory (length branches))))))
+   (cond ((eq how :escaped) (end-with-signal task result))
+         (t (count-outcome memory how result)
+            (complete-by-tally task frame memory (length branches))))))

@@ -11,18 +11,18 @@
 
 (defun check-fail (form)
   (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
-    (doubt-form form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
-                (second form))))
+    (style-warn-of form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
+                   (second form))))
 
-(defun check-class (form scope)
+(defun check-failure-class (form scope)
   (let ((class (and (eq :class (second form)) (third form))))
     (when (name-without-quote-p class scope)
-      (doubt-own-form form "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
-                            :class :~:*~(~A~))." class))))
+      (style-warn-of-own form "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
+                               :class :~:*~(~A~))." class))))
 
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
   (check-fail form)
-  (check-class form scope)
+  (check-failure-class form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
       (hoisted-code form scope)
       `(make-failing :form ',(form-as-written form)
@@ -66,7 +66,7 @@
   "Names of operators that do not fail with the error code of a command, unless a form in them
 does.")
 
-(defun may-fail-so-p (form code)
+(defun may-fail-with-class-p (form code)
   "True if FORM, in a plan, may fail with class CODE. Uses what is known of the functions that FORM
 calls."
   (let ((operator (first form)))
@@ -78,16 +78,16 @@ calls."
                       (plan-function-p operator)
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
-(defun doubt-code (code body form)
+(defun warn-of-code-as-class (code body form)
   "Warn if FORM handles the class CODE in BODY, where CODE is only the error code of a command.
 Commands do not fail."
   (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
          (fluent (and command (fluent-of-code (first command) code))))
-    (when (and command (not (find-call (lambda (form) (may-fail-so-p form code)) body)))
-      (doubt-own-form form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
-                            value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
-                            (fail :class (fluent-value ~(~A~))) in that."
-                      (first command) code fluent fluent fluent))))
+    (when (and command (not (find-call (lambda (form) (may-fail-with-class-p form code)) body)))
+      (style-warn-of-own form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
+                               value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
+                               (fail :class (fluent-value ~(~A~))) in that."
+                         (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan, and handle a failure by the first of CLAUSES with a matching type. A clause
@@ -108,7 +108,7 @@ Return all values of BODY."
                                                    (abridged clauses))))
      (dolist (clause clauses)
        (check-clause clause form scope)
-       (dolist (code (ensure-list (first clause))) (doubt-code code body form)))
+       (dolist (code (ensure-list (first clause))) (warn-of-code-as-class code body form)))
      (block-code nil form scope
                  (lambda (scope)
                    (with-gensyms (start)
@@ -152,9 +152,9 @@ Return all values of BODY."
 
 ;;; A counter is a variable; another one, that only macros know, holds what it started with.
 
-(defun start-variable (counter)
-  (or (get counter 'start-variable)
-      (setf (get counter 'start-variable)
+(defun start-value-variable (counter)
+  (or (get counter 'start-value-variable)
+      (setf (get counter 'start-value-variable)
             (make-symbol (format nil "START-OF-~A" counter)))))
 
 (defun check-counters (counters)
@@ -168,8 +168,8 @@ RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
   (:in-lisp (progn
               (check-counters counters)
               `(let ,(loop for (name number) in counters
-                           collect `(,(start-variable name) ,number))
-                 (let ,(loop for (name) in counters collect `(,name ,(start-variable name)))
+                           collect `(,(start-value-variable name) ,number))
+                 (let ,(loop for (name) in counters collect `(,name ,(start-value-variable name)))
                    (declare (ignorable ,@(mapcar #'first counters)))
                    ,@body)))))
 
@@ -181,7 +181,8 @@ handler. (From CRAM.)"
                ,@body)))
 
 (defun check-counter (operator counter environment)
-  (unless (and counter (symbolp counter) (local-variable-p (start-variable counter) environment))
+  (unless (and counter (symbolp counter)
+               (local-variable-p (start-value-variable counter) environment))
     (reject-clause operator counter "the name of a counter of the with-retry-counters around it")))
 
 (addition get-counter)
@@ -196,7 +197,7 @@ handler. (From CRAM.)"
   "Set COUNTER, a counter of WITH-RETRY-COUNTERS, to its initial value, and return that value. (From
 CRAM.)"
   (check-counter "reset-counter" counter environment)
-  `(setq ,counter ,(start-variable counter)))
+  `(setq ,counter ,(start-value-variable counter)))
 
 ;;; While the cleanup runs, the frame remembers the signal that is to go on after it, a completion
 ;;; if none. A task that is cleaning up does not evaporate: see EVAPORATE.
@@ -212,7 +213,7 @@ CRAM.)"
   (unless (task-cleaning task) (note-event task :cleaned))
   (shiftf (frame-data frame) nil))
 
-(defun after-cleanup (first signal task)
+(defun signal-after-cleanup (first signal task)
   "Return NIL and FIRST if the signal FIRST, which caused a cleanup, continues after the cleanup
 ended with SIGNAL. Return NIL alone if SIGNAL continues instead."
   (let ((failed (typep signal 'plan-failure)))
@@ -253,11 +254,11 @@ values of PROTECTED."
    (cleaning-up
     (let ((signal (end-cleanup task frame)))
       (if (completion-p signal)
-          (receive task frame signal)
+          (receive-signal task frame signal)
           (unwind task (frame-up frame) signal)))))
   (:unwind
    (cond ((in-state-p inside)
           (next cleaning-up)
           (values t (start-cleanup cleanup task frame signal) nil))
          ((in-state-p cleaning-up)
-          (after-cleanup (end-cleanup task frame) signal task)))))
+          (signal-after-cleanup (end-cleanup task frame) signal task)))))

@@ -28,7 +28,7 @@ in order."
       (let ((shape (shape pattern)))
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
-(defun fits-p (shape object values)
+(defun shape-matches-p (shape object values)
   "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the values of the
 holes."
   (cond ((hole-p shape)
@@ -37,15 +37,15 @@ holes."
                  (t (value-equal value object)))))
         ((consp shape)
          (and (consp object)
-              (fits-p (car shape) (car object) values)
-              (fits-p (cdr shape) (cdr object) values)))
+              (shape-matches-p (car shape) (car object) values)
+              (shape-matches-p (cdr shape) (cdr object) values)))
         (t (value-equal shape object))))
 
 (defun match-shape (shape count object)
   "Return true if SHAPE, with COUNT holes, matches OBJECT, and a list of the values of the holes."
   (let ((values (make-array count)))
     (fill values values)                ; an object that is in no pattern and no goal
-    (and (fits-p shape object values)
+    (and (shape-matches-p shape object values)
          (values t (coerce values 'list)))))
 
 (defun pattern-text (pattern)
@@ -90,7 +90,7 @@ NIL" :writable)
 
 ;;; Choosing.
 
-(defun goals-of (operator)
+(defun operator-goals (operator)
   (remove operator (all-goals) :key #'goal-operator :test-not #'eq))
 
 (defun goal-covers-p (goal other)
@@ -105,7 +105,7 @@ NIL" :writable)
   "Return the goal for OPERATOR and INSTANCE, and the values of its variables. Return NIL if no goal
 matches."
   (let ((best nil) (values '()))
-    (dolist (goal (goals-of operator) (values best values))
+    (dolist (goal (operator-goals operator) (values best values))
       (multiple-value-bind (matches found)
           (match-shape (goal-shape goal) (length (goal-variables goal)) instance)
         (when (and matches (or (null best) (more-specific-p goal best)))
@@ -131,7 +131,7 @@ values ~
   (let ((old (find-if (lambda (goal)
                         (and (match-shape shape count (goal-shape goal))
                              (match-shape (goal-shape goal) (length (goal-variables goal)) shape)))
-                      (goals-of operator))))
+                      (operator-goals operator))))
     (if old
         (entry-name (find old (registry-entries *goals*) :key #'entry-object))
         (make-symbol (string-upcase (goal-text operator pattern))))))
@@ -145,7 +145,7 @@ values ~
   (or (and (symbolp operator) (find operator '(achieve perceive belief) :test #'same-name-p))
       (reject-clause definition operator "achieve, perceive or belief")))
 
-(defun goal-form (definition operator pattern body environment)
+(defun def-goal-code (definition operator pattern body environment)
   (unless (consp pattern)
     (reject-clause definition pattern "a goal's pattern, such as (on ?a ?b)"))
   (multiple-value-bind (body text) (split-documentation body)
@@ -170,11 +170,11 @@ in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()
-                         (list (goal-form definition operator pattern body environment))))))
+                         (list (def-goal-code definition operator pattern body environment))))))
 
 (define-construct succeed-with (&rest values)
-  "End the body of a DEF-GOAL successfully, with VALUES. (From CRAM, where the name is SUCCEED. Here
-SUCCEED is a name for commands.)"
+  "End the body of a DEF-GOAL successfully, with VALUES. (From CRAM, where the name is SUCCEED. In
+ARS MAGNA, SUCCEED is a name for commands.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
              (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
              (reject-clause (text-title) form "succeed-with only in the body of a def-goal"))))

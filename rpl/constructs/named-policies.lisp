@@ -59,20 +59,20 @@ CRAM)."))
   (arguments '() :type list :read-only t)
   (memory '() :type list))
 
-(defun begin-use (policy arguments)
+(defun new-policy-use (policy arguments)
   "Return a new use of POLICY, a policy or its name, with ARGUMENTS. Signals WRONG-ARGUMENT if
 POLICY does not take ARGUMENTS."
   (let* ((policy (find-policy policy))
          (parameters (policy-lambda-list policy))
-         (trouble (misfit (shape-of parameters) arguments :wrong-p (constantly t))))
+         (trouble (arguments-misfit-text (shape-of parameters) arguments :wrong-p (constantly t))))
     (when trouble
       (reject-argument (or (policy-name policy) 'make-policy) "argument list" arguments
                        (format nil "~A, not ~A" (shape-text parameters) trouble)))
     (make-policy-use policy arguments)))
 
-(defun remembered (use name) (getf (use-memory use) name))
+(defun stored-policy-value (use name) (getf (use-memory use) name))
 
-(defun remember (use name value)
+(defun store-policy-value (use name value)
   (setf (getf (use-memory use) name) value))
 
 (define-global +use-variable+ (make-symbol "USE")
@@ -90,7 +90,7 @@ POLICY does not take ARGUMENTS."
   "Return the value last stored under NAME by POLICY-SETF, or NIL. For use in a clause of a policy.
 NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
   (check-in-clause form environment)
-  `(remembered ,+use-variable+ ,name))
+  `(stored-policy-value ,+use-variable+ ,name))
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
@@ -98,7 +98,7 @@ NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
 of a policy. VALUE and NAME are evaluated. The value is kept while the policy is in force (from
 CRAM)."
   (check-in-clause form environment)
-  `(remember ,+use-variable+ ,name ,value))
+  `(store-policy-value ,+use-variable+ ,name ,value))
 
 ;;; Defining.
 
@@ -119,18 +119,18 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
          (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
                         environment))))
 
-(defun names-in-calls (operator form)
+(defun name-arguments-in (operator form)
   "Return the name arguments of all calls of OPERATOR in FORM. OPERATOR is POLICY-GET or
 POLICY-SETF."
   (when (consp form)
     (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
             (loop for rest = form then (cdr rest)
-                  while (consp rest) append (names-in-calls operator (car rest))))))
+                  while (consp rest) append (name-arguments-in operator (car rest))))))
 
-(defun doubt-memory (definition clauses)
-  (let ((kept (names-in-calls 'policy-setf clauses)))
+(defun warn-of-unstored-names (definition clauses)
+  (let ((kept (name-arguments-in 'policy-setf clauses)))
     (when (every #'constantp kept)
-      (dolist (name (set-difference (names-in-calls 'policy-get clauses) kept :test #'equal))
+      (dolist (name (set-difference (name-arguments-in 'policy-get clauses) kept :test #'equal))
         (when (constantp name)
           (doubt-definition "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
                              ~@[ Stored: ~{~(~S~)~^, ~}.~]"
@@ -138,7 +138,7 @@ POLICY-SETF."
 
 (defun policy-code (definition name parameters clauses environment)
   (check-policy-clauses definition clauses)
-  (doubt-memory definition clauses)
+  (warn-of-unstored-names definition clauses)
   (let ((parameters (plain-parameters parameters parameters environment definition)))
     `(%make-policy ',name ',parameters
                    ,@(loop for kind in '(:init :check :recover :clean-up)
@@ -180,14 +180,14 @@ the variables around MAKE-POLICY. (From CRAM, where MAKE-POLICY takes a name.)"
 
 ;;; Being in force.
 
-(defun policed-text (policy arguments body)
+(defun named-policy-text (policy arguments body)
   "Return plan text that runs BODY while POLICY is in force with ARGUMENTS. BODY and ARGUMENTS are
 lists of forms, POLICY is a form."
   (with-gensyms (use over met value refused)
     (flet ((clause (reader)
              `(if (,reader (use-policy ,use))
                   (apply-plan (,reader (use-policy ,use)) (cons ,use (use-arguments ,use))))))
-      `(let ((,use (begin-use ,policy (list ,@arguments)))
+      `(let ((,use (new-policy-use ,policy (list ,@arguments)))
              (,met nil) (,value nil) (,refused nil))
          (evap-protect
           (seq (if (not ,(clause 'policy-init))
@@ -205,7 +205,7 @@ lists of forms, POLICY is a form."
                ,value)
           (if (not ,refused) ,(clause 'policy-clean-up)))))))
 
-(defun policies-text (policies body form)
+(defun nested-policies-text (policies body form)
   (unless (proper-list-p policies)
     (reject-clause (text-title) form "(with-policies ((policy (argument...))...) form...)"))
   (dolist (policy policies)
@@ -213,7 +213,7 @@ lists of forms, POLICY is a form."
       (reject-clause (text-title) policy "(policy (argument...)) for each policy")))
   (loop with text = `(seq ,@body)
         for (policy arguments) in (reverse policies)
-        do (setf text (policed-text policy arguments (list text)))
+        do (setf text (named-policy-text policy arguments (list text)))
         finally (return text)))
 
 (defun check-policy-arguments (arguments form scope)
@@ -232,12 +232,13 @@ policy of the manual's WITH-POLICY is plan text.)"
   (:code
    (progn
      (check-policy-arguments arguments form scope)
-     (plan-code (note-expansion (policies-text `((,policy ,arguments)) body form) form) scope))))
+     (plan-code (note-expansion (nested-policies-text `((,policy ,arguments)) body form) form)
+                scope))))
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
 force. The first policy starts first and takes precedence over the others. (From CRAM.)"
-  (:code (plan-code (note-expansion (policies-text policies body form) form) scope)))
+  (:code (plan-code (note-expansion (nested-policies-text policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)
   "Do as WITH-POLICIES. (From CRAM.)"

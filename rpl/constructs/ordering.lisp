@@ -5,7 +5,7 @@
 (defun over-p (status)
   (and (member status '(:succeeded :failed :evaporated)) t))
 
-(defun pass-on-outcome (target task frame)
+(defun continue-with-outcome (target task frame)
   "Continue TASK at FRAME with the outcome of TARGET. Return what a step returns."
   (let ((result (task-result target)))
     (cond ((eq :failed (task-state target)) (unwind task (frame-up frame) result))
@@ -46,12 +46,12 @@ if TASK evaporated or was left by a non-local exit (from CRAM, except for NIL)."
   (:steps
    (begin
     (let ((target (checked-target (funcall target environment) task 'join-task "wait for")))
-      (cond ((task-over-p target) (pass-on-outcome target task frame))
+      (cond ((task-over-p target) (continue-with-outcome target task frame))
             (t (next over)
                (setf memory target)
                (await-end target task)
                +parked+))))
-   (over (pass-on-outcome memory task frame))))
+   (over (continue-with-outcome memory task frame))))
 
 ;;; All steps are started, but what comes later in an order has a gate, which is closed until what
 ;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
@@ -74,7 +74,7 @@ it is a fluent. WATCHER waits for EARLIER."
     (and (every (lambda (task) (and (task-p task) (under-way-p task))) tasks)
          tasks)))
 
-(defun lift-order (order)
+(defun remove-order (order)
   (when (order-watcher order)
     (unwatch (shiftf (order-watcher order) nil))
     (release-hold (order-later order) order)))
@@ -82,9 +82,9 @@ it is a fluent. WATCHER waits for EARLIER."
 (defun note-earlier-end (watcher value trouble)
   (declare (ignore value))
   (destructuring-bind (order . task) (watcher-client watcher)
-    (cond ((null trouble) (lift-order order))
+    (cond ((null trouble) (remove-order order))
           ((null (task-signal task))
-           (decide task (failure-of trouble task (task-frame task)))))))
+           (end-with-signal task (failure-of trouble task (task-frame task)))))))
 
 (defun order-fluent (order)
   "Return the fluent that becomes true when ORDER allows its later task to start."
@@ -93,11 +93,11 @@ it is a fluent. WATCHER waits for EARLIER."
         (fl-funcall 'over-p (task-status earlier))
         earlier)))
 
-(defun keep-order (order task)
+(defun enforce-order (order task)
   "Let ORDER hold, on behalf of TASK, unless ORDER is met already."
   (let ((fluent (order-fluent order)))
     (unless (fluent-value fluent)
-      (hold-back (order-later order) order)
+      (add-hold (order-later order) order)
       (setf (order-watcher order) (make-watcher fluent #'note-earlier-end (cons order task)))
       (watch (order-watcher order)))))
 
@@ -109,9 +109,9 @@ WRONG-ARGUMENT and MISUSE."
                            "a task, such as the name of a :tag, or a fluent")
            (check-argument partial-order later (task-p later)
                            "a task, such as the name of a :tag")
-           (when (task-p earlier) (check-together task earlier))
-           (check-together task later)
-        collect (make-order (if (fluent-p earlier) (here earlier) earlier) later)))
+           (when (task-p earlier) (check-same-runner task earlier))
+           (check-same-runner task later)
+        collect (make-order (if (fluent-p earlier) (entity-here earlier) earlier) later)))
 
 ;;; Reading the constraints.
 
@@ -123,7 +123,7 @@ forms."
           append constraint
         else collect constraint))
 
-(defun check-visible (form name steps scope)
+(defun check-order-tag (form name steps scope)
   "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names no tag or
 variable."
   (unless (or (consp name)
@@ -138,8 +138,8 @@ variable."
   (loop for constraint in (constraint-list constraints)
         do (unless (typep constraint '(cons (eql :order) (cons t (cons t t))))
              (reject-clause (text-title) constraint "(:order earlier later)"))
-           (check-visible form (second constraint) steps scope)
-           (check-visible form (third constraint) steps scope)
+           (check-order-tag form (second constraint) steps scope)
+           (check-order-tag form (third constraint) steps scope)
         collect (list (second constraint) (third constraint))))
 
 ;;; Circles. A task starts before it ends, an order lets one end before another starts, and what is
@@ -192,14 +192,14 @@ tag outer."
 ;;; The constructs. MEMORY is the value of the last step, and the orders.
 
 (defun end-orders (memory)
-  (when memory (mapc #'lift-order (shiftf (cdr memory) '()))))
+  (when memory (mapc #'remove-order (shiftf (cdr memory) '()))))
 
 (define-construct partial-order (steps &body constraints)
   "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. With the constraint (:order a
 b), the task b does not start before a is over, in whatever way a ends.
-  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER. They may also be
-forms whose values are tasks.
-  a may also be a fluent: b starts when the fluent is true or has been pulsed since.
+  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER. Both a and b may
+also be forms whose values are tasks. a may also be a fluent: b starts when the fluent is true or
+has been pulsed since.
 The constraints hold until PARTIAL-ORDER ends. A task that has started already cannot be b. Cycles
 of the tags in STEPS are errors when the plan is defined; other cycles are reported as a deadlock.
 Return the first value of the last step (from CRAM, except for the value)."
@@ -211,7 +211,7 @@ Return the first value of the last step (from CRAM, except for the value)."
     (next over)
     (let ((orders (checked-orders (funcall pairs environment) task)))
       (setf memory (cons nil orders))
-      (dolist (order orders) (keep-order order task))
+      (dolist (order orders) (enforce-order order task))
       (cond ((plusp (length branches)) (start-branches branches task environment))
             (t (end-orders memory)
                (values (frame-up frame) nil)))))

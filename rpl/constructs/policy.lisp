@@ -13,7 +13,7 @@ nothing that could wait."
        (find-call #'fail-p (list policy))
        (not (suspends-p (subst-if nil #'fail-p policy) scope))))
 
-(defun awaiting-text (policy)
+(defun waiting-policy-text (policy)
   (and (operator-in-p policy '("IF" "WHEN"))
        (or (operator-in-p policy '("WHEN")) (null (cdddr policy)))
        `(seq (wait-until ,(second policy)) ,@(cddr policy))))
@@ -28,7 +28,7 @@ nothing that could wait."
     "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
   "Names of operators that a (return value) in their body ends.")
 
-(defun value-lost-in (policy)
+(defun lost-return-value (policy)
   "Return the (return value) that ends POLICY, if POLICY is a WHENEVER, whose value is lost.
 Otherwise return NIL."
   (and (operator-in-p policy '("WHENEVER"))
@@ -39,35 +39,35 @@ Otherwise return NIL."
                          (not (member (second form) '(nil t)))))
                   (cddr policy))))
 
-(defun doubt-policy (policy form scope)
+(defun warn-of-policy (policy form scope)
   "Warn if POLICY, the policy of FORM in SCOPE, waits for nothing, does nothing after its wait, or
 returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
-           (doubt-own-form form "the policy ~S waits for nothing: it runs once, before the ~
-                                 body, and then has ended. ~:[Write (whenever test form...), or ~
-                                 (seq (wait-for fluent) form...)~;Write ~:*~S~]."
-                           policy (and once-p (awaiting-text policy))))
+           (style-warn-of-own form "the policy ~S waits for nothing: it runs once, before the ~
+                                    body, and then has ended. ~:[Write (whenever test form...), or ~
+                                    (seq (wait-for fluent) form...)~;Write ~:*~S~]."
+                              policy (and once-p (waiting-policy-text policy))))
           ((only-waits-p policy scope)
-           (doubt-own-form form "the policy ~S does nothing after its wait, and then has ~
-                                 ended. Write what the policy is to do: (seq ~:*~S form...), or ~
-                                 (whenever fluent form...) to react each time."
-                           policy))
-          ((value-lost-in policy)
-           (doubt-own-form form "~S ends only the policy, and its value is lost; the body goes on. ~
-                                 (fail ...) in the policy ends the whole form; (pursue (seq ~
-                                 (wait-for fluent) value) form...) returns the value of the form ~
-                                 that ends first."
-                           (value-lost-in policy))))))
+           (style-warn-of-own form "the policy ~S does nothing after its wait, and then has ~
+                                    ended. Write what the policy is to do: (seq ~:*~S form...), or ~
+                                    (whenever fluent form...) to react each time."
+                              policy))
+          ((lost-return-value policy)
+           (style-warn-of-own form "~S ends only the policy, and its value is lost; the body goes ~
+                                    on. (fail ...) in the policy ends the whole form; (pursue ~
+                                    (seq (wait-for fluent) value) form...) returns the value of ~
+                                    the form that ends first."
+                              (lost-return-value policy))))))
 
-(defun watches-text-p (policy)
+(defun looks-like-policy-p (policy)
   (find-call (lambda (form)
                (or (fail-p form)
                    (operator-in-p form '("WHENEVER" "AT-LOCATION" "LOOP"))
                    (may-return-p form)))
              (list policy)))
 
-(defun waits-to-fail-p (body)
+(defun waits-then-fails-p (body)
   "True if BODY, a list of forms in a plan, only waits and then fails, as policies often do."
   (let ((forms (if (and (null (rest body)) (operator-in-p (first body) '("SEQ" "PROGN")))
                    (rest (first body))
@@ -75,29 +75,29 @@ returns a value."
     (and (operator-in-p (first forms) '("WAIT-FOR" "WAIT-UNTIL"))
          (operator-in-p (first (last forms)) '("FAIL")))))
 
-(defun doubt-order (policy body form)
-  "Warn if POLICY and BODY of FORM were probably written in the wrong order. This is so if BODY is a
-WHENEVER that never ends and POLICY a list of steps, or if BODY only waits and then fails, as
-policies often do."
+(defun warn-of-swapped-policy (policy body form)
+  "Warn if POLICY and BODY of FORM were probably written in the wrong order. The order is probably
+wrong if BODY is a WHENEVER that never ends and POLICY a list of steps, or if BODY only waits and
+then fails, as policies often do."
   (let ((endless-p (and (null (rest body)) (endless-whenever-p (first body)))))
-    (when (and (not (watches-text-p policy))
+    (when (and (not (looks-like-policy-p policy))
                (if endless-p
                    (or (operator-in-p policy '("SEQ" "PROGN"))
                        (find-call #'fail-p (first body)))
-                   (waits-to-fail-p body)))
-      (doubt-own-form form "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
-                            once, in parallel. Write the policy before the body: (with-policy ~
-                            ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
-                      (if (rest body) (cons 'seq body) (first body))
-                      endless-p policy endless-p))))
+                   (waits-then-fails-p body)))
+      (style-warn-of-own form "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
+                               once, in parallel. Write the policy before the body: (with-policy ~
+                               ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
+                         (if (rest body) (cons 'seq body) (first body))
+                         endless-p policy endless-p))))
 
 (define-construct with-policy (policy &body body)
   "Run BODY in a plan while POLICY, a form, runs in parallel. POLICY starts first and takes
 precedence. POLICY evaporates when BODY ends. If POLICY or BODY fails, WITH-POLICY fails. Return the
 first value of BODY (manual D.4; reading 186)."
   (:manual)
-  (:parts (policy node (progn (doubt-policy policy form scope)
-                             (doubt-order policy body form)
+  (:parts (policy node (progn (warn-of-policy policy form scope)
+                             (warn-of-swapped-policy policy body form)
                              (plan-code policy (single-scope scope))))
           (body node (body-code body (single-scope scope))))
   (:steps
@@ -111,4 +111,4 @@ first value of BODY (manual D.4; reading 186)."
   (:child-ended
    (unless (fail-or-escape task how result)
      (when (= 1 (task-index child))
-       (complete task (and (eq how :succeeded) result))))))
+       (end-with-value task (and (eq how :succeeded) result))))))

@@ -7,7 +7,7 @@
 messages. Signals WRONG-ARGUMENT and MISUSE."
   (unless (task-p target)
     (reject-argument operator 'target target "a task, such as the name of a :tag"))
-  (check-together task target)
+  (check-same-runner task target)
   (when (part-of-p task target)
     (reject-use "~A would ~A itself: it is part of ~A." (task-label task) what
                 (task-label target)))
@@ -43,7 +43,7 @@ status of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 
 ;;;; Reacting to suspension
 
-(defun do-reaction (reaction task frame)
+(defun run-reaction (reaction task frame)
   "Run REACTION, a leaf, with the task variables of TASK at FRAME. Errors in REACTION become
 messages."
   (let ((*calling-task* task)
@@ -68,11 +68,11 @@ effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)
    (begin
     (next inside)
     (let ((reaction reaction))
-      (setf memory (make-block-hook (lambda (task frame) (do-reaction reaction task frame)))))
+      (setf memory (make-block-hook (lambda (task frame) (run-reaction reaction task frame)))))
     (enter body environment frame))
    (inside (values (frame-up frame) value))))
 
-(defun unwind-body (task frame)
+(defun evaporate-body (task frame)
   "Evaporate the part of TASK that runs the body of FRAME, because that part must not continue where
 it is."
   (when (eq frame (task-frame task))
@@ -87,7 +87,7 @@ BODY (from CRAM)."
   (:steps
    (begin
     (next inside)
-    (setf memory (make-block-hook #'unwind-body))
+    (setf memory (make-block-hook #'evaporate-body))
     (start-branch body task environment 0 (task-level task))
     (await-parts task))
    (inside (values (frame-up frame) value)))
@@ -96,7 +96,7 @@ BODY (from CRAM)."
          ((and (eq how :evaporated) (null memory))
           (next begin)
           (wake task nil))
-         (t (complete task result)))))
+         (t (end-with-value task result)))))
 
 (define-construct without-scheduling (&body body)
   "Run BODY in a plan as one step, without scheduling. Meanwhile nothing can suspend or end the

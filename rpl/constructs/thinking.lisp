@@ -10,7 +10,7 @@
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number not below 0, up to 1e15"))
-    (ticks-of span unit operator)))
+    (span-in-ticks span unit operator)))
 
 (defun price-lambda (operator span unit form scope)
   (check-unit unit form)
@@ -18,7 +18,7 @@
 
 (defun think-for (task ticks alone)
   "Make TASK think for TICKS. If ALONE is true, no other task runs meanwhile."
-  (when alone (stand-still (task-runner task) ticks))
+  (when alone (stop-runner-tasks (task-runner task) ticks))
   (park task (start-timer task ticks))
   +parked+)
 
@@ -26,8 +26,8 @@
   (and (runner-charged-p (task-runner task)) (plusp ticks)))
 
 (define-construct think (span &key unit alone)
-  "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. If thinking is charged, wait that
-long; otherwise return at once. Fractions of ticks are rounded up. Other tasks of the robot's plans
+  "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. If thinking is charged, wait for
+SPAN; otherwise return at once. Fractions of ticks are rounded up. Other tasks of the robot's plans
 go on meanwhile. If ALONE is true, all other tasks stop, policies too, and react afterwards. Return
 NIL. Signals WRONG-ARGUMENT (manual 1.2)."
   (:command)
@@ -45,14 +45,14 @@ NIL. Signals WRONG-ARGUMENT (manual 1.2)."
    (thinking (values (frame-up frame) nil)))
   (:unwind
    ;; Others may go on.
-   (when (and memory (in-state-p thinking)) (stand-no-longer (task-runner task)))
+   (when (and memory (in-state-p thinking)) (resume-runner-tasks (task-runner task)))
    nil))
 
 ;;; A body with a price. Its steps are not charged for, and its end comes when the price is paid.
 
 (defstruct (thought (:constructor make-thought (ticks alone start)) (:copier nil))
-  "The state of a WITH-CHARGE. It takes TICKS from the tick START on, and if ALONE is true, other
-tasks stop meanwhile. Its body has ended with a RESULT or a SIGNAL."
+  "The state of a WITH-CHARGE. The thought takes TICKS from the tick START on, and if ALONE is true,
+other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or SIGNAL."
   (ticks 0 :type real :read-only t)
   (alone nil :read-only t)
   (start 0 :type real :read-only t)
@@ -85,8 +85,8 @@ tasks stop meanwhile. Its body has ended with a RESULT or a SIGNAL."
 :seconds. Return the first value of BODY. If thinking is charged, the steps of BODY do not count.
 The value or failure of BODY then comes SPAN after the start of BODY, or when BODY ends if that is
 later. If ALONE is true, other tasks stop after BODY until the price is paid, as for THINK. If
-thinking is not charged, just run BODY. If the task evaporates, it does so at once. Signals
-WRONG-ARGUMENT (manual 1.2)."
+thinking is not charged, just run BODY. A task that evaporates does not wait for the rest of SPAN.
+Signals WRONG-ARGUMENT (manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))
           (alone function (value-lambda alone scope))
@@ -107,7 +107,7 @@ WRONG-ARGUMENT (manual 1.2)."
    (thinking (end-thought memory task frame)))
   (:unwind
    (cond ((in-state-p thinking)
-          (when (thought-alone memory) (stand-no-longer (task-runner task)))
+          (when (thought-alone memory) (resume-runner-tasks (task-runner task)))
           nil)
          ((and (in-state-p inside) (not (eq signal :evaporate)) (plusp (ticks-left memory task)))
           (next thinking)
@@ -115,4 +115,4 @@ WRONG-ARGUMENT (manual 1.2)."
           (values t (think-for task (ticks-left memory task) (thought-alone memory)) nil))))
   (:child-ended
    (or (fail-or-escape task how result)
-       (complete task (and (eq how :succeeded) result)))))
+       (end-with-value task (and (eq how :succeeded) result)))))

@@ -5,11 +5,11 @@
 (export '(claim-p valve))
 
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
-;;; the newest first. A part of a task that holds a valve may hold it as well, one part at a time.
-;;; So the HOLDERS of a valve are its owner's claim, the first one, and those of the tasks around
-;;; the owner; between them may be claims that parts have lost to parts. Any other claim was
+;;; the newest first. A part of a task that owns a valve may own it as well, one part at a time.
+;;; So the OWNER-CLAIMS of a valve are its owner's claim, the first one, and those of the tasks
+;;; around the owner; between them may be claims that parts have lost to parts. Any other claim was
 ;;; preempted: it has LOST the valve, and its task is suspended. OUTER leads from a claim to the
-;;; claims of tasks around its own that held the valve when it was granted: they give it back only
+;;; claims of tasks around its own that owned the valve when it was granted: they give it back only
 ;;; after this claim.
 ;;;
 ;;; Waiting claims queue by priority, then level, then order of arrival, in a LINE for each
@@ -40,8 +40,7 @@ waits" :writable))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
   "The queue of claims to VALVE with one PRIORITY, by tasks of one LEVEL, in order of arrival. A
-line is also a node of a tree. It has a subtree of lines AHEAD and one of lines BEHIND, which have
-less WEIGHT."
+line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines have less WEIGHT."
   (ahead nil :type (or null line))
   (behind nil :type (or null line))
   (weight 0 :type (unsigned-byte 32))
@@ -76,7 +75,7 @@ less WEIGHT."
   "Return the task that owns VALVE, or NIL. If a part of that task owns VALVE as well, return the
 part."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
-  (let ((claims (valve-claims (here valve))))
+  (let ((claims (valve-claims (entity-here valve))))
     (and claims (claim-task (first claims)))))
 
 (addition valve-requests)
@@ -86,7 +85,7 @@ part."
     (some-line (lambda (line)
                  (loop for turn = (line-first-turn line) then (turn-next turn)
                        while turn do (push (claim-task (turn-claim turn)) tasks)))
-               (valve-lines (here valve)))
+               (valve-lines (entity-here valve)))
     (nreverse tasks)))
 
 (defun some-line (function tree)
@@ -96,7 +95,7 @@ part."
            (funcall function tree)
            (some-line function (line-behind tree)))))
 
-(defun holders (valve)
+(defun owner-claims (valve)
   "Return the owner claims of VALVE, innermost first: the claim of the owner, and those of the tasks
 around the owner."
   (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
@@ -106,9 +105,9 @@ around the owner."
 (addition valve-losers)
 (defun valve-losers (valve)
   "Return the tasks from which VALVE was taken and which will get it back, the next one first."
-  (let* ((valve (here valve)) (holders (holders valve)))
+  (let* ((valve (entity-here valve)) (owner-claims (owner-claims valve)))
     (mapcar #'claim-task
-            (remove-if (lambda (claim) (member claim holders)) (valve-claims valve)))))
+            (remove-if (lambda (claim) (member claim owner-claims)) (valve-claims valve)))))
 
 (defun valve-text (valve)
   (one-line (safe-text (valve-name valve) :escape nil)))
@@ -127,9 +126,9 @@ around the owner."
 
 (defun rivals (valve task)
   "Return the owner claims of VALVE whose tasks do not contain TASK, innermost first."
-  (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (holders valve)))
+  (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (owner-claims valve)))
 
-(defun stronger-p (claim rival)
+(defun may-preempt-p (claim rival)
   "True if CLAIM may take the valves that RIVAL owns. A rival that evaporates keeps its valves."
   (and (> (claim-priority claim) (claim-priority rival))
        (not (evaporating-p (claim-task rival)))))
@@ -139,35 +138,35 @@ around the owner."
   "True if CLAIM may take VALVE, from its rivals if necessary."
   (let ((rivals (rivals valve (claim-task claim))))
     (or (null rivals)
-        (and (every (lambda (rival) (stronger-p claim rival)) rivals)
+        (and (every (lambda (rival) (may-preempt-p claim rival)) rivals)
              (null (all-preemptors (claim-task claim)))))))
 
 (defun grantable-p (claim)
   (every (lambda (valve) (available-p valve claim)) (claim-valves claim)))
 
-(defun lose (valve claim)
+(defun lose-valve (valve claim)
   (when (and (member valve (claim-taken claim)) (not (member valve (claim-lost claim))))
     (push valve (claim-lost claim))
     (block-task (claim-task claim) t)))
 
-(defun take (valve claim)
+(defun take-valve (valve claim)
   "Grant VALVE to CLAIM. Return lists (VALVE rival) of the claims that lose VALVE, outermost first."
-  (let* ((holders (holders valve))
+  (let* ((owner-claims (owner-claims valve))
          (rivals (rivals valve (claim-task claim)))
-         (outer (find-if-not (lambda (holder) (member holder rivals :test #'eq)) holders)))
+         (outer (find-if-not (lambda (claim) (member claim rivals :test #'eq)) owner-claims)))
     (when outer (push (cons valve outer) (claim-outer claim)))
     (push claim (valve-claims valve))
     (push valve (claim-taken claim))
     (mapcar (lambda (rival) (list valve rival)) (reverse rivals))))
 
 ;; What a rival does about it may give valves back: those that CLAIM has already by then.
-(defun grant (claim)
-  (loop for (valve rival) in (mapcan (lambda (valve) (take valve claim)) (claim-valves claim))
-        do (lose valve rival)))
+(defun grant-claim (claim)
+  (loop for (valve rival) in (mapcan (lambda (valve) (take-valve valve claim)) (claim-valves claim))
+        do (lose-valve valve rival)))
 
 ;;; Queueing.
 
-(defun before-p (line other)
+(defun line-before-p (line other)
   (or (> (line-priority line) (line-priority other))
       (and (= (line-priority line) (line-priority other))
            (> (line-level line) (line-level other)))))
@@ -178,7 +177,7 @@ around the owner."
 (defun split-lines (tree line)
   "Return two trees: the lines of TREE that go before LINE, and the other lines of TREE."
   (cond ((null tree) (values nil nil))
-        ((before-p tree line)
+        ((line-before-p tree line)
          (multiple-value-bind (ahead behind) (split-lines (line-behind tree) line)
            (setf (line-behind tree) ahead)
            (values tree behind)))
@@ -199,22 +198,22 @@ AHEAD."
 
 (defun without-line (tree line)
   (cond ((eq tree line) (joined-lines (line-ahead line) (line-behind line)))
-        ((before-p line tree)
+        ((line-before-p line tree)
          (setf (line-ahead tree) (without-line (line-ahead tree) line))
          tree)
         (t (setf (line-behind tree) (without-line (line-behind tree) line))
            tree)))
 
-(defun line-like (line tree)
+(defun find-line (line tree)
   (loop while tree
-        do (cond ((before-p line tree) (setf tree (line-ahead tree)))
-                 ((before-p tree line) (setf tree (line-behind tree)))
+        do (cond ((line-before-p line tree) (setf tree (line-ahead tree)))
+                 ((line-before-p tree line) (setf tree (line-behind tree)))
                  (t (return tree)))))
 
-(defun line-for (claim valve)
-  "Return the line of VALVE in which CLAIM waits. If there is no such line, make one."
+(defun ensure-line (claim valve)
+  "Return the line of VALVE in which CLAIM waits, or a new line if VALVE has no such line."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
-    (or (line-like line (valve-lines valve))
+    (or (find-line line (valve-lines valve))
         (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
           ;; As different from the last weight as can be.
           (setf (line-weight line) (ldb (byte 32 0) (* 2654435769 (incf (valve-count valve))))
@@ -223,7 +222,7 @@ AHEAD."
 
 (defun queue-up (claim)
   (dolist (valve (claim-valves claim))
-    (let ((turn (make-turn claim (line-for claim valve))))
+    (let ((turn (make-turn claim (ensure-line claim valve))))
       (join-line turn)
       (push turn (claim-turns claim)))))
 
@@ -243,32 +242,32 @@ AHEAD."
         while turn
         when (grantable-p (turn-claim turn)) return (turn-claim turn)))
 
-(defun admit (claim)
+(defun grant-queued-claim (claim)
   (leave-queues claim)
-  (grant claim)
+  (grant-claim claim)
   (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
 
-(defun admit-parts (task)
+(defun grant-queued-claims (task)
   "Grant the claims that TASK and its parts wait for, if they are grantable. TASK has just got back
 a valve."
   (let ((awaited (task-awaiting task)))
-    (when (and (claim-p awaited) (grantable-p awaited)) (admit awaited)))
-  (mapc #'admit-parts (task-children task)))
+    (when (and (claim-p awaited) (grantable-p awaited)) (grant-queued-claim awaited)))
+  (mapc #'grant-queued-claims (task-children task)))
 
-(defun regain (valve claim)
+(defun regain-valve (valve claim)
   (when (member valve (claim-lost claim))
     (setf (claim-lost claim) (remove valve (claim-lost claim)))
     (unblock-task (claim-task claim) t)
-    (unless (claim-lost claim) (admit-parts (claim-task claim)))))
+    (unless (claim-lost claim) (grant-queued-claims (claim-task claim)))))
 
 ;; The new owner has no parts yet, and at least the priority of those in line: no other can have it.
 (defun grant-waiting (valve)
-  "Grant the first claim that waits for VALVE and is grantable. Then give VALVE back to its losers,
-if possible."
+  "Grant the first claim that waits for VALVE and is grantable. Afterwards give VALVE back to its
+losers, if possible."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
-    (when claim (admit claim)))
-  (dolist (holder (holders valve))
-    (regain valve holder)))
+    (when claim (grant-queued-claim claim)))
+  (dolist (claim (owner-claims valve))
+    (regain-valve valve claim)))
 
 (defun without-claim (claims claim)
   "Return CLAIMS without CLAIM, which is usually the newest of CLAIMS."
@@ -279,7 +278,7 @@ if possible."
   (let ((valves (shiftf (claim-taken claim) '())))
     (dolist (valve valves)
       (setf (valve-claims valve) (without-claim (valve-claims valve) claim))
-      (regain valve claim))
+      (regain-valve valve claim))
     ;; A claim that is granted one of them may have got others with it, which are taken then.
     (loop for valve in valves
           for owner in (mapcar (lambda (valve) (first (valve-claims valve))) valves)

@@ -10,15 +10,15 @@
     (stop-waiting task)
     (wake task nil timer)))
 
-(defun timer-in (ticks task function)
+(defun make-timer-after (ticks task function)
   "Return a new timer that calls FUNCTION in TICKS ticks, on behalf of TASK."
   (let ((runner (task-runner task)))
     (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
 
 (defun start-timer (task ticks)
-  (setf (task-timer task) (timer-in ticks task #'time-out)))
+  (setf (task-timer task) (make-timer-after ticks task #'time-out)))
 
-(defun ticks-of (span unit operator)
+(defun span-in-ticks (span unit operator)
   "Return the duration SPAN, a number or a fluent, in ticks. UNIT is :ticks or :seconds. OPERATOR is
 named in errors."
   (let ((span (fluent-value span)))
@@ -40,8 +40,8 @@ named in errors."
 UNIT are forms in FORM."
   (check-unit unit form)
   (when (and (realp span) (minusp span))
-    (doubt-form form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
-  (value-lambda `(ticks-of ,span (or ,unit :ticks) ',operator) scope))
+    (style-warn-of form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
+  (value-lambda `(span-in-ticks ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)
   "Wait in a plan for SPAN ticks, or seconds if UNIT is :seconds (manual D.4; reading 90). SPAN is a
@@ -87,7 +87,7 @@ it never changes, and TASK waits forever."
         ;; Another thread may have set it since it was looked at.
         (let ((value (fluent-value condition)))
           (when value (wake-waiter watcher value nil))))
-      (wait-for-no-fluent task)))
+      (wait-forever task)))
 
 (defun checked-timeout (timeout)
   (let ((timeout (fluent-value timeout)))
@@ -109,7 +109,7 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
            (value (fluent-value fluent))
            (timeout (if value nil (checked-timeout (funcall timeout environment)))))
       (cond (value
-             (unless (fluent-p fluent) (doubt-awaited task value))
+             (unless (fluent-p fluent) (warn-of-awaited-value task value))
              (values (frame-up frame) value))
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
@@ -146,7 +146,7 @@ that counts each event, a watcher for any other fluent, and NIL if CONDITION is 
          (if (plusp (watcher-pending source))
              (give-way task)
              (park task (watcher-fluent source))))
-        ((null source) (wait-for-no-fluent task))
+        ((null source) (wait-forever task))
         ((fluent-value source) (give-way task))
         (t (wait-for-change task source)))
   +parked+)
@@ -223,19 +223,19 @@ CONDITION."
           (wait-time 1)
           (go ,again)))))
 
-(defun doubt-polled (condition form)
+(defun warn-of-polled-condition (condition form)
   (let ((advice (if (realp condition)
                     (format nil "~S is a number, which counts as true. To let time pass, write ~
                                  (wait-time ~:*~S)." condition)
                     (test-advice condition))))
-    (when advice (doubt-own-form form "wait-until: ~A" advice))))
+    (when advice (style-warn-of-own form "wait-until: ~A" advice))))
 
 (define-construct wait-until (condition)
   "Wait in a plan until the form CONDITION is true; return the value of CONDITION. If the value is a
 fluent or a network, as for (< level 46) where LEVEL is a fluent, wait for that fluent. Otherwise
 test CONDITION again at each tick. CONDITION may itself wait. (Policies and AT-LOCATION watch their
 conditions as WAIT-UNTIL does.)"
-  (:code (progn (doubt-polled condition form)
+  (:code (progn (warn-of-polled-condition condition form)
                 (plan-code (note-expansion (wait-until-text condition) form) scope))))
 
 ;;;; Deadlines
@@ -250,15 +250,17 @@ conditions as WAIT-UNTIL does.)"
 (defmethod write-failure ((failure deadline-missed) stream)
   (format stream "Not done within ~A tick~:P" (deadline-missed-ticks failure)))
 
-(defun miss-deadline (timer)
+(defun fail-at-deadline (timer)
   "Let the task of TIMER fail, unless the task is ending."
   (let* ((task (timer-client timer))
          (frame (task-frame task))
          (*asker* (list "the deadline of " (car (frame-data frame)) " ticks of task "
                         (task-serial task))))
     (unless (task-signal task)
-      (decide task (failure-of (make-condition 'deadline-missed :ticks (car (frame-data frame)))
-                               task frame)))))
+      (end-with-signal task
+                       (failure-of (make-condition 'deadline-missed
+                                                   :ticks (car (frame-data frame)))
+                                   task frame)))))
 
 (defun end-deadline (task memory)
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
@@ -275,7 +277,7 @@ number up to 1e15; with 0 or less BODY must not take any time. (CRAM has a timeo
    (begin
     (next over)
     (let ((ticks (max 0 (funcall span environment))))
-      (setf memory (cons ticks (timer-in ticks task #'miss-deadline))))
+      (setf memory (cons ticks (make-timer-after ticks task #'fail-at-deadline))))
     (start-branch body task environment 0 (task-level task))
     (await-parts task))
    (over (values (frame-up frame) value)))
@@ -285,4 +287,4 @@ number up to 1e15; with 0 or less BODY must not take any time. (CRAM has a timeo
   (:child-ended
    (end-deadline task (shiftf memory nil))
    (or (fail-or-escape task how result)
-       (complete task (and (eq how :succeeded) result)))))
+       (end-with-value task (and (eq how :succeeded) result)))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(defun valve-meant (object)
+(defun valve-for (object)
   "Return the valve in the current run that OBJECT, a valve or a fluent with a valve as value,
 stands for. Signals WRONG-ARGUMENT."
   (let ((valve (fluent-value object)))
@@ -12,18 +12,18 @@ stands for. Signals WRONG-ARGUMENT."
                                     it is a variable whose value is a valve~]"
                                (and (symbolp valve) (not (keywordp valve)) (not (eq t valve))
                                     valve))))
-    (here valve)))
+    (entity-here valve)))
 
 (defun checked-claim (priority valves task)
   (let ((priority (or (fluent-value priority) 0))
-        (valves (remove-duplicates (mapcar #'valve-meant valves))))
+        (valves (remove-duplicates (mapcar #'valve-for valves))))
     (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")
     (make-claim task valves priority)))
 
 (defun claim-or-queue (claim task)
   "Let TASK make CLAIM. Return true if TASK gets the valves at once; otherwise TASK waits in the
 queue."
-  (cond ((grantable-p claim) (grant claim) t)
+  (cond ((grantable-p claim) (grant-claim claim) t)
         (t (queue-up claim)
            (park task claim)
            (report-circle task)

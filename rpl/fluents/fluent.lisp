@@ -102,12 +102,12 @@ view of changes, a cons of this count and KEY of the value" :writable)
   (let ((home (fluent-home fluent)))
     (if (and home (home-closed-p home)) nil home)))
 
-(defmethod foreign-p ((fluent fluent) copier)
+(defmethod foreign-entity-p ((fluent fluent) copier)
   (let ((home (home-of fluent)))
     (and home (not (home-forked-p home copier)))))
 
 ;; A home made since may be of the run that was forked, or of any other.
-(defmethod concerns-p ((fluent fluent) realm)
+(defmethod may-need-twin-p ((fluent fluent) realm)
   (let ((home (home-of fluent)))
     (or (null home)
         (< (realm-made realm) (home-born home))
@@ -205,20 +205,20 @@ or NIL."
        (plusp (length object))
        (every #'fluent-p object)))
 
-(defun reject-vector (vector &optional (user "a condition"))
+(defun reject-fluent-vector (vector &optional (user "a condition"))
   "Signal MISUSE, because VECTOR is a vector of fluents where USER needs a single fluent."
   (let* ((name (safe-text (fluent-name (svref vector 0)) :escape nil))
          (variable (subseq name 0 (position #\Space name :from-end t))))
     (reject-use "~A is a vector of fluents: ~A needs one of them. Write (vref ~2:*~A~* ~A)."
                 variable user
-                (or (known-vector-variable-p (find-known variable)) "index"))))
+                (or (known-vector-variable-p (known-variable-named variable)) "index"))))
 
-(defun find-known (name)
+(defun known-variable-named (name)
   (loop for variable being the hash-keys of *known-variables*
         when (string-equal name variable) return variable))
 
 (defun robots-fluent-p (fluent)
-  "True if FLUENT is a fluent that the robot sets. Its name is then the name of a known variable, or
-of an element of such a variable's vector."
+  "True if FLUENT is a fluent that the robot sets. Such a fluent has the name of a known variable,
+or of an element of such a variable's vector."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
-    (and (find-known (subseq name 0 space)) t)))
+    (and (known-variable-named (subseq name 0 space)) t)))

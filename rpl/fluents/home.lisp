@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*runner* *interface* home-in-use note-outside-change home at-home call-at-home in-use-p
+(export '(*runner* *interface* home-in-use note-outside-change home at-home call-at-home home-busy-p
           post next-entry posted-p))
 
 ;;; A fluent that a task waits for has a home, the plan runner of that task. One thread at a time
@@ -68,7 +68,7 @@ INTERFACE is in use. FUNCTION is SET-VALUE or PULSE.")
 (defun leave-home (home)
   (swap-if (home-holder home) (current-thread) nil))
 
-(defun call-having (home take function)
+(defun call-owning-home (home take function)
   "Take HOME by calling TAKE. If TAKE returns true, call FUNCTION in HOME, leave HOME and return the
 values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (declare (type function take function))
@@ -82,7 +82,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
           (setf (home-left-p home) nil))))
     (leave-home home)))
 
-(defun in-use-p (home)
+(defun home-busy-p (home)
   "True if a thread owns HOME, or has left HOME in the middle of a change."
   (or (home-left-p home) (home-holder home)))
 
@@ -96,7 +96,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (cond ((eq home *runner*) (funcall function))
         ((member home *homes* :test #'eq)
          (let ((*runner* home)) (funcall function)))
-        (t (call-having home #'wait-for-home function))))
+        (t (call-owning-home home #'wait-for-home function))))
 
 (defmacro at-home ((home) &body body)
   "Run BODY while this thread owns HOME, as CALL-AT-HOME does."

@@ -42,33 +42,33 @@ computation signalled an error."
 
 ;;; Being used.
 
-(defun acquire (fluent)
+(defun add-user (fluent)
   "Count one more user of FLUENT. With the first user, FLUENT starts to follow its sources."
   (when (and (derived-p fluent) (= 1 (incf (derived-users fluent))))
     (dolist (source (derived-sources fluent))
       (when (fluent-p source)
-        (acquire source)
+        (add-user source)
         (let ((link (make-link source fluent)))
           (join-links link)
           (push link (derived-links fluent)))))
     (recompute fluent)))
 
-(defun release (fluent)
+(defun remove-user (fluent)
   "Count one user of FLUENT less. With the last user, FLUENT stops following its sources."
   (when (and (derived-p fluent) (= 0 (decf (derived-users fluent))))
     (dolist (link (shiftf (derived-links fluent) '()))
       (leave-links link)
-      (release (link-source link)))
+      (remove-user (link-source link)))
     (setf (fluent-now fluent) nil
           (derived-trouble fluent) nil)))
 
-(defun set-home (fluent)
+(defun assign-home (fluent)
   "Make the current plan runner the home of FLUENT, and of the sources of FLUENT."
   (unless (eq *runner* (fluent-home fluent))
     (setf (fluent-home fluent) *runner*)
     (when (derived-p fluent)
       (dolist (source (derived-sources fluent))
-        (when (fluent-p source) (set-home source))))))
+        (when (fluent-p source) (assign-home source))))))
 
 (defun watch (watcher)
   "Register WATCHER with its fluent, after the watchers that are already registered. Another thread
@@ -76,15 +76,15 @@ may have just set the fluent. So a caller that waits for the fluent to become tr
 fluent once more afterwards."
   (let ((fluent (watcher-fluent watcher)))
     (unless (eq *runner* (fluent-home fluent))
-      (set-home fluent)
+      (assign-home fluent)
       (memory-barrier))
-    (acquire fluent)
+    (add-user fluent)
     (join-watchers watcher)))
 
 (defun unwatch (watcher)
   "Remove WATCHER from its fluent."
   (leave-watchers watcher)
-  (release (watcher-fluent watcher)))
+  (remove-user (watcher-fluent watcher)))
 
 ;;; Reading.
 
@@ -99,39 +99,39 @@ fluent once more afterwards."
   "Return the value of FLUENT. If FLUENT is derived and not in use, compute the value."
   (cond ((or (not (derived-p fluent)) (plusp (derived-users fluent))) (value-in-use fluent))
         ((= 1 (fluent-height fluent)) (compute fluent))
-        (t (acquire fluent)
+        (t (add-user fluent)
            (unwind-protect (value-in-use fluent)
-             (release fluent)))))
+             (remove-user fluent)))))
 
 (declaim (inline one-fluent truth-value))
 (defun one-fluent (object)
   "Return the condition OBJECT. If OBJECT is a fluent, return its twin in the current run. Signals
 MISUSE for a vector of fluents."
-  (cond ((fluent-p object) (here object))
-        ((and (simple-vector-p object) (fluents-vector-p object)) (reject-vector object))
+  (cond ((fluent-p object) (entity-here object))
+        ((and (simple-vector-p object) (fluents-vector-p object)) (reject-fluent-vector object))
         (t object)))
 
 (defun truth-value (object)
-  "Return the truth value of the condition OBJECT. For a fluent, this is its value, otherwise OBJECT
+  "Return the truth value of the condition OBJECT: the value of a fluent, or any other OBJECT
 itself. Signals MISUSE for a vector of fluents."
-  (if (fluent-p object) (current-value (here object)) (one-fluent object)))
+  (if (fluent-p object) (current-value (entity-here object)) (one-fluent object)))
 
 ;; An error fluent is of use only if it is read.
 (defun was-read-p (fluent)
   "True if FLUENT was read since the last FORGET-READING, or has ever been in a network, or a task
 waits for FLUENT."
-  (let ((fluent (here fluent)))
+  (let ((fluent (entity-here fluent)))
     (and (or (fluent-reading fluent) (fluent-first-watcher fluent)) t)))
 
 (defun forget-reading (fluent)
   "Forget that FLUENT was read: see WAS-READ-P."
-  (let ((fluent (here fluent)))
+  (let ((fluent (entity-here fluent)))
     (when (eq :once (fluent-reading fluent)) (setf (fluent-reading fluent) nil))))
 
 (declaim (inline operand-value))
 (defun operand-value (object)
   "Return the current value of OBJECT if OBJECT is a fluent; otherwise return OBJECT."
-  (if (fluent-p object) (current-value (here object)) object))
+  (if (fluent-p object) (current-value (entity-here object)) object))
 
 (defun names-fluent-p (object)
   "True if OBJECT is a symbol whose value is a fluent or a vector of fluents, or will be."
@@ -156,10 +156,10 @@ Otherwise return NAME."
   "Return the current value of OBJECT if OBJECT is a fluent; otherwise return OBJECT. Can be set:
 see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent,
 or a vector of fluents."
-  (cond ((fluent-p object) (current-value (here object)))
+  (cond ((fluent-p object) (current-value (entity-here object)))
         ((and object (symbolp object)) (reject-name-of-fluent object))
         ((and (simple-vector-p object) (fluents-vector-p object))
-         (reject-vector object "fluent-value"))
+         (reject-fluent-vector object "fluent-value"))
         (t object)))
 
 ;;; Building.
@@ -173,7 +173,7 @@ or a vector of fluents."
 with the name NAME, whose value is always the value of FUNCTION for the values of ARGUMENTS."
   (if (some #'fluent-p arguments)
       (let ((sources (loop for argument in arguments
-                           collect (if (fluent-p argument) (here argument) argument))))
+                           collect (if (fluent-p argument) (entity-here argument) argument))))
         (dolist (source sources)
           (when (fluent-p source) (setf (fluent-reading source) :always)))
         (%make-derived name function sources (height-over sources)))
@@ -252,7 +252,7 @@ because the values of fluents may refer to each other.")
 
 (defun value-text (fluent)
   "Return the value of FLUENT as text, or the type of the error in computing it."
-  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (here fluent))))
+  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (entity-here fluent))))
     (error (condition) (format nil "error: ~A" (type-of condition)))))
 
 (defmethod print-object ((fluent fluent) stream)
@@ -299,9 +299,9 @@ they depend on."
           (derived-queued fluent) nil
           (derived-successor fluent) nil)))
 
-(defun acquire-despite-abort (fluent)
+(defun add-user-despite-abort (fluent)
   "Count one more user of FLUENT. If the function of FLUENT aborts, record an error in FLUENT."
-  (restart-case (acquire fluent)
+  (restart-case (add-user fluent)
     (abort ()
       :report "Let the fluent be in error."
       (when (derived-p fluent)
@@ -321,5 +321,5 @@ watchers for which UNWANTED-P is true."
     (dolist (watcher all)
       (setf (watcher-previous watcher) nil
             (watcher-next watcher) nil)
-      (acquire-despite-abort (watcher-fluent watcher))
+      (add-user-despite-abort (watcher-fluent watcher))
       (join-watchers watcher))))

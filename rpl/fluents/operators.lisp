@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(function-given-p counts-each-event-p lifting))
+(export '(function-designator-p counts-each-event-p lifting))
 
 ;;; A view is a network with a memory. Reading it, by FLUENT-VALUE or by being woken by it, resets
 ;;; it; so each reader needs its own view. While a task waits for it, it is true for the
@@ -39,7 +39,7 @@ VIEW was last read; or NIL."
   "Return the value of VIEW, and reset VIEW. VALUE is the value of the first fluent of VIEW."
   (let ((answer (if (view-test view) (change-since-reading view value) (event-since-reading view))))
     ;; It is no longer true when the change under way, if any, is spread.
-    (when (and answer *spreading*) (push view (first *spreading*)))
+    (when (and answer *propagating*) (push view (first *propagating*)))
     answer))
 
 (defun make-view (name sources bases memory &key always-p test key)
@@ -68,7 +68,7 @@ WRONG-ARGUMENT. (From CRAM, except for pulses of networks.)"
   (check-argument fl-pulsed fluent (fluent-p fluent) "a fluent")
   (check-argument fl-pulsed handle-missed-pulses
                   (member handle-missed-pulses '(:once :never :always)) ":once, :never or :always")
-  (let* ((bases (base-fluents (here fluent)))
+  (let* ((bases (base-fluents (entity-here fluent)))
          (seen (if (eq handle-missed-pulses :never) (count-events bases) 0)))
     (make-view 'fl-pulsed bases bases seen :always-p (eq handle-missed-pulses :always))))
 
@@ -76,7 +76,7 @@ WRONG-ARGUMENT. (From CRAM, except for pulses of networks.)"
   "True if FLUENT is a view that counts each event: see :ALWAYS in FL-PULSED."
   (and (view-p fluent) (view-always-p fluent)))
 
-(defun function-given-p (object)
+(defun function-designator-p (object)
   "True if OBJECT is a function or the name of a defined function."
   (or (functionp object)
       (and (symbolp object) (fboundp object) (functionp (symbol-function object))
@@ -88,9 +88,9 @@ WRONG-ARGUMENT. (From CRAM, except for pulses of networks.)"
 made or last read. TEST compares the old and the new value of KEY. The view is reset when it is read
 or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (From CRAM.)"
   (check-argument fl-value-changed fluent (fluent-p fluent) "a fluent")
-  (check-argument fl-value-changed test (function-given-p test) "a function of two values")
-  (check-argument fl-value-changed key (function-given-p key) "a function of a value")
-  (let* ((fluent (here fluent))
+  (check-argument fl-value-changed test (function-designator-p test) "a function of two values")
+  (check-argument fl-value-changed key (function-designator-p key) "a function of a value")
+  (let* ((fluent (entity-here fluent))
          (bases (base-fluents fluent))
          (key (coerce key 'function)))
     (make-view 'fl-value-changed (list fluent) bases
@@ -118,12 +118,12 @@ fluent (reading 184)."
            (,operator ,@values)))))
 
 (defun every-value (&rest values)
-  "Return the last of VALUES if all VALUES are true; otherwise NIL. VALUES must not be empty. This
-is AND as a function."
+  "Return the last of VALUES if all VALUES are true; otherwise NIL. VALUES must not be empty.
+EVERY-VALUE is AND as a function."
   (and (every #'identity values) (first (last values))))
 
 (defun some-value (&rest values)
-  "Return the first true value of VALUES, or NIL. This is OR as a function."
+  "Return the first true value of VALUES, or NIL. SOME-VALUE is OR as a function."
   (find-if #'identity values))
 
 (defun lift-junction (name function absorbing thunks)

@@ -13,7 +13,7 @@
 ;;; does not change them. The change back afterwards notifies the watchers of what was false at the
 ;;; instant.
 
-(defvar *spreading* nil
+(defvar *propagating* nil
   "NIL, or, while a change spreads through networks, a list of one element. The element is the list
 of views that are true for the instant of the change. Meanwhile networks must not set fluents.")
 
@@ -95,7 +95,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
            (notify-watchers derived)
            :pulsed))))
 
-(defun spread-by-height (backlog &optional (kind :change))
+(defun propagate-by-height (backlog &optional (kind :change))
   "Renew the fluents in BACKLOG and the fluents that depend on them, lowest height first. See
 RENEW."
   (loop for height from 1
@@ -115,19 +115,19 @@ RENEW."
     (dolist (view (nreverse (shiftf (first instants) '())))
       (setf (fluent-now view) nil)
       (enqueue-dependents view backlog))
-    (spread-by-height backlog)))
+    (propagate-by-height backlog)))
 
-(defmacro spreading (&body body)
+(defmacro propagating (&body body)
   `(let* ((instants (list nil))
-          (*spreading* instants))
+          (*propagating* instants))
      (declare (dynamic-extent instants))
      ,@body
      (when (first instants) (end-instants instants))))
 
-(defun spread-to-dependents (fluent kind)
+(defun propagate-to-dependents (fluent kind)
   "Renew the fluents that depend on FLUENT. As long as only one fluent does, no backlog is needed."
   (declare #.*hot*)
-  (spreading
+  (propagating
     (let ((how t))
       (loop
         (let ((link (fluent-first-link fluent)))
@@ -135,27 +135,27 @@ RENEW."
                 ((link-next link)
                  (let ((backlog (backlog-now)))
                    (enqueue-dependents fluent backlog how)
-                   (return (spread-by-height backlog kind))))
+                   (return (propagate-by-height backlog kind))))
                 (t (setf fluent (link-dependent link)
                          how (renew fluent how kind))
                    (unless how (return)))))))))
 
-(defun spread (fluent kind)
+(defun propagate (fluent kind)
   "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse. KIND is as
 for RENEW."
   (notify-watchers fluent)
   (when (fluent-first-link fluent)
-    (spread-to-dependents fluent kind)))
+    (propagate-to-dependents fluent kind)))
 
-(defun spread-all (fluents kind)
-  "Do as SPREAD does, for all base fluents in FLUENTS at one instant."
+(defun propagate-all (fluents kind)
+  "Do as PROPAGATE does, for all base fluents in FLUENTS at one instant."
   (if (and fluents (null (rest fluents)))
-      (spread (first fluents) kind)
+      (propagate (first fluents) kind)
       (let ((backlog (backlog-now)))
-        (spreading
+        (propagating
           (mapc #'notify-watchers fluents)
           (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-          (spread-by-height backlog kind)))))
+          (propagate-by-height backlog kind)))))
 
 (defun check-settable (operator fluent)
   (unless (and (fluent-p fluent) (not (derived-p fluent)))
@@ -163,7 +163,7 @@ for RENEW."
                            :expected (format nil "a fluent made by create-fluent or state~:[~; ~
                                                   (leave out the quote before ~(~A~))~]"
                                              (names-fluent-p fluent) fluent)))
-  (when *spreading*
+  (when *propagating*
     (reject-use "The function of a network set ~A. Networks must not set fluents: set it in a plan."
                 fluent)))
 
@@ -175,7 +175,7 @@ for RENEW."
                      (format nil "a value, not the fluent itself; ~
                                   (fluent-value ...) of ~A is its current value"
                              (fluent-text fluent))))
-  (when (and (derived-p value) (depends-p value (here fluent)))
+  (when (and (derived-p value) (depends-p value (entity-here fluent)))
     (reject-argument operator 'value value
                      (format nil "a value, not a network of ~A itself. In the network write ~
                                   (fluent-value ...) around that fluent, for its current value"
@@ -183,7 +183,7 @@ for RENEW."
 
 ;;; A change for another runner is posted to that runner, or made at once while no thread has it.
 
-(defun other-home (fluent)
+(defun foreign-home (fluent)
   "Return the home in which FLUENT must be changed, if this thread does not own that home; otherwise
 NIL."
   (let ((home (home-of fluent)))
@@ -197,14 +197,14 @@ NIL."
     (setf (fluent-now fluent) value)
     (incf (fluent-sets fluent))
     (note-change :set fluent value)
-    (spread fluent :change)))
+    (propagate fluent :change)))
 
 (defun set-in-home (home fluent value)
-  "Set FLUENT, which belongs to HOME, to VALUE. Set it now if no thread owns HOME or serves it,
-otherwise by a post."
+  "Set FLUENT, which belongs to HOME, to VALUE. Set FLUENT now if no thread owns HOME or serves
+HOME, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
-           (call-having home #'take-home (lambda () (set-now fluent value) t)))
+           (call-owning-home home #'take-home (lambda () (set-now fluent value) t)))
       (funcall (home-on-post home))
       (post home `((:set ,fluent ,value)))))
 
@@ -212,18 +212,18 @@ otherwise by a post."
 (defun set-value (fluent value)
   "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks that wait for FLUENT
 or a network of FLUENT, and find it true, wake. FLUENT must not be a network, and VALUE must not be
-FLUENT or a network of FLUENT. Any thread may call SET-VALUE; from outside of plans it takes effect
-when the running plans pause (manual D.2)."
+FLUENT or a network of FLUENT. Any thread may call SET-VALUE; from outside of plans SET-VALUE takes
+effect when the running plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
   (unless *runner* (note-outside-change *interface* #'set-value fluent value))
-  (let* ((fluent (here fluent)) (home (other-home fluent)))
+  (let* ((fluent (entity-here fluent)) (home (foreign-home fluent)))
     (if home
         (set-in-home home fluent value)
         (set-now fluent value))
     ;; Another thread may have just begun to wait for it.
     (unless (or home *runner*)
-      (let ((home (other-home fluent)))
+      (let ((home (foreign-home fluent)))
         (when home (set-in-home home fluent value)))))
   value)
 
@@ -238,30 +238,30 @@ when the running plans pause (manual D.2)."
           for value in values
           do (setf (fluent-now fluent) value)
              (note-change :pulse fluent value))
-    (spread-all fluents :pulse)
+    (propagate-all fluents :pulse)
     (loop for fluent in fluents
           for value in before
           do (setf (fluent-now fluent) value))
-    (spread-back fluents)))
+    (propagate-back fluents)))
 
-(defun spread-back (fluents)
+(defun propagate-back (fluents)
   "Recompute the fluents that depend on FLUENTS. After a pulse, FLUENTS have their former values
 again."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
-      (spreading
+      (propagating
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
-        (spread-by-height backlog :back)))))
+        (propagate-by-height backlog :back)))))
 
 (public pulse)
 (defun pulse (fluent &optional (value t))
   "Set FLUENT to VALUE for an instant, and then back. All tasks wake that wait for FLUENT, or for a
 network that is true at that instant. Return VALUE. Any thread may call PULSE; from outside of plans
-it takes effect when the running plans pause (manual C)."
+PULSE takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
   (unless *runner* (note-outside-change *interface* #'pulse fluent value))
-  (let* ((fluent (here fluent)) (home (other-home fluent)))
+  (let* ((fluent (entity-here fluent)) (home (foreign-home fluent)))
     (cond (home (post home `((:pulse ,fluent ,value))))
           (t (before-change fluent)
              (incf (fluent-pulses fluent))
@@ -273,7 +273,7 @@ it takes effect when the running plans pause (manual C)."
 together. So a task that a pulse wakes sees the values set at the same instant (reading 177)."
   (let ((changed '()) (pulsed '()) (values '()))
     (loop for (kind given . more) in settings
-          for fluent = (progn (check-settable kind given) (here given))
+          for fluent = (progn (check-settable kind given) (entity-here given))
           do (before-change fluent)
              (ecase kind
                (:set (unless (eql (first more) (fluent-now fluent))
@@ -284,7 +284,7 @@ together. So a task that a pulse wakes sees the values set at the same instant (
                (:pulse (incf (fluent-pulses fluent))
                 (push fluent pulsed)
                 (push (if more (first more) t) values))))
-    (when changed (spread-all (nreverse changed) :change))
+    (when changed (propagate-all (nreverse changed) :change))
     (when pulsed (pulse-all (nreverse pulsed) (nreverse values)))))
 
 ;;; A run that was rewound continues in a fork. When that is over, its values are copied back.

@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*realm* +root+ fork-realm leave-realm source-realm entity twin-here here fresh-twin
-          foreign-p next-token))
+(export '(*realm* +root+ fork-realm leave-realm source-realm entity twin-here entity-here fresh-twin
+          foreign-entity-p next-token))
 
 ;;; Plans, vectors, networks and global variables refer to fluents. A fork needs its own states
 ;;; for all of them. So each object that is an ENTITY belongs to a realm, and has a twin in each
-;;; realm that was forked from that. HERE finds the twin, however the caller got the entity. Twins
+;;; realm that was forked from that. ENTITY-HERE finds the twin for any entity. Twins
 ;;; have the same TOKEN, a number. Twins that a fork's plans refer to are made with the fork.
 ;;; Others are made on demand, with the state at the moment of the fork: before an entity changes,
 ;;; the forks made since its last change (SEEN counts them) get their twins.
@@ -50,8 +50,8 @@ made" :writable))
 
 (define-shared-slots entity first)
 
-(declaim (inline here))
-(defun here (entity)
+(declaim (inline entity-here))
+(defun entity-here (entity)
   "Return the object that represents ENTITY in the current run: ENTITY itself or, in a fork of the
 run of ENTITY, its twin."
   (if (eq *realm* (entity-realm entity))
@@ -63,8 +63,8 @@ run of ENTITY, its twin."
         while each thereis (eq each ancestor)))
 
 (defun entity-in (entity realm)
-  "Return the object that represents ENTITY in REALM. This is a twin if REALM was forked from the
-realm of ENTITY or replaces it, and ENTITY otherwise."
+  "Return the object that represents ENTITY in REALM. The object is a twin if REALM was forked from
+the realm of ENTITY or replaces it, and ENTITY otherwise."
   (cond ((eq realm (entity-realm entity)) entity)
         ((descends-p realm (entity-realm entity))
          (or (known-twin entity realm)
@@ -80,7 +80,7 @@ realm of ENTITY or replaces it, and ENTITY otherwise."
 (defun twin-here (entity)
   "Return the object that represents ENTITY in the current run. ENTITY may come from this run or any
 fork with the same origin."
-  (or (known-twin entity *realm*) (here entity)))
+  (or (known-twin entity *realm*) (entity-here entity)))
 
 (defgeneric fresh-twin (entity realm)
   (:documentation "Return a new object like ENTITY for REALM. Nothing uses the new object yet."))
@@ -128,7 +128,7 @@ REALM."
   "Return the realm of the run that COPIER copies."
   (or (copier-variable copier '*realm*) +root+))
 
-(defgeneric foreign-p (entity copier)
+(defgeneric foreign-entity-p (entity copier)
   (:documentation "True if ENTITY does not belong to the run that COPIER copies.")
   (:method (entity copier) (declare (ignore entity copier)) nil))
 
@@ -136,7 +136,7 @@ REALM."
   (let ((own (entity-in entity (source-realm fork))))
     (cond ((not (eq own entity)) (note-copy entity (forked own fork) fork))
           ((not (eq (entity-realm entity) (source-realm fork))) entity)
-          ((foreign-p entity fork) entity)
+          ((foreign-entity-p entity fork) entity)
           (t (copy-entity entity fork)))))
 
 (defun copy-entity (entity copier)
@@ -160,14 +160,14 @@ REALM."
   (with-lock ((realm-lock realm))
     (loop for twin being the hash-values of (realm-twins realm) collect twin)))
 
-(defun note-fork (fork realm)
+(defun record-fork (fork realm)
   "Record FORK in REALM. The number of FORK is a number that REALM has used before."
   (with-lock ((realm-lock realm))
     (setf (realm-forks realm)
           (merge 'list (list (cons (realm-number fork) (make-weak fork))) (realm-forks realm)
                  #'> :key #'car))))
 
-(defun lift-realm (realm)
+(defun promote-realm (realm)
   "Make REALM a fork of its grandparent, as if made at the time of its parent. Do nothing if REALM
 has no grandparent."
   (let* ((parent (realm-parent realm))
@@ -178,22 +178,22 @@ has no grandparent."
             (realm-made realm) (realm-made parent)
             (realm-sources realm) (realm-sources parent)
             (realm-parent realm) above)
-      (note-fork realm above))))
+      (record-fork realm above))))
 
 (defun leave-realm (realm successor)
   "Remove all references from SUCCESSOR to entities of REALM, and of the other forks of REALM.
 SUCCESSOR is a fork of a fork of REALM and replaces REALM. If REALM is not a fork, keep these
 references."
-  (lift-realm successor)
+  (promote-realm successor)
   (when (realm-parent realm)
     (loop for (nil . weak) in (shiftf (realm-forks realm) '())
           for fork = (weak-value weak)
-          do (when (and fork (eq realm (realm-parent fork))) (lift-realm fork)))
+          do (when (and fork (eq realm (realm-parent fork))) (promote-realm fork)))
     (setf (realm-left-p realm) t)))
 
 ;;; Changes.
 
-(defgeneric concerns-p (entity realm)
+(defgeneric may-need-twin-p (entity realm)
   (:documentation "True if REALM, a fork, may need a twin of ENTITY.")
   (:method (entity realm) (declare (ignore entity realm)) t))
 
@@ -203,7 +203,7 @@ references."
     (loop for (number . weak) in (realm-forks realm)
           while (> number (entity-seen entity))
           do (let ((fork (weak-value weak)))
-               (when (and fork (concerns-p entity fork))
+               (when (and fork (may-need-twin-p entity fork))
                  (entity-in entity fork))))
     (setf (entity-seen entity) (realm-count realm))))
 

@@ -10,7 +10,7 @@
   "Runs BODY in the environment that the function FILL returns."
   (:hot)
   (:parts (fill function) (body node))
-  (:step (enter-last body (the simple-vector (funcall fill environment)) frame)))
+  (:step (enter-tail body (the simple-vector (funcall fill environment)) frame)))
 
 (define-expression filling
   "Runs BODY in an environment of the values of PARTS, some of which may wait. A frame counts the
@@ -25,7 +25,7 @@ parts begun; its memory is the new environment."
            (frame-counter frame) (1+ i))
      (if (< i (length parts))
          (enter (the node (svref parts i)) (if sequential inner environment) frame)
-         (enter-last body inner frame)))))
+         (enter-tail body inner frame)))))
 
 (defun binds-special-p (variables body scope)
   "True if a form that binds VARIABLES around BODY binds one of them as a special variable."
@@ -104,7 +104,7 @@ its scope of SCOPES."
     (let ((inner (make-array (1+ count) :initial-element nil)))
       (setf (svref inner 0) environment)
       (replace inner (if (bundle-p value) (bundle-values value) (list value)) :start1 1)
-      (enter-last body inner frame)))))
+      (enter-tail body inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
   (check-distinct variables form)

@@ -4,8 +4,8 @@
 
 (export '(binding-body-code body-code steps steps-parts))
 
-(declaim (inline enter-last))
-(defun enter-last (node environment frame)
+(declaim (inline enter-tail))
+(defun enter-tail (node environment frame)
   (let ((up (frame-up frame)))
     (if (leaf-p node)
         (values up (call-leaf node environment))
@@ -21,7 +21,7 @@
      (setf (frame-counter frame) (1+ i))
      (if (< (1+ i) (length parts))
          (enter (the node (svref parts i)) environment frame)
-         (enter-last (the node (svref parts i)) environment frame)))))
+         (enter-tail (the node (svref parts i)) environment frame)))))
 
 (setf (documentation 'steps-parts 'function)
       "Return the vector of the nodes that a node of type STEPS runs one after the other.")
@@ -100,7 +100,7 @@ nothing."
   (:step
    (let ((index (funcall chooser environment)))
      (if index
-         (enter-last (the node (svref branches index)) environment frame)
+         (enter-tail (the node (svref branches index)) environment frame)
          (values (frame-up frame) nil)))))
 
 (defun choice-code (form test then else scope)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(name-without-quote-p check-quote enter-application))
+(export '(name-without-quote-p check-plan-quote enter-application))
 
 ;;; Calling. CALLER is compiled from the call's arguments: it takes the environment and a function,
 ;;; either the procedure's entry or a Lisp function, and calls that with them.
@@ -14,7 +14,7 @@
    (begin
     (cond ((defined-p procedure)
            (next inside)
-           (note-depth task frame)
+           (record-call-depth task frame)
            (enter (the node (procedure-body procedure))
                   (funcall caller environment (entry-for procedure count))
                   frame))
@@ -44,22 +44,22 @@ not wait."
        (not (constantp name))
        (not (known-variable-p name (scope-environment scope)))))
 
-(defun check-quote (plan form scope)
+(defun check-plan-quote (plan form scope)
   "Warn if PLAN, the form of a plan in FORM, is the unquoted name of a plan and not a variable in
 SCOPE."
   (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
-    (doubt-own-form form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
+    (style-warn-of-own form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
 
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS as part of a plan; return the values of
 PLAN."
   (:arguments plan &rest arguments)
-  (:parts (entry function (progn (check-quote plan form scope)
+  (:parts (entry function (progn (check-plan-quote plan form scope)
                                  (value-lambda `(enter-plan ,plan ,@arguments) scope))))
   (:steps
    (begin
     (next inside)
-    (note-depth task frame)
+    (record-call-depth task frame)
     (multiple-value-bind (body environment) (funcall entry environment)
       (enter (the node body) environment frame)))
    (inside (values (frame-up frame) value))))
@@ -69,22 +69,22 @@ PLAN."
 (addition *plan-depth-limit*)
 (defparameter *plan-depth-limit* 2000
   "The largest depth of nested calls of plans, a number from 1. The depth also counts calls across
-tasks. A deeper call fails with class :TOO-DEEP. This stops endless recursion.")
+tasks. A deeper call fails with class :TOO-DEEP. The limit stops endless recursion.")
 
-(defun depth-around (task frame)
+(defun call-depth (task frame)
   "Return the depth of the innermost call around FRAME of TASK; 0 if there is no call around FRAME."
   (loop
     (loop for each = frame then (frame-up each)
           while each
           do (when (or (call-p (frame-node each)) (call-plan-node-p (frame-node each)))
-               (when (frame-data each) (return-from depth-around (frame-data each)))))
+               (when (frame-data each) (return-from call-depth (frame-data each)))))
     (setf task (task-parent task))
     (unless task (return 0))
     (setf frame (task-frame task))))
 
-(defun note-depth (task frame)
+(defun record-call-depth (task frame)
   "Record the depth of the call of FRAME, or let TASK fail if the depth is too large."
-  (let ((depth (1+ (the fixnum (depth-around task (frame-up frame))))))
+  (let ((depth (1+ (the fixnum (call-depth task (frame-up frame))))))
     (when (> depth *plan-depth-limit*)
       (fail :class :too-deep :depth depth :limit *plan-depth-limit*
             :remedy "See to it that the plan ends, or set *plan-depth-limit*"))

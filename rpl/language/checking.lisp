@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(doubt-form doubt-own-form advice-on-call find-call fail-p may-return-p
+(export '(style-warn-of style-warn-of-own advice-on-call find-call fail-p may-return-p
           endless-whenever-p))
 
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
@@ -21,12 +21,12 @@ formatted from CONTROL and ARGUMENTS."
 (defun warn-of-form (form control &rest arguments)
   (warn-at-form #'warn-of-definition form control arguments))
 
-(defun doubt-form (form control &rest arguments)
+(defun style-warn-of (form control &rest arguments)
   "Warn of FORM as DOUBT-DEFINITION does."
   (warn-at-form #'doubt-definition form control arguments))
 
-(defun doubt-own-form (form control &rest arguments)
-  "Do as DOUBT-FORM if FORM belongs to the text of the plan itself."
+(defun style-warn-of-own (form control &rest arguments)
+  "Do as STYLE-WARN-OF if FORM belongs to the text of the plan itself."
   (when (own-text-p form)
     (warn-at-form #'doubt-definition form control arguments)))
 
@@ -46,8 +46,8 @@ left out."
                       (nearest-name name (known-operators)))))
     (and nearest (plain-name nearest))))
 
-(defun check-fit (form lambda-list)
-  (let ((trouble (misfit (shape-of lambda-list) (rest form))))
+(defun check-arguments-fit (form lambda-list)
+  (let ((trouble (arguments-misfit-text (shape-of lambda-list) (rest form))))
     (when trouble
       (warn-of-form form "~(~A~) takes ~A, not ~A."
                     (first form) (shape-text lambda-list) trouble))))
@@ -60,7 +60,7 @@ NIL."
       (let ((*package* (find-package "KEYWORD"))) (find-symbol (symbol-name name) "NISP"))
     (and (eq :external status) (not (eq symbol name)) (fboundp symbol) symbol)))
 
-(defun doubt-namesake (form)
+(defun warn-of-namesake (form)
   "Warn if FORM, a form that the author wrote, uses a macro of the Lisp system with the name of a
 construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
   (let ((name (first form)))
@@ -68,8 +68,8 @@ construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
                (lisps-own-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisp-namesake name))
-      (doubt-form form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
-                        (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
+      (style-warn-of form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
+                           (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
 
 (defgeneric advice-on-call (name)
   (:documentation "Return sentences about why the symbol NAME is not the name of a plan procedure or
@@ -92,22 +92,23 @@ what to write instead; or NIL."
 
 (defun warn-of-unknown (form)
   (let* ((name (first form)) (remedy (unknown-call-remedy name)))
-    (cond (remedy (doubt-form form "there is no plan procedure or function ~A" remedy))
+    (cond (remedy (style-warn-of form "there is no plan procedure or function ~A" remedy))
           ((same-name-p name "TAG")
-           (doubt-form form "a tag has a colon: (:tag name form...)."))
+           (style-warn-of form "a tag has a colon: (:tag name form...)."))
           (t
-           (doubt-form form "there is no plan procedure or function ~(~A~).~@[ Did you mean ~A?~]"
-                       name (nearest-operator name))))))
+           (style-warn-of form "there is no plan procedure or function ~(~A~).~@[ Did you ~
+                               mean ~A?~]"
+                          name (nearest-operator name))))))
 
 (defun check-known-call (form)
   "Warn if the call FORM is wrong by the definitions known now."
   (let ((name (first form)))
-    (cond ((procedure-name-p name) (check-fit form (known-lambda-list name)))
+    (cond ((procedure-name-p name) (check-arguments-fit form (known-lambda-list name)))
           ((macro-function name)
            (warn-of-form form "~(~A~) is a macro that is defined only after this call." name))
           ((known-function-p name nil)
            (multiple-value-bind (arguments known) (function-arguments name)
-             (when known (check-fit form arguments))))
+             (when known (check-arguments-fit form arguments))))
           (t (warn-of-unknown form)))))
 
 (defun check-later (check form)
@@ -127,7 +128,7 @@ the current form."
 names are checked at the end of the compilation unit."
   (let ((local (assoc (first form) (scope-procedures scope))))
     (if local
-        (check-fit form (fourth local))
+        (check-arguments-fit form (fourth local))
         (check-later #'check-known-call form))))
 
 (defun check-lisp-call (form)
@@ -138,7 +139,7 @@ plan."
                         cannot be called inside a lambda, or another form that only Lisp runs."
                   (first form))))
 
-(defun list-slip (part expected)
+(defun missing-list-text (part expected)
   "Return a text that PART, a name or a quoted name, must be a list of the shape EXPECTED; or NIL."
   (let ((name (if (typep part '(cons (eql quote) (cons symbol null))) (second part) part)))
     (and name
@@ -146,7 +147,7 @@ plan."
          (not (member (first expected) lambda-list-keywords))
          (format nil "~(~S~): write (~(~A~))" part name))))
 
-(defun value-slip (shape rest)
+(defun missing-keyword-text (shape rest)
   "Return a text that a keyword of SHAPE is missing before the first of the forms REST; or NIL."
   (let ((value (first rest)))
     (and (oddp (length rest))
@@ -154,7 +155,7 @@ plan."
          (format nil "~(~S: write ~{~A~^ or ~}~)" value
                  (loop for key in (shape-keys shape) collect (format nil "~S ~S" key value))))))
 
-(defun slip-in-construct (form lambda-list)
+(defun argument-mistake-text (form lambda-list)
   "Return a text of the mistake in the arguments of FORM, a call of a construct with LAMBDA-LIST, or
 in a list of options in FORM; or NIL. A mistake is a keyword that LAMBDA-LIST does not have, or
 another form in the place of a keyword or a list of options."
@@ -162,13 +163,13 @@ another form in the place of a keyword or a list of options."
     (and (proper-list-p form)
          (or (and (consp (shape-keys shape))
                   (let ((rest (nthcdr (shape-fixed shape) (rest form))))
-                    (or (keyword-slip shape rest) (value-slip shape rest))))
+                    (or (unknown-keyword-text shape rest) (missing-keyword-text shape rest))))
              (loop for part in (rest form)
                    for expected in lambda-list
                    until (member expected lambda-list-keywords)
                    thereis (and (consp expected)
-                                (or (list-slip part expected)
-                                    (slip-in-construct (cons (first form) part) expected))))))))
+                                (or (missing-list-text part expected)
+                                    (argument-mistake-text (cons (first form) part) expected))))))))
 
 (defun find-call (test forms)
   "Return the first call in FORMS for which TEST is true, or NIL. Do not search code that is called
@@ -210,9 +211,9 @@ later, nor inside a call for which TEST returns :NOWHERE."
   "Warn if one of FORMS, a list of steps, is a WHENEVER that never ends and is not the last step."
   (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
-      (doubt-form form "the forms after whenever never run, because whenever goes on until a form ~
-                        in it calls (return). Put whenever and these forms into (par ...), or use ~
-                        (with-policy (whenever ...) body...)."))))
+      (style-warn-of form "the forms after whenever never run, because whenever goes on until a ~
+                           form in it calls (return). Put whenever and these forms into (par ...), ~
+                           or use (with-policy (whenever ...) body...)."))))
 
 ;;; Variables.
 
@@ -222,8 +223,8 @@ mention."
   (when (in-source-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
-        (doubt-form form "the variable ~(~A~) is never used. If this is intended, write (declare ~
-                          (ignore ~:*~(~A~)))." variable)))))
+        (style-warn-of form "the variable ~(~A~) is never used. If this is intended, write ~
+                             (declare (ignore ~:*~(~A~)))." variable)))))
 
 (defun check-distinct (variables form)
   "Signal MALFORMED-DEFINITION if FORM binds one of VARIABLES twice."

@@ -8,7 +8,7 @@
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
 ;;; What is written for a truth value must not be a vector of fluents.
 
-(defun own-operation-p (form environment names)
+(defun own-operator-call-p (form environment names)
   (and (consp form)
        (own-text-p form)
        (operator-in-p form names)
@@ -16,9 +16,9 @@
 
 (defun operand-form (form environment)
   "Return a form for the value of FORM, an argument of a lifted operator in a condition."
-  (cond ((own-operation-p form environment '("AND" "OR" "NOT" "NULL"))
+  (cond ((own-operator-call-p form environment '("AND" "OR" "NOT" "NULL"))
          (condition-form form environment))
-        ((own-operation-p form environment *lifted-operators*)
+        ((own-operator-call-p form environment *lifted-operators*)
          (list* (first form)
                 (loop for argument in (rest form) collect (operand-form argument environment))))
         ((constantp form environment) form)
@@ -31,10 +31,10 @@
                                            collect (condition-form form environment)))
                        form)))
     (check-condition form)
-    (cond ((own-operation-p form environment '("AND")) (conditions 'and))
-          ((own-operation-p form environment '("OR")) (conditions 'or))
-          ((own-operation-p form environment '("NOT" "NULL")) (conditions 'not))
-          ((own-operation-p form environment *lifted-operators*)
+    (cond ((own-operator-call-p form environment '("AND")) (conditions 'and))
+          ((own-operator-call-p form environment '("OR")) (conditions 'or))
+          ((own-operator-call-p form environment '("NOT" "NULL")) (conditions 'not))
+          ((own-operator-call-p form environment *lifted-operators*)
            (keep-place (operand-form form environment) form))
           ((constantp form environment) form)
           (t (keep-place `(truth-value ,form) form)))))
@@ -78,8 +78,8 @@ itself."
       form))
 
 (defun loop-meaning (forms environment)
-  (let ((end (cond ((keyword-test forms "UNTIL") 'when)
-                   ((keyword-test forms "WHILE") 'unless))))
+  (let ((end (cond ((starts-with-test-p forms "UNTIL") 'when)
+                   ((starts-with-test-p forms "WHILE") 'unless))))
     (if end
         `(loop (,end ,(condition-form (second forms) environment) (return)) ,@(cddr forms))
         `(loop ,@forms))))
@@ -109,7 +109,7 @@ itself."
         (t (check-counting form environment)
            (check-assignments form environment)
            (check-fluent-arguments form environment)
-           (doubt-namesake form)
+           (warn-of-namesake form)
            (let ((meaning (if (local-function-p (first form) environment)
                               form
                               (plan-meaning form environment))))
@@ -121,7 +121,7 @@ itself."
 
 (defun as-lisp (form scope)
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
-        (t (doubt-leaf form)
+        (t (warn-of-leaf-mistakes form)
            (let ((*fluents-here* (scope-fluents scope)))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
@@ -183,7 +183,7 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
   (let ((*print-case* :downcase))
     (reject-clause (text-title) form
                    (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
-                           (slip-in-construct form lambda-list)))))
+                           (argument-mistake-text form lambda-list)))))
 
 (defun refuse-code (form scope &optional (container form))
   "Return code for FORM as a leaf. Signal MISPLACED-SUSPENSION if FORM, which is inside CONTAINER,
@@ -211,7 +211,7 @@ such bindings."
 
 (defun hoisted-code (form scope &optional (fixed 1))
   "Return code for FORM, whose first FIXED elements stay in place. The other elements that suspend,
-and those to the left of them, are bound to variables before FORM. This keeps the order of
+and those to the left of them, are bound to variables before FORM. These bindings keep the order of
 evaluation."
   (let* ((parts (nthcdr fixed form))
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
@@ -238,7 +238,7 @@ evaluation."
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
-  (let ((*form-at-hand* (if (in-source-p form) form *form-at-hand*)))
+  (let ((*current-source-form* (if (in-source-p form) form *current-source-form*)))
     (keep-place (if (or (suspends-p form scope) (binds-fluents-p form scope))
                     (naming-code (waiting-code form scope) scope)
                     (leaf-code form scope))
@@ -268,7 +268,7 @@ evaluation."
            (if (macro-function (first form) environment)
                (expansion-code form scope)
                (function-form-code form scope)))
-          ((own-advice-for form) (refuse-code form scope))
+          ((advice-for-form form) (refuse-code form scope))
           ((macro-function (first form) environment) (expansion-code form scope))
           ((special-operator-p (first form)) (refuse-code form scope))
           ((operator-in-p form *waking-functions*)

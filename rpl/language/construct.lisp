@@ -86,12 +86,12 @@ ended activity), the parts by name, ENVIRONMENT (of the frame), and MEMORY (a pl
 frame, at first NIL). (next state) sets the state of the next step; (at-once state) also takes that
 step now. The forms return the next frame and its value. (values (frame-up frame) value) ends the
 expression, (enter part environment frame) runs a part, and +PARKED+ means that TASK now waits.
-(:step form...): the forms of a step in an expression without states. They may use (frame-counter
+(:step form...): the forms of a step in an expression without states, which may use (frame-counter
 frame).
 (:unwind form...): the forms that run when SIGNAL passes, see NODE. (in-state-p state) is true if
 the frame is in that state.
-(:child-ended form...): the forms that run when CHILD has ended as HOW with RESULT.
-(:hot): compile the functions for speed, because a profile has shown that this matters."
+(:child-ended form...): the forms that run when CHILD has ended as HOW with RESULT. (:hot): compile
+the functions for speed, because a profile has shown that this matters."
   (check-clauses "define-expression" name clauses
                  '(:parts :steps :step :unwind :child-ended :hot))
   (let ((functions (node-functions name clauses)))
@@ -231,9 +231,9 @@ and the variables of LAMBDA-LIST are bound.
 (:code form): the code for the whole construct, if it is another expression, or if the node needs
 something around it. (build [scope]) in the form returns the code for the node.
 (:steps ...), (:step ...), (:unwind ...), (:child-ended ...), (:hot): see DEFINE-EXPRESSION.
-(:in-lisp form): the expansion in ordinary Lisp. Without this clause, the construct is an error in
-ordinary Lisp. If the construct has neither :code nor a step, plans use this expansion, too.
-(:like construct): take missing clauses from that construct, whose lambda list must be the same."
+(:in-lisp form): the expansion in ordinary Lisp. Without :IN-LISP, the construct is an error in
+ordinary Lisp. If the construct has neither :code nor a step, plans use this expansion, too. (:like
+construct): take missing clauses from that construct, whose lambda list must be the same."
   (check-clauses "define-construct" name clauses
                  '(:manual :command :waits :arguments :parts :code :steps :step :unwind
                    :child-ended :hot :in-lisp :like))

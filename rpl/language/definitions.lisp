@@ -28,7 +28,7 @@
                (list* (remove-if #'symbolp parameters) body)
                (if *definition* (defining-form *definition*) form))
     (with-own-text (form)
-      (doubt-text body)
+      (warn-of-text-mistakes body)
       (multiple-value-bind (body documentation) (split-documentation body)
         (multiple-value-bind (scope entry) (procedure-parts parameters environment)
           `(progn
@@ -63,7 +63,7 @@ CALL-PLAN."
         (form (list* 'interp-lambda parameters body))
         (inside-p (and *own-conses* t)))
     (with-own-text (form)
-      (unless inside-p (doubt-text body))
+      (unless inside-p (warn-of-text-mistakes body))
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)
         `(anonymous-procedure ',parameters ,entry
                               ,(procedure-body-code nil form body scope)
@@ -108,7 +108,7 @@ anything. The second value is a list of (variable word) for each word that must 
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
 (defparameter *largest-pattern* 250
-  "The largest number of lists, words and variables in a pattern. It is small enough for the
+  "The largest number of lists, words and variables in a pattern. The limit is small enough for the
 compiler's stack.")
 
 (defun larger-than-p (form limit)

@@ -42,8 +42,8 @@ parts, or NIL."
 ;;; Waits for what cannot change.
 
 (defun known-value-p (form environment)
-  "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Such forms are
-constants, calls of FLUENT-VALUE, and calls of lifted operators with such forms."
+  "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Constants and calls
+of FLUENT-VALUE return values, and so do calls of lifted operators with them."
   (cond ((constantp form) t)
         ((not (and (consp form) (symbolp (first form)) (proper-list-p form))) nil)
         ((local-function-p (first form) environment) nil)
@@ -125,7 +125,7 @@ value."
                  return argument))))
 
 ;; What a quoted list holds is never a fluent. With a :test of the author's it may still be found.
-(defun sought-in-vain (form environment)
+(defun fluent-sought-in-constant (form environment)
   "Return the fluent that FORM, a call, searches for in a constant, which cannot contain fluents; or
 NIL."
   (and (operator-in-p form '("MEMBER" "FIND" "POSITION" "COUNT" "ASSOC" "RASSOC"))
@@ -166,7 +166,7 @@ NIL."
                (not (special-operator-p name)))
       (if (fboundp name)
           (let* ((fluent (misplaced-fluent form environment))
-                 (found (or fluent (sought-in-vain form environment))))
+                 (found (or fluent (fluent-sought-in-constant form environment))))
             (when found
               (warn-of-form form "~(~A~) ~:[never finds~;cannot take~] ~S, which is a fluent. ~
                                   Write (fluent-value ~:*~S) for its current value, or (fl-funcall ~

@@ -17,20 +17,20 @@ forms that Lisp runs."
      (defun ,name (,form) ,documentation ,@body)
      (pushnew ',name (getf *mistakes* ,where))))
 
-(defun doubt-text (form)
+(defun warn-of-text-mistakes (form)
   "Warn of the mistakes in FORM, the text of a plan."
   (map-calls (lambda (call)
                (dolist (rule (getf *mistakes* :text))
                  (let ((text (call-rule rule call)))
-                   (when text (doubt-own-form call "~A" text)))))
+                   (when text (style-warn-of-own call "~A" text)))))
              form))
 
-(defun doubt-leaf (form)
+(defun warn-of-leaf-mistakes (form)
   "Warn of the first mistake of each kind in FORM, a form that Lisp runs."
   (when *definition*
     (dolist (rule (getf *mistakes* :leaf))
       (let ((call (find-call rule (list form))))
-        (when call (doubt-form call "~A" (call-rule rule call)))))))
+        (when call (style-warn-of call "~A" (call-rule rule call)))))))
 
 (defun call-rule (rule form)
   (let ((*print-case* :downcase) (*print-pretty* nil))
@@ -43,13 +43,13 @@ forms that Lisp runs."
   "The values that a fluent of TASK-STATUS can have.")
 
 (defun compared-fluent (form)
-  "Return the form of the fluent whose value FORM returns. In a call of FLUENT-VALUE or VREF, this
-is the argument, otherwise FORM."
+  "Return the form of the fluent whose value FORM returns. The form of the fluent is the argument if
+FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
   (if (and (operator-in-p form '("FLUENT-VALUE" "VREF")) (consp (rest form)))
       (compared-fluent (second form))
       form))
 
-(defun status-doubt (word)
+(defun status-advice (word)
   "Return a sentence about why no task ever has the state WORD, or NIL if a task may have it."
   (unless (member word *task-states*)
     (let ((like (nearest-name word *task-states*)))
@@ -61,15 +61,15 @@ is the argument, otherwise FORM."
   "True if FORM is the variable of one of the simulator's fluents whose values are error codes."
   (and form
        (symbolp form)
-       (our-symbol-p form)
+       (system-symbol-p form)
        (search "-ERROR*" (symbol-name form))))
 
-(define-mistake comparison-doubt :text (form)
+(define-mistake impossible-comparison :text (form)
   "FORM compares the value of a fluent with words that the fluent never has as its value."
   (multiple-value-bind (words subject) (compared-words form)
     (let* ((fluent (compared-fluent subject))
            (doubts (remove nil (cond ((operator-in-p fluent '("TASK-STATUS"))
-                                      (mapcar #'status-doubt words))
+                                      (mapcar #'status-advice words))
                                      ((error-fluent-p fluent) (mapcar #'code-doubt words))))))
       (and doubts (format nil "~{~A~^ ~}" doubts)))))
 
@@ -148,7 +148,7 @@ NIL."
     (and name
          (format nil "~A returns nothing, because the command only begins. Write the call ~
                       alone~@[, then ~A~]~@[; the results are then in ~{~A~^, ~}~]."
-                 name (end-text name part) (results-of-command name part)))))
+                 name (wait-for-end-text name part) (results-of-command name part)))))
 
 (define-mistake command-of-others :leaf (form)
   "FORM is a command for which plans have another function. Code that is called later does not
@@ -177,7 +177,7 @@ not."
         ((operator-in-p form '("HANDLER-BIND"))
          (and (consp (second form)) (errors-only-p (second form)) (cddr form)))))
 
-(define-mistake vain-handler :leaf (form)
+(define-mistake useless-error-handler :leaf (form)
   "FORM is a Lisp error handler around a FAIL."
   (and (find-call #'fail-p (forms-with-errors-handled form))
        (format nil "~(~A~) does not handle failures of plans, which FAIL makes. Write ~
@@ -185,7 +185,7 @@ not."
 
 ;;; Operators that let time pass, but not for plans.
 
-(defparameter *vain-waits*
+(defparameter *program-waits*
   '(("SLEEP" . "sleep stops all plans for seconds of real time, in which perhaps no tick passes.")
     ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
@@ -193,13 +193,13 @@ not."
     ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
   "Conses (operator . text) of operators that do not wait in plans, and why.")
 
-(define-mistake vain-wait :leaf (form)
+(define-mistake program-wait :leaf (form)
   "FORM lets time pass in programs, but not in plans."
-  (when (operator-in-p form (mapcar #'car *vain-waits*))
+  (when (operator-in-p form (mapcar #'car *program-waits*))
     (destructuring-bind (name &optional (time 'ticks) &rest options) form
       (declare (ignore options))
       (format nil "~A In a plan write ~A."
-              (cdr (assoc (symbol-name name) *vain-waits* :test #'string=))
+              (cdr (assoc (symbol-name name) *program-waits* :test #'string=))
               (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
                     ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
                     ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))

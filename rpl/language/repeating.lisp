@@ -103,7 +103,7 @@ source of the block. The code has a node for the block only if some form leaves 
   (make-ready task)
   +parked+)
 
-(defun turn-count (count)
+(defun repetition-count (count)
   (let ((count (fluent-value count)))
     (check-argument n-times count (quantity-p count)
                     "a number of turns, from -1e15 to 1e15, as the first argument: (n-times count
@@ -121,7 +121,7 @@ left."
     (setf memory (funcall times environment))
     (at-once between-turns))
    (in-turn
-    (cond ((alone-p task) (at-once between-turns))
+    (cond ((only-ready-task-p task) (at-once between-turns))
           (t (next between-turns) (give-way task))))
    (between-turns
     (let ((left memory))
@@ -132,20 +132,21 @@ left."
                (next in-turn)
                (enter body environment frame)))))))
 
-(defun turns-test (forms)
+(defun split-loop-test (forms)
   "Return the condition that ends a loop of FORMS, which follow LOOP, and the body of the loop. The
 condition is NIL if the loop has no test."
-  (cond ((keyword-test forms "UNTIL") (values (second forms) (cddr forms)))
-        ((keyword-test forms "WHILE") (values (note-own-text `(not ,(second forms))) (cddr forms)))
+  (cond ((starts-with-test-p forms "UNTIL") (values (second forms) (cddr forms)))
+        ((starts-with-test-p forms "WHILE")
+         (values (note-own-text `(not ,(second forms))) (cddr forms)))
         (t (values nil forms))))
 
-(defun turns-code (form count forms scope)
+(defun loop-code (form count forms scope)
   "Return code for a loop of FORMS, which follow LOOP or N-TIMES. COUNT is the form for the largest
 number of turns, NIL for no limit."
-  (multiple-value-bind (test body) (turns-test forms)
+  (multiple-value-bind (test body) (split-loop-test forms)
     (if (suspends-p test scope)
-        (turns-code form count
-                    (list* (note-own-text `(when ,test (return-from nil nil))) body) scope)
+        (loop-code form count
+                   (list* (note-own-text `(when ,test (return-from nil nil))) body) scope)
         (block-code nil form scope
                     (lambda (scope)
                       `(make-turns :form ',(form-as-written form)
@@ -156,13 +157,13 @@ number of turns, NIL for no limit."
                                    :body ,(body-code body (single-scope scope))))))))
 
 (define-plan-form "LOOP" :may (&rest forms) (form scope)
-  (turns-code form nil forms scope))
+  (loop-code form nil forms scope))
 
 (define-construct n-times (count &body body)
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
 a test, which is evaluated before each turn. COUNT is a number up to 1e15. Return NIL."
   (:arguments count)
-  (:code (turns-code form (note-own-text `(turn-count ,count)) body scope)))
+  (:code (loop-code form (note-own-text `(repetition-count ,count)) body scope)))
 
 ;;; Over the elements of a list, and numbers.
 
@@ -181,36 +182,36 @@ unless SEQUENCE is a vector or a proper list."
 
 (define-expression each
   "Runs BODY for each element of the list that ITEMS returns, in an environment with this element.
-Then runs ENDING in an environment with NIL. A frame remembers the elements left."
+Afterwards runs ENDING in an environment with NIL. A frame remembers the elements left."
   (:parts (items function) (body node) (ending node))
   (:steps
    (begin
     (setf memory (whole-list 'dolist (funcall items environment)))
     (at-once between-turns))
    (in-turn
-    (cond ((or (null memory) (alone-p task)) (at-once between-turns))
+    (cond ((or (null memory) (only-ready-task-p task)) (at-once between-turns))
           (t (next between-turns) (give-way task))))
    (between-turns
-    (cond ((endp memory) (enter-last ending (vector environment nil) frame))
+    (cond ((endp memory) (enter-tail ending (vector environment nil) frame))
           (t (next in-turn)
              (enter body (vector environment (pop memory)) frame))))))
 
 (define-expression each-number
   "Runs BODY for each number from 0 below the number that LIMIT returns, in an environment with this
-number. Then runs ENDING in an environment with the number of turns. A frame remembers a cons of the
-next number and the limit."
+number. Afterwards runs ENDING in an environment with the number of turns. A frame remembers a cons
+of the next number and the limit."
   (:parts (limit function) (body node) (ending node))
   (:steps
    (begin
     (setf memory (cons 0 (funcall limit environment)))
     (at-once between-turns))
    (in-turn
-    (cond ((or (>= (car memory) (cdr memory)) (alone-p task)) (at-once between-turns))
+    (cond ((or (>= (car memory) (cdr memory)) (only-ready-task-p task)) (at-once between-turns))
           (t (next between-turns) (give-way task))))
    (between-turns
     (let ((number (car memory)))
       (cond ((>= number (cdr memory))
-             (enter-last ending (vector environment number) frame))
+             (enter-tail ending (vector environment number) frame))
             (t (incf (car memory))
                (next in-turn)
                (enter body (vector environment number) frame)))))))

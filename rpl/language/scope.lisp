@@ -5,7 +5,7 @@
 (export '(check-variables plain-parameters inner-scope scope single-scope
           variable-scope scope-variables scope))
 
-(defun variable-trouble (name environment)
+(defun invalid-variable-text (name environment)
   "Return a text of why NAME cannot be a variable, lexical or special, in ENVIRONMENT; or NIL."
   (cond ((not (symbolp name)) "is no symbol")
         ((or (null name) (keywordp name)) "is a constant")
@@ -18,7 +18,7 @@
   "Signal MALFORMED-DEFINITION unless VARIABLES can be bound in ENVIRONMENT. The error is about
 FORM, if FORM is given."
   (dolist (variable variables)
-    (let ((trouble (variable-trouble variable environment)))
+    (let ((trouble (invalid-variable-text variable environment)))
       (when trouble
         (reject-clause (text-title) (if form-p form variable)
                        (format nil "the name of a lexical variable; ~(~S~) ~A"
@@ -26,16 +26,16 @@ FORM, if FORM is given."
 
 ;;; Lambda lists.
 
-(defun parameters-trouble (parameters environment)
+(defun invalid-parameters-text (parameters environment)
   "Return a text of why PARAMETERS, a lambda list without types, is not an ordinary lambda list; or
 NIL."
   (flet ((first-trouble (names)
            (loop for name in names
-                 for trouble = (variable-trouble name environment)
+                 for trouble = (invalid-variable-text name environment)
                  when trouble return (format nil "~(~S~) ~A" name trouble))))
     (handler-case (parse-ordinary-lambda-list parameters :normalize nil)
       (error ()
-        (return-from parameters-trouble
+        (return-from invalid-parameters-text
           (or (first-trouble (remove-if (lambda (parameter)
                                       (or (consp parameter)
                                           (member parameter lambda-list-keywords)))
@@ -52,9 +52,10 @@ NIL."
        (known-function-p (first parameters) environment)
        "The list of parameters comes before the body; write () if the plan has no parameters"))
 
-(defun doubt-parameters (parameters definition environment)
+(defun warn-of-parameters (parameters definition environment)
   "Warn if one of PARAMETERS, in DEFINITION, has the name of a function by which plans command the
-robot. Such a list is probably the first form of a body without a list of parameters before it."
+robot. The list of parameters is then probably missing, and PARAMETERS is the first form of the
+body."
   (let ((name (find-if (lambda (name)
                          (and (starts-with-subseq "RPL-" (string name))
                               (known-function-p name environment)))
@@ -75,9 +76,9 @@ MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
                                   trouble (forgotten-parameters-text parameters environment)))))
     (unless (proper-list-p parameters) (reject "this is not a proper list"))
     (let* ((plain (untyped-lambda-list parameters definition))
-           (trouble (parameters-trouble plain environment)))
+           (trouble (invalid-parameters-text plain environment)))
       (when trouble (reject trouble))
-      (doubt-parameters plain definition environment)
+      (warn-of-parameters plain definition environment)
       plain)))
 
 ;;; Forms that bind, also where they are Lisp's to run.
@@ -254,26 +255,26 @@ first."
     (unless (equal (cddr layer) '(()))  ; no variables
       (setf form `(,@(layer-wrapping layer scope) ,form)))))
 
-(defvar *form-at-hand* nil
+(defvar *current-source-form* nil
   "The innermost form of the source text around the form that is being compiled, or NIL.")
 
-(defun place-made (form)
+(defun add-source-location (form)
   "Give FORM, code made around parts of the current source form, the source location of that form.
 Return FORM."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (in-source-p form)))
-               (keep-place form *form-at-hand*)
+               (keep-place form *current-source-form*)
                (loop for tail = form then (rest tail)
                      repeat 8
                      while (consp tail)
                      do (place (first tail) (1- depth))))))
-    (when (in-source-p *form-at-hand*) (place form 12)))
+    (when (in-source-p *current-source-form*) (place form 12)))
   form)
 
 (defun leaf-lambda (form scope &rest parameters)
   "Return a lambda expression for FORM in SCOPE, whose parameters are the environment and
 PARAMETERS."
-  (place-made
+  (add-source-location
    `(lambda (,(scope-variable scope) ,@parameters)
       (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))
       ,(wrap-for-leaf form scope))))

@@ -63,25 +63,25 @@ the misplaced form.")
      . "Open the file in a leaf, and close it in the cleanup of an evap-protect."))
   "Advice on what to write instead of the Lisp forms in which plans cannot wait, by operator.")
 
-(defun of-iterate-p (form)
-  "True if FORM is a call of a macro of the library iterate. This macro looks into all forms inside
-it."
+(defun iterate-call-p (form)
+  "True if FORM is a call of a macro of the library iterate. The macros of iterate look into all
+forms inside them."
   (and (symbolp (first form))
        (member (first form) '("ITER" "ITERATE") :test #'string=)
        (symbol-package (first form))
        (string= "ITERATE" (package-name (symbol-package (first form))))))
 
-(defun own-advice-for (form)
+(defun advice-for-form (form)
   "Return the advice about forms like FORM, in which plans cannot wait, or NIL. Users' macros with
 the names of iterate's macros are left out."
   (and (consp form)
        (symbolp (first form))
-       (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (of-iterate-p form))
+       (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (iterate-call-p form))
        (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
                      *advice* :key #'car))))
 
 (defun reject-suspension (form container)
-  (let ((advice (or (own-advice-for container)
+  (let ((advice (or (advice-for-form container)
                     "Bind the value with let before this form, so that the plan waits in the
 let.")))
     (call-at-place form
@@ -96,7 +96,7 @@ let.")))
 
 ;;; What a construct expands to within a macro of a user.
 
-(defun plan-called-in (form)
+(defun plan-named-in (form)
   "Return the name of the plan that FORM probably should run, or NIL. FORM was found in ordinary
 Lisp code, and looks like the prompt's command PLAN."
   (let ((name (and (operator-in-p form '("PLAN")) (second form))))
@@ -107,7 +107,7 @@ Lisp code, and looks like the prompt's command PLAN."
   (reject-use "~S is part of the plan language. ~:[Write it in a def-interp-proc, which ~
                (run-plan 'NAME) runs. There it must not be in a lambda or another form that keeps ~
                plans from waiting~;To run the plan, write (run-plan '~:*~(~A~))~]."
-              form (plan-called-in form)))
+              form (plan-named-in form)))
 
 (defvar *own-conses* nil
   "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
@@ -129,7 +129,7 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 
 ;;; Names of operators.
 
-(defun our-symbol-p (symbol)
+(defun system-symbol-p (symbol)
   "True if SYMBOL belongs to the package COMMON-LISP or to a package of this system."
   (let ((package (symbol-package symbol)))
     (or (eq package #.(find-package :cl))
@@ -138,13 +138,13 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 (defun plan-operator-name (form)
   "Return the name of the operator of FORM if the operator may have a meaning in plans, or NIL."
   (cond ((not (and (consp form) (symbolp (first form)))) nil)
-        ((our-symbol-p (first form)) (symbol-name (first form)))
+        ((system-symbol-p (first form)) (symbol-name (first form)))
         ((eq (first form) :tag) ":TAG")))
 
 (defun operator-key (name)
-  "Return the key of the operator NAME in *PLAN-FORMS*. This is the name of the operator, or the
+  "Return the key of the operator NAME in *PLAN-FORMS*. The key is the name of the operator, or the
 symbol itself if it is a user's symbol."
-  (if (and (symbolp name) (our-symbol-p name)) (symbol-name name) name))
+  (if (and (symbolp name) (system-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
   "True if FORM is a call of an operator of Lisp or of this system, and the name of the operator is
@@ -159,7 +159,7 @@ one of NAMES."
 (defparameter *lifted-operators*
   '("NOT" "NULL" "<" ">" "<=" ">=" "=" "+" "-" "*" "/" "EQ" "EQL" "EQUAL"))
 
-(defun keyword-test (forms name)
+(defun starts-with-test-p (forms name)
   "True if FORMS, such as the forms after LOOP, start with the symbol NAME and a test."
   (and (rest forms)
        (symbolp (first forms))
@@ -169,7 +169,7 @@ one of NAMES."
   "True if FORM, a LOOP, has the shape of a plan's LOOP, (loop [UNTIL or WHILE test]
 compound-form...)."
   (let ((forms (rest form)))
-    (every #'consp (if (or (keyword-test forms "UNTIL") (keyword-test forms "WHILE"))
+    (every #'consp (if (or (starts-with-test-p forms "UNTIL") (starts-with-test-p forms "WHILE"))
                        (cddr forms)
                        forms))))
 

@@ -76,7 +76,7 @@ SUSPENSION."
            nil)
           (t :may))))
 
-(defun exits-in (form plan-form)
+(defun defined-exits (form plan-form)
   "Return a list of the parts of FORM, and a list of the blocks or tags that FORM defines for these
 parts. Return NIL if FORM defines none."
   (cond ((eq (first form) 'block) (values (cddr form) (list (second form))))
@@ -140,14 +140,14 @@ in FORM that is the reason."
                      (t (check-own-form form environment)
                         (visit-call form environment (find-plan-form form environment)))))
              (visit-call (form environment plan-form)
-               (let* ((inner (and (of-iterate-p form)
+               (let* ((inner (and (iterate-call-p form)
                                   (some (lambda (part) (waiting-call-in part environment))
                                         (rest form))))
                       (kind (cond (inner :must)
                                   ((and plan-form (plan-form-suspends plan-form)))
                                   (t (call-suspends form scope environment)))))
                  (when kind (note kind (or inner form)))
-                 (multiple-value-bind (parts exits) (exits-in form plan-form)
+                 (multiple-value-bind (parts exits) (defined-exits form plan-form)
                    (cond ((eq kind :must) (values form t))
                          (exits
                           (walk-inside parts environment exits)

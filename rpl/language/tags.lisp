@@ -23,7 +23,7 @@ Replacing below."
    (inside (values (frame-up frame) value)))
   (:child-ended
    (unless (fail-or-escape task how result)
-     (complete task result))))
+     (end-with-value task result))))
 
 (defun tag-task (node environment)
   (multiple-value-bind (holder index) (funcall (tagged-place node) environment)
@@ -79,7 +79,7 @@ not count."
     (nreverse names)))
 
 (defun tagged-scope (scope names first)
-  "Return a copy of SCOPE in which the variables NAMES are tags. They are in the innermost
+  "Return a copy of SCOPE in which the variables NAMES are tags. The variables are in the innermost
 environment of SCOPE, from index FIRST on."
   (inner-scope scope
                :task-tags (append (loop for name in names

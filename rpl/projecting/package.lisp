@@ -17,7 +17,7 @@ that a robot believes in, and choosing by that.")
                 #:*break-on-plan-failures* #:*runaway-limit* #:*step-plans* #:+parked+ #:enter
                 #:environment
                 #:awaited-text #:count-steps #:check-arguments #:failure-class
-                #:find-procedure #:function-given-p
+                #:find-procedure #:function-designator-p
                 #:fluent-value #:whole-form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:park
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p

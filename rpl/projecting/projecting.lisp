@@ -90,7 +90,7 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
   (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
                    (progn
-                     (check-quote plan form scope)
+                     (check-plan-quote plan form scope)
                      (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
                                           :seed ,seed :cost ,cost :world ,world :print ,print)
                                    scope))))

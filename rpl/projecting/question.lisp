@@ -72,7 +72,7 @@ the asking task does has ended."
       (:horizon (check (whole-p value 1) "how many ticks, from 1 to 1e9"))
       (:seed (check (integerp value) "an integer"))
       (:until (check (member value '(:plan :branch)) ":plan or :branch"))
-      ((:cost :tell :world) (check (function-given-p value) "a function"))
+      ((:cost :tell :world) (check (function-designator-p value) "a function"))
       (:print))))
 
 (defun checked-options (operator options)

@@ -223,4 +223,4 @@ realm of runs that are no forks. Fluents have the values there that they had las
 ;;; Counterparts.
 
 (defmethod counterpart-in-current-run ((entity entity))
-  (here entity))
+  (entity-here entity))

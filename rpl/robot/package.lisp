@@ -42,14 +42,14 @@
                 #:*interface* #:home-in-use #:note-outside-change #:*runner* #:post #:react-to-all
                 #:exhaust-reaction #:close-runner #:notify-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
-                #:make-plan-runner #:start-plan #:rest-in-tick #:stop-plan #:plan-runner
+                #:make-plan-runner #:start-plan #:skip-idle-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
                 #:runner-note #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-ending-p
-                #:waiting-parts #:failure-text #:missed-text #:lisp-failure
+                #:waiting-parts #:failure-text #:similar-clause-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
                 #:pulse-of-command #:last-command #:last-pulse #:endless-advice
@@ -62,11 +62,11 @@
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-forked-p
                 #:call-with-client-still
-                #:note-plan-trouble #:note-seen #:*realm*
+                #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
-                #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:here
-                #:all-tasks #:task-numbered #:task-with #:blocked-p #:failure-of #:complete
+                #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:entity-here
+                #:all-tasks #:task-numbered #:task-with #:blocked-p #:failure-of #:end-with-value
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
-                #:task-level #:evaporating-p #:reasons #:decide #:withdraw #:task-frame
+                #:task-level #:evaporating-p #:reasons #:end-with-signal #:withdraw #:task-frame
                 #:entity-realm #:twin-here
-                #:note-outside-call #:task-now #:advice-on-call #:advice-on-goal))
+                #:note-outside-call #:current-counterpart #:advice-on-call #:advice-on-goal))

@@ -40,13 +40,13 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
   "Continue the task of WISH with VALUE. The caller holds the plans."
   (forget-wish wish)
   (at-home ((interface-runner (wish-interface wish)))
-    (complete (wish-task wish) value)))
+    (end-with-value (wish-task wish) value)))
 
 (defun refuse-wish (wish condition)
   (let ((task (wish-task wish)))
     (forget-wish wish)
     (at-home ((interface-runner (wish-interface wish)))
-      (decide task (failure-of condition task (task-frame task))))))
+      (end-with-signal task (failure-of condition task (task-frame task))))))
 
 (defun wishes-in-tick (interface)
   "Return how many wishes of INTERFACE have been served in this tick."

@@ -186,7 +186,7 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
         the first is the failure, which is true."
        (task-label task)
        (failure-text (task-result task))
-       (missed-text (task-result task))))))
+       (similar-clause-text (task-result task))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
@@ -223,7 +223,7 @@ and MISUSE, also if the run is over before it begins."
   "Return a list of the tasks of the plans under way, in order of their start."
   (let ((interface (usable-interface)))
     (when interface
-      (note-seen interface)
+      (note-plans-shown interface)
       (tasks-of interface))))
 
 (defun want-end (interface task)
@@ -268,7 +268,7 @@ that has replaced it since a rewind."
        (or (fork-p *simulation*)
            (eq *simulation* (latest (interface-simulation interface))))))
 
-(defmethod task-now ((interface interface) task)
+(defmethod current-counterpart ((interface interface) task)
   (let ((latest (latest (interface-simulation interface))))
     (cond ((elsewhere-p interface) (counterpart-of-task task *simulation*))
           ((not (eq latest (interface-simulation interface))) (counterpart-of-task task latest))
@@ -276,7 +276,7 @@ that has replaced it since a rewind."
 
 (defun task-in-current-run (task)
   (let ((client (and (task-runner task) (runner-client (task-runner task)))))
-    (if client (task-now client task) task)))
+    (if client (current-counterpart client task) task)))
 
 (addition end-plan)
 (defun end-plan (task)

@@ -32,12 +32,12 @@
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
   (cond (*interface*
-         (note-seen *interface*)
+         (note-plans-shown *interface*)
          (with-plans (*interface*) (funcall function (interface-runner *interface*))))
         (t (funcall function nil))))
 
 (defmethod call-with-client-still ((interface interface) function)
-  (note-seen interface)
+  (note-plans-shown interface)
   (with-plans (interface) (funcall function)))
 
 (addition print-plans)

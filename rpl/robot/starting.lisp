@@ -138,7 +138,7 @@ none has to run in it. True if so, as in most ticks."
     (not (or (interface-closing-p interface)
              (interface-wishes interface)
              (thinking-charged-p timeline)
-             (not (rest-in-tick (interface-runner interface) (timeline-tick timeline)))))))
+             (not (skip-idle-tick (interface-runner interface) (timeline-tick timeline)))))))
 
 (defmethod participant-origin ((interface interface))
   (or (interface-origin interface)

@@ -232,7 +232,7 @@ end of the same command."
                             (simulation-world (interface-simulation interface)))
            (some #'watches-p (all-tasks task)))))
 
-(defmethod note-seen ((interface interface))
+(defmethod note-plans-shown ((interface interface))
   (record-progress-checked (simulation-world (interface-simulation interface))))
 
 (defmethod participant-cut-off ((interface interface))

@@ -6,7 +6,7 @@
 ;;; values. Variables without a home package are the compiler's own, and are not shown.
 
 (defun note-task-seen (task)
-  (when (task-runner task) (note-seen (runner-client (task-runner task)))))
+  (when (task-runner task) (note-plans-shown (runner-client (task-runner task)))))
 
 (addition task-stack)
 (defun task-stack (task)

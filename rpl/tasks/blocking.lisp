@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(gate hold-back release-hold spawn-gated block-task check-together make-block-hook
+(export '(gate add-hold release-hold spawn-gated block-task check-same-runner make-block-hook
           unblock-task))
 
 ;;; A task with a gate is at its own frame before its first expression, and goes on when
@@ -51,7 +51,7 @@
   (let ((frame (task-frame task)))
     (setf (task-frame task) (make-frame +gate+ (frame-environment frame) frame))))
 
-(defun hold-back (task hold)
+(defun add-hold (task hold)
   "Keep TASK from starting until RELEASE-HOLD with the same HOLD. Signals MISUSE if TASK has
 started."
   (when (null (task-gate task))
@@ -127,7 +127,7 @@ shown as suspended."
     (note-status task :running)
     (release-held (task-runner task))))
 
-(defun check-together (task other)
+(defun check-same-runner (task other)
   "Signal MISUSE if TASK, the running task, and OTHER belong to different plan runners."
   (when (and (task-runner other) (not (eq (task-runner task) (task-runner other))))
     (reject-use "~A belongs to the plans of another robot, which run by themselves. Here ~
@@ -138,8 +138,8 @@ shown as suspended."
 
 (defun call-or-post (word task function)
   "Call FUNCTION, which does the work of a call of WORD on TASK. Call it now if a plan of the same
-runner is the caller or TASK has no runner. Otherwise post it; it is then called before the next
-reaction. Return TASK."
+runner is the caller or TASK has no runner. Otherwise post FUNCTION, which is then called before the
+next reaction. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
@@ -155,7 +155,7 @@ not started will stop when it starts. An evaporating task is not stopped. A susp
 keep the task around it from ending.
   If a REPL or another thread calls SUSPEND, it takes effect before the plans react again."
   (check-argument suspend task (task-p task) "a task, such as the name of a :tag")
-  (let ((task (task-meant task)))
+  (let ((task (task-for-caller task)))
     (call-or-post #'suspend task
                   (lambda ()
                     (unless (or (task-suspended task) (task-over-p task))
@@ -167,7 +167,7 @@ keep the task around it from ending.
   "Undo SUSPEND of TASK, and return TASK. WAKE-UP does not undo WITH-TASK-BLOCKED and similar
 constructs. Can be called from anywhere, as SUSPEND (from CRAM)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
-  (let ((task (task-meant task)))
+  (let ((task (task-for-caller task)))
     (call-or-post #'wake-up task
                   (lambda ()
                     (when (shiftf (task-suspended task) nil)

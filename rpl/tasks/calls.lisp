@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(shape-of shape-text keyword-slip misfit note-plan-function has-plan-function-p
-          plan-call-text end-text last-command last-pulse plan-function-p results-of-command
-          pulse-of-command fluent-of-code))
+(export '(shape-of shape-text unknown-keyword-text arguments-misfit-text note-plan-function
+          has-plan-function-p plan-call-text wait-for-end-text last-command last-pulse
+          plan-function-p results-of-command pulse-of-command fluent-of-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
   "The number of arguments, LEAST to MOST, and the keywords that a function or plan takes."
@@ -44,7 +44,7 @@
     (let ((*print-case* :downcase) (*print-pretty* nil))
       (format nil "~:A" lambda-list))))
 
-(defun keyword-slip (shape rest &key (wrong-p #'keywordp))
+(defun unknown-keyword-text (shape rest &key (wrong-p #'keywordp))
   "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST is the list of
 arguments, or of forms for them, after the fixed arguments. Elements for which WRONG-P is false are
 not checked."
@@ -57,7 +57,7 @@ not checked."
             return (format nil "~(~S~)~@[ (did you mean ~(~S~)?)~]"
                            key (and (keywordp key) (nearest-name key (shape-keys shape)))))))
 
-(defun misfit (shape arguments &key (wrong-p #'keywordp))
+(defun arguments-misfit-text (shape arguments &key (wrong-p #'keywordp))
   "Return a text that says why ARGUMENTS, or forms for them, do not fit SHAPE; NIL if they may fit.
 WRONG-P is as for KEYWORD-SLIP."
   (let* ((count (length arguments))
@@ -70,7 +70,7 @@ WRONG-P is as for KEYWORD-SLIP."
                  when (typep key '(or real string))
                    return (format nil "~S in place of a keyword" key)
                  finally (return "a keyword without a value")))
-          (t (keyword-slip shape rest :wrong-p wrong-p)))))
+          (t (unknown-keyword-text shape rest :wrong-p wrong-p)))))
 
 ;;;; Plan functions for commands
 
@@ -110,7 +110,7 @@ CODE, or NIL."
     (let ((*print-pretty* nil))
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 
-(defun end-text (name part)
+(defun wait-for-end-text (name part)
   "Return the text of the form by which plans wait for the end of the command of NAME, a plan
 function, on the part with the number PART. Return NIL if no fluent is pulsed at the end."
   (destructuring-bind (&optional variable wait results) (get name 'end)

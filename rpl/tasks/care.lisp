@@ -113,7 +113,7 @@ that are over."
                  (cons (task-awaiting task)
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
-(defun repair-hearing (runner tasks)
+(defun repair-watchers (runner tasks)
   "Register the waits of TASKS of RUNNER with their fluents again. Wake the tasks that have missed
 events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
@@ -134,13 +134,13 @@ no more parts."
     (cond ((eq :evaporate (task-signal task)) (evaporate-now task))
           ((task-signal task) (make-ready task)))))
 
-(defun repair (runner)
+(defun repair-runner (runner)
   "Make the state of RUNNER consistent, wherever RUNNER was interrupted."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
   (let ((tasks (mapcan #'live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
     (repair-timers runner tasks)
-    (repair-hearing runner tasks)
+    (repair-watchers runner tasks)
     (mapc #'finish-ending tasks)
     (dolist (task tasks)
       (when (and (task-ending-p task) (not (task-over-p task))
@@ -166,7 +166,7 @@ no more parts."
     (let ((failure (current-failure runner trouble)))
       (cond ((task-newest-child task)   ; The step was starting parts.
              (setf (task-state task) :waiting)
-             (decide task failure))
+             (end-with-signal task failure))
             (t (setf (task-signal task) failure)
                (make-ready-first task))))))
 
@@ -195,7 +195,7 @@ cleanup."
     (when task
       (setf (task-state task) :ready
             (task-signal task) nil))
-    (repair runner)
+    (repair-runner runner)
     (when (and task (not (task-over-p task))) (end-plan-of task))))
 
 ;;; Calling.
@@ -210,7 +210,7 @@ after any failure."
   (let ((restart (find-restart 'leave-plan)))
     (when restart (invoke-restart restart))))
 
-(defun call-offering-ends (runner function fail end leave)
+(defun call-with-plan-restarts (runner function fail end leave)
   "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
 LEAVE and END. Any other non-local exit from a step also ends its plan, so the step cannot be tried
 again."
@@ -279,7 +279,7 @@ that it met; and whether the step may have been stopped in the middle of the sim
         (values :done
                 (handler-bind (((or error plan-failure storage-condition) #'note))
                   (answering-debugger (#'answer)
-                    (call-offering-ends runner function #'fail #'end #'leave)))
+                    (call-with-plan-restarts runner function #'fail #'end #'leave)))
                 anywhere-p)))))
 
 (defun call-with-care (runner function)
@@ -289,7 +289,7 @@ that task and return NIL."
     (unwind-protect
          (setf (values outcome result anywhere-p) (call-to-outcome runner function))
       (cond ((null outcome) (repair-after-exit runner))
-            ((or anywhere-p (eq outcome :end)) (repair runner))))
+            ((or anywhere-p (eq outcome :end)) (repair-runner runner))))
     (ecase outcome
       (:done result)
       (:fail (fail-current runner result) nil)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(count-steps set-charges stand-no-longer stand-still standing-still-p))
+(export '(count-steps set-charges resume-runner-tasks stop-runner-tasks runner-tasks-stopped-p))
 
 ;;; A runner that is CHARGED-P charges what plans state: WITH-CHARGE and THINK wait, CHARGE-TICKS
 ;;; and CHARGE-STEPS count. BUDGET is how many steps its tasks may take in a tick, all together, in
@@ -23,9 +23,9 @@ steps a tick, or any number of steps if BUDGET is NIL."
           (runner-still-until runner) nil
           (runner-broken-off-p runner) nil)))
 
-(declaim (inline standing-still-p))
-(defun standing-still-p (runner)
-  "True if STAND-STILL has stopped all tasks of RUNNER for this tick."
+(declaim (inline runner-tasks-stopped-p))
+(defun runner-tasks-stopped-p (runner)
+  "True if STOP-RUNNER-TASKS has stopped all tasks of RUNNER for this tick."
   (let ((tick (runner-still-until runner)))
     (and tick (< (runner-tick runner) tick))))
 
@@ -68,13 +68,13 @@ this tick."
         (runner-limit runner) 0
         (runner-pause runner) 0))
 
-(defun stand-still (runner ticks)
+(defun stop-runner-tasks (runner ticks)
   "Stop all tasks of RUNNER for TICKS more ticks, once the current step has ended."
   (setf (runner-still-until runner)
         (+ ticks (max (runner-tick runner) (or (runner-still-until runner) 0)))
         (runner-pause runner) 0))
 
-(defun stand-no-longer (runner)
+(defun resume-runner-tasks (runner)
   "Let the tasks of RUNNER run again after STAND-STILL."
   (setf (runner-still-until runner) nil))
 
@@ -87,7 +87,7 @@ WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
-    (stand-still runner ticks))
+    (stop-runner-tasks runner ticks))
   (values))
 
 (defun count-steps (steps runner task)

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(complete complete-when-alone decide fail-or-escape receive status-word stop-waiting
-          unwind withdraw))
+(export '(end-with-value complete-when-alone end-with-signal fail-or-escape receive-signal
+          status-word stop-waiting unwind withdraw))
 
 ;;; A task that ends notifies the construct that it is part of, which may then end too, and so on
 ;;; up. A task evaporates at once, unless something in it has to be cleaned up first.
@@ -20,7 +20,7 @@
   (when (task-status-fluent task)
     (set-value (task-status-fluent task) (status-word task state))))
 
-(defun finish (task state result &optional (how state))
+(defun finish-task (task state result &optional (how state))
   "End TASK in STATE with RESULT. The construct around TASK receives the word HOW."
   (note-event task (ecase state (:succeeded :succeed) (:failed :fail) (:evaporated :evaporate))
               (and (eq state :failed) result)
@@ -55,7 +55,7 @@ matters."
         ((eq (task-signal parent) :evaporate) (evaporate-now parent))
         (t (make-ready parent))))
 
-(defun decide (parent signal)
+(defun end-with-signal (parent signal)
   "Evaporate the children of PARENT, which waits for them. When all children are gone, send PARENT
 the signal SIGNAL."
   (setf (task-signal parent) signal
@@ -64,29 +64,29 @@ the signal SIGNAL."
       (evaporate-children parent)
       (make-ready parent)))
 
-(defun complete (parent value)
+(defun end-with-value (parent value)
   "End the construct in which PARENT waits for its children, with VALUE."
   (if (task-newest-child parent)
-      (decide parent (make-completion value))
+      (end-with-signal parent (make-completion value))
       (wake parent value)))
 
 (defun fail-or-escape (task how result)
   "If a child of TASK has failed or escaped, as HOW says, let TASK do the same with RESULT, and
 return true."
   (when (member how '(:failed :escaped))
-    (decide task result)
+    (end-with-signal task result)
     t))
 
 (defun complete-when-alone (task value)
   "End the construct in which TASK waits for its children, with VALUE, if TASK has no more
 children."
-  (unless (task-newest-child task) (complete task value)))
+  (unless (task-newest-child task) (end-with-value task value)))
 
 ;;; Unwinding.
 
 (defun unwind (task frame signal)
-  "Send SIGNAL outwards from FRAME. Return what a step returns. This is the frame that handles
-SIGNAL, or +PARKED+ if no frame does and TASK has ended."
+  "Send SIGNAL outwards from FRAME. Return what a step returns. The result is the frame that handles
+SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
   (loop while frame
         do (let* ((node (frame-node frame))
                   (handler (node-unwind node)))
@@ -95,12 +95,12 @@ SIGNAL, or +PARKED+ if no frame does and TASK has ended."
                  (cond (handled (return-from unwind (values next value)))
                        (next (setf signal next)))))
              (setf frame (frame-up frame))))
-  (cond ((eq signal :evaporate) (finish task :evaporated nil))
-        ((escape-p signal) (finish task :succeeded signal :escaped))
-        (t (finish task :failed signal)))
+  (cond ((eq signal :evaporate) (finish-task task :evaporated nil))
+        ((escape-p signal) (finish-task task :succeeded signal :escaped))
+        (t (finish-task task :failed signal)))
   +parked+)
 
-(defun receive (task frame signal)
+(defun receive-signal (task frame signal)
   "Handle SIGNAL in TASK at FRAME. Return what a step returns."
   (if (completion-p signal)
       (values (frame-up frame) (completion-value signal))
@@ -156,7 +156,7 @@ SIGNAL, or +PARKED+ if no frame does and TASK has ended."
 Does nothing if TASK has not started, is over or evaporates already. If code outside of the plan
 calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT."
   (check-argument evaporate task (task-p task) "a task, as begin-plan returns")
-  (let ((task (task-meant task)))
+  (let ((task (task-for-caller task)))
     (cond ((cannot-evaporate-p task))
           ((not (inside-plans-p (task-runner task)))
            (note-from-outside #'evaporate task)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(advance-timers note-tick apply-next-batch close-runner digest-runner runner-idle-p
-          make-plan-runner next-wake-time outside-request-p plan-deadlocked-p rest-in-tick
+          make-plan-runner next-wake-time outside-request-p plan-deadlocked-p skip-idle-tick
           react-to-all reseed-runner start-plan stop-plan))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
@@ -46,7 +46,7 @@ progress, may still post.
   (print-unreadable-object (runner stream :type t)
     (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
-(defconstant +start+ 100
+(defconstant +steps-of-start+ 100
   "How many steps of a reaction the start of a plan counts as. So endless starts use up the reaction
 before the heap. With a budget of steps, the start of a plan counts as one step.")
 
@@ -57,7 +57,7 @@ the task, which runs at the next reaction."
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
       (at-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
-          (count-slow-step +start+ runner)
+          (count-slow-step +steps-of-start+ runner)
           (push task (runner-roots runner))
           (tell-listeners *plan-start-hooks* task)
           task)))))
@@ -74,7 +74,7 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
   (loop
     (when (runner-ends-requested runner) (end-requested-tasks runner))
     (when (or (>= (runner-steps runner) (runner-limit runner))
-              (standing-still-p runner))
+              (runner-tasks-stopped-p runner))
       (return :budget))
     (when (runner-notices runner) (deliver-due-notices runner))
     (let ((task (take-ready runner)))
@@ -99,7 +99,7 @@ was applied."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
-            (>= (- (runner-steps runner) (runner-batch-applied-at runner)) +thoughts+))
+            (>= (- (runner-steps runner) (runner-batch-applied-at runner)) +steps-before-changes+))
     (setf (runner-batch-applied-at runner) (runner-steps runner))
     (apply-next-batch runner)))
 
@@ -113,20 +113,20 @@ Return :idle or :budget."
             ((runner-spent runner) (release-spent runner))
             (t (return :idle))))))
 
-(defun use-in (name form)
+(defun operator-use-in (name form)
   (cond ((operator-called-p form name) form)
-        ((consp form) (or (use-in name (car form)) (use-in name (cdr form))))))
+        ((consp form) (or (operator-use-in name (car form)) (operator-use-in name (cdr form))))))
 
 (defun runaway-remedy (task)
   (let* ((form (find-if (lambda (form)
                           (operator-called-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
                         (plan-backtrace task (task-frame task))))
          (loop-p (operator-called-p form "LOOP"))
-         (wait (and loop-p (use-in "WAIT-FOR" form))))
+         (wait (and loop-p (operator-use-in "WAIT-FOR" form))))
     (cond (wait
            (format nil "~A does not wait if its condition is true already. Also wait until it ~
                         is false, or write (wait-time 1)." (form-text wait)))
-          ((and form (not loop-p) (use-in "RETRY" form))
+          ((and form (not loop-p) (operator-use-in "RETRY" form))
            (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
 often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
           (t (format nil "If the plan is to wait, write (wait-time 1) there~:[~;; if the loop is ~
@@ -154,7 +154,7 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
       (when (and (eq outcome :budget)
                  (null (runner-budget runner))
                  (not (runner-exhausted runner))
-                 (not (standing-still-p runner)))
+                 (not (runner-tasks-stopped-p runner)))
         (warn-of-runaway runner))
       outcome)))
 
@@ -218,7 +218,7 @@ may call OUTSIDE-REQUEST-P."
 state of RUNNER."
   (not (or (any-ready-p runner) (outside-request-p runner))))
 
-(defun rest-in-tick (runner tick)
+(defun skip-idle-tick (runner tick)
   "Set the time of RUNNER to TICK, without a reaction, if no task would run at TICK. Return true if
 so."
   (let ((wake (next-wake-time runner)))
@@ -227,7 +227,7 @@ so."
                 (runner-notices runner)
                 (runner-charged-p runner)
                 (runner-budget runner)
-                (in-use-p runner))
+                (home-busy-p runner))
       (setf (runner-tick runner) tick)
       t)))
 
@@ -273,7 +273,7 @@ the tick LIMIT is passed."
              (return :limit))
             (t (advance-timers runner (if idle-p wake (1+ tick))))))))
 
-(defun end-alone (runner task limit)
+(defun end-plan-alone (runner task limit)
   "Evaporate TASK of RUNNER, if TASK is not over. Cleanups of TASK may run until tick LIMIT, or, if
 LIMIT is NIL, until nothing can run. The other cleanups are abandoned, with a warning for each."
   (stop-plan runner task)
@@ -298,5 +298,5 @@ WRONG-ARGUMENT."
       (progn (setf state (run-until-over runner task limit))
              (when (eq state :deadlock) (report-deadlock runner)))
       (unless (task-over-p task)
-        (allowing-interrupts (end-alone runner task limit))))
+        (allowing-interrupts (end-plan-alone runner task limit))))
     (values (task-result task) state)))

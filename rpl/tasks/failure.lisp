@@ -21,7 +21,7 @@
    ;; The type of the last clause that has handled it and let it propagate.
    (passed-on-by :initform nil :accessor failure-passed-on-by)
    (expressions :initform '() :accessor failure-plan-backtrace))
-  (:report (lambda (failure stream) (write-string (report-of failure) stream)))
+  (:report (lambda (failure stream) (write-string (failure-report failure) stream)))
   (:documentation "A failure of a plan. Your own condition types may inherit from PLAN-FAILURE. If
 NAME is such a type, (fail :class name ...) makes a condition of this type; otherwise it makes a
 PLAN-FAILURE of class NAME."))
@@ -79,21 +79,21 @@ innermost first.")
 
 (defconstant +longest-failure+ 2000 "The largest number of characters in the text of a failure.")
 
-(defmacro reporting ((condition) form)
+(defmacro safe-report-text ((condition) form)
   "Return the beginning of the text that FORM returns. If FORM signals an error, return a text of
 the parts of CONDITION that can be printed."
   `(cut (handler-case (printing-words () ,form)
           ((or error storage-condition) () (report-anyhow ,condition)))
         +longest-failure+))
 
-(defun report-of (failure)
-  (reporting (failure)
+(defun failure-report (failure)
+  (safe-report-text (failure)
     (with-output-to-string (stream) (write-failure failure stream))))
 
 (defun failure-text (failure)
   "Return the report of FAILURE, or of another condition, cut if it is deep, long or circular. If
 the report signals an error, return the type of FAILURE."
-  (reporting (failure) (or (our-text failure) (report-briefly failure))))
+  (safe-report-text (failure) (or (our-text failure) (report-briefly failure))))
 
 (defun make-failure (arguments)
   "Return the failure that (fail ARGUMENTS...) makes."
@@ -126,8 +126,8 @@ condition type of the failure or of its Lisp error, or (or TYPE...)."
         ((typep failure 'lisp-failure) (typep (lisp-failure-condition failure) type))))
 
 (defun failure-subject (failure type)
-  "Return the object that the variable of a clause for TYPE is bound to. This is FAILURE, or the
-Lisp condition of FAILURE if TYPE is a type of Lisp conditions."
+  "Return the object that the variable of a clause for TYPE is bound to. The object is FAILURE, or
+the Lisp condition of FAILURE if TYPE is a type of Lisp conditions."
   (if (and (typep failure 'lisp-failure)
            (symbolp type) (not (eq type t)) (find-class type nil)
            (not (typep failure type)))

@@ -43,8 +43,8 @@ environment."))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
-  "True while plans may enter the debugger. Then leaves offer restarts that run them again or return
-a value for them.")
+  "True while plans may enter the debugger. If true, leaves offer restarts that run a leaf again or
+return a value for it.")
 
 (declaim (inline call-leaf))
 (defun call-leaf (leaf environment)
@@ -59,7 +59,7 @@ a value for them.")
   (list (evaluate-form (read *query-io*))))
 
 (defvar *in-leaf-p* nil
-  "True while a leaf offers restarts. Then the step around the leaf offers no restarts.")
+  "True while a leaf offers restarts. If true, the step around the leaf offers no restarts.")
 
 (defun call-leaf-offering (leaf environment)
   "Return the value of LEAF in ENVIRONMENT, with the restarts RETRY and USE-VALUE."

@@ -104,8 +104,8 @@ NIL."
         (reject-name "plan procedure" name (procedures-to-offer)))))
 
 (defun find-procedure (name &optional (errorp t))
-  "Return the plan procedure with the name NAME, a symbol or string. This is the procedure of the
-symbol itself, or else the newest procedure of that name in other packages. If there is no such
+  "Return the plan procedure with the name NAME, a symbol or string. The procedure of the symbol
+itself comes first, then the newest procedure of that name in other packages. If there is no such
 procedure, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
     (cond ((and known (defined-p known)) known)
@@ -120,8 +120,8 @@ procedure, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
 ;;; Which names are plans' is also known while the file that defines them is compiled.
 
 (defvar *declared-procedures* (make-hash-table :test 'eq :synchronized t)
-  "A table from the names of plan procedures to lists of their lambda list. It has the procedures
-whose DEF-INTERP-PROC was compiled or loaded.")
+  "A table from the names of plan procedures to lists of their lambda list. The table has all
+procedures whose DEF-INTERP-PROC was compiled or loaded.")
 
 (defun declare-procedure (name lambda-list)
   "Declare NAME as a plan procedure with LAMBDA-LIST, for plans that are compiled from now on."
@@ -220,19 +220,19 @@ SOURCE."
                            (and (procedure-lambda-list procedure)
                                 (shape-text (procedure-lambda-list procedure)))
                            trouble
-                           (listed-p procedure arguments))))
+                           (argument-list-given-p procedure arguments))))
 
-(defun listed-p (procedure arguments)
+(defun argument-list-given-p (procedure arguments)
   "True if ARGUMENTS has a single element, which is a list of arguments that PROCEDURE takes."
   (and (typep arguments '(cons cons null))
        (proper-list-p (first arguments))
-       (null (misfit (shape-of (procedure-lambda-list procedure)) (first arguments)
-                     :wrong-p (constantly t)))))
+       (null (arguments-misfit-text (shape-of (procedure-lambda-list procedure)) (first arguments)
+                                    :wrong-p (constantly t)))))
 
 (defun check-arguments (procedure arguments)
   "Signal WRONG-ARGUMENTS unless PROCEDURE takes the list ARGUMENTS."
-  (let ((trouble (misfit (shape-of (procedure-lambda-list procedure)) arguments
-                         :wrong-p (constantly t))))
+  (let ((trouble (arguments-misfit-text (shape-of (procedure-lambda-list procedure)) arguments
+                                        :wrong-p (constantly t))))
     (when trouble (reject-arguments procedure arguments trouble))))
 
 (declaim (inline entry-for))
@@ -242,9 +242,9 @@ SOURCE."
   (if (and (<= (procedure-least procedure) count (procedure-most procedure))
            (not (procedure-keys-p procedure)))
       (procedure-entry procedure)
-      (careful-entry procedure)))
+      (checking-entry procedure)))
 
-(defun careful-entry (procedure)
+(defun checking-entry (procedure)
   (lambda (&rest arguments)
     (check-arguments procedure arguments)
     (apply (procedure-entry procedure) arguments)))

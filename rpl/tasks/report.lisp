@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*plan-end-hooks* report-end report-failure missed-text *plan-start-hooks*
+(export '(*plan-end-hooks* report-end report-failure similar-clause-text *plan-start-hooks*
           task-state-text write-task-line write-task-tree))
 
 (defun task-state-text (task)
@@ -43,7 +43,7 @@ of the remaining items."
     (dolist (item (ldiff items more)) (format stream control item))
     (when more (format stream "    ... and ~D more~%" (length more)))))
 
-(defun passed-on-text (failure)
+(defun handler-ended-text (failure)
   (and (failure-passed-on-by failure)
        (format nil "the handler for ~A ended without (return ...) or (retry), so the failure ~
                     propagated"
@@ -54,10 +54,10 @@ of the remaining items."
        (loop for (type) in (remove-if-not #'consp (ensure-list (second form)))
              append (remove-if-not #'symbolp (ensure-list type)))))
 
-(defun slip-for-p (type class)
-  "True if TYPE, a symbol that does not match CLASS, may be a slip for CLASS. Their names are then
-similar and differ not only in digits, or only in an ending, as STUCK and STUCKED, or only one of
-them is a keyword."
+(defun probable-slip-p (type class)
+  "True if TYPE, a symbol that does not match CLASS, may be a slip for CLASS. A slip has a similar
+name that differs not only in digits, or another ending, as STUCK and STUCKED; or only one of TYPE
+and CLASS is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
@@ -70,13 +70,13 @@ them is a keyword."
           (and (string-not-equal own other)
                (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
 
-(defun missed-clause (failure)
+(defun similar-clause (failure)
   "Return the type of a handler clause around FAILURE that was probably meant for the class of
 FAILURE, and this class; or NIL."
   (let* ((own (failure-class failure))
          (class (if (and own (symbolp own)) own (type-of failure))))
     (loop for form in (failure-plan-backtrace failure)
-          for type = (find-if (lambda (type) (slip-for-p type class)) (clause-types form))
+          for type = (find-if (lambda (type) (probable-slip-p type class)) (clause-types form))
           when type return (values type class))))
 
 (defun clause-for-errors (failure)
@@ -88,10 +88,10 @@ from a Lisp error; otherwise NIL."
                              (and type (find-class type nil) (subtypep type 'error)))
                            (clause-types form)))))
 
-(defun missed-text (failure)
+(defun similar-clause-text (failure)
   "Return a text that a handler clause around FAILURE is for a similar class, or for Lisp errors; or
 NIL."
-  (multiple-value-bind (type class) (missed-clause failure)
+  (multiple-value-bind (type class) (similar-clause failure)
     (let ((error-type (clause-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure is
 ~(~S~)" type class))
@@ -107,7 +107,8 @@ NIL."
   (write-some "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
   (when (failure-cause failure)
     (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
-  (format stream "~@[  ~A~%~]~@[  ~A~%~]" (passed-on-text failure) (missed-text failure))
+  (format stream "~@[  ~A~%~]~@[  ~A~%~]"
+          (handler-ended-text failure) (similar-clause-text failure))
   (write-some "  and in a cleanup: ~A~%"
               (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
@@ -121,8 +122,8 @@ NIL."
           (failure-tick failure)
           (mapcar (lambda (form) (form-text form 40)) (failure-plan-backtrace failure))
           (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))
-          (passed-on-text failure)
-          (missed-text failure)))
+          (handler-ended-text failure)
+          (similar-clause-text failure)))
 
 ;; What a REPL shows of the value of a plan that failed.
 (defmethod print-object ((failure plan-failure) stream)
@@ -208,14 +209,14 @@ the parts of this task."
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)
-      (find place (mapcan #'all-tasks (parts-of within)) :key #'task-serial)
-      (loop with tasks = (parts-of within)
+      (find place (mapcan #'all-tasks (tasks-within within)) :key #'task-serial)
+      (loop with tasks = (tasks-within within)
             for (step . more) on place
             for task = (find-if (lambda (task) (at-place-p task step)) tasks)
             while (and task more) do (setf tasks (task-children task))
             finally (return task))))
 
-(defun parts-of (within)
+(defun tasks-within (within)
   (if (task-p within) (task-children within) (plan-runner-tasks within)))
 
 (addition task-source)

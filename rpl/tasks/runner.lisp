@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*runaway-limit* alone-p blocked-p make-ready plan-runner
+(export '(*runaway-limit* only-ready-task-p blocked-p make-ready plan-runner
           counted-steps plan-runner-tasks plan-runner-tick runner-note client-forked-p
-          call-with-client-still note-plan-trouble note-seen all-tasks task-numbered
-          note-outside-call task-now))
+          call-with-client-still note-plan-trouble note-plans-shown all-tasks task-numbered
+          note-outside-call current-counterpart))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. Bit n of MASK is
 ;;; set while tasks of level n may be queued. The bit +INTERRUPT+, above all of these, is set when
@@ -19,7 +19,7 @@ policies.")
   "The number of steps that a task may take before other tasks and posted changes get their turn.
 The slice is a tenth of the steps of a reaction if that is less.")
 
-(defconstant +thoughts+ 500
+(defconstant +steps-before-changes+ 500
   "With a budget of steps, the number of steps that all tasks together may take before posted
 changes are applied. The changes are then applied even if some tasks do not wait yet.")
 
@@ -33,8 +33,8 @@ still ready.")
 runner. Starting one more task fails with class :TOO-MANY-TASKS.")
 
 (define-record (plan-runner (:include home) (:constructor %make-plan-runner) (:conc-name runner-))
-  "An object that runs plans. It has the tasks, the tick, the timers, and the changes and calls
-posted from outside."
+  "An object that runs plans. A plan runner has the tasks, the tick, the timers, and the changes and
+calls posted from outside."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector) (simple-vector 8))
   (mask 0 fixnum :writable)
   (current nil (or null task) :writable)
@@ -100,7 +100,7 @@ copies.")
   (:method (client copier) (declare (ignore client copier)) nil))
 
 ;; Events of tasks that the client may want to know.
-(defgeneric note-seen (client)
+(defgeneric note-plans-shown (client)
   (:documentation "Note that somebody looks at the plans of CLIENT, the client of a plan runner.")
   (:method (client)
     (declare (ignore client))
@@ -224,7 +224,7 @@ cleanup count."
         until (or (null each) (task-ending-p each))
         thereis (plusp (task-blocked each))))
 
-(defun spent-p (task runner)
+(defun slice-spent-p (task runner)
   (and (= (task-round task) (runner-round runner))
        (<= (task-slice task) 0)))
 
@@ -244,7 +244,7 @@ their slice."
               (cond ((not (eq (task-state task) :ready))) ; has evaporated meanwhile
                     ((and (plusp (runner-blocks runner)) (blocked-p task))
                      (push task (runner-held runner)))
-                    ((spent-p task runner) (push task (runner-spent runner)))
+                    ((slice-spent-p task runner) (push task (runner-spent runner)))
                     (t (return task)))))))))
 
 (defun release-spent (runner)
@@ -257,7 +257,7 @@ their slice."
            (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 
-(defun alone-p (task)
+(defun only-ready-task-p (task)
   "True if no other task of the level of TASK, or above, is ready."
   (let ((runner (task-runner task)))
     (and (< (runner-mask runner) (ash 2 (task-level task)))
@@ -274,7 +274,7 @@ plans' tasks or their plan runner.")
     (declare (ignore client word arguments subject))
     (values)))
 
-(defgeneric task-now (client task)
+(defgeneric current-counterpart (client task)
   (:documentation "Return the counterpart of TASK, a task of CLIENT, in the current run of this
 thread, or in the run that replaced a rewound run. Return TASK if TASK has no counterpart.")
   (:method (client task)
@@ -285,13 +285,13 @@ thread, or in the run that replaced a rewound run. Return TASK if TASK has no co
   "True if RUNNER is NIL, or this thread is running the plans of RUNNER."
   (or (null runner) (eq runner *runner*)))
 
-(defun task-meant (task)
+(defun task-for-caller (task)
   "Return TASK. For a caller outside of the plans of TASK, return the counterpart of TASK: see
 TASK-NOW."
   (let ((runner (task-runner task)))
     (if (inside-plans-p runner)
         task
-        (task-now (runner-client runner) task))))
+        (current-counterpart (runner-client runner) task))))
 
 (defun note-from-outside (word subject &rest arguments)
   "Record that the function WORD is called with ARGUMENTS and then SUBJECT, if the caller is outside

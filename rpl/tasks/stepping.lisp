@@ -21,13 +21,13 @@ this call."
 (defun at-rest-p (task runner)
   (case (task-state task)
     (:running nil)
-    (:ready (or (spent-p task runner) (blocked-p task)))
+    (:ready (or (slice-spent-p task runner) (blocked-p task)))
     (t (not (notice-p (task-awaiting task))))))
 
 (defun notify-at-rest (receiver function)
   "Call FUNCTION, which notifies the task RECEIVER, when RECEIVER is at rest. If RECEIVER is at rest
-now, or is NIL, call FUNCTION now. Otherwise call it as soon as RECEIVER is at rest, and let the
-running task wait until then."
+now, or is NIL, call FUNCTION now. Otherwise call FUNCTION as soon as RECEIVER is at rest, and let
+the running task wait until then."
   (let* ((runner *runner*)
          (sender (running-task runner)))
     (cond ((or (null receiver) (null sender) (eq receiver sender)
@@ -93,7 +93,7 @@ true."
         (when (and (> seconds (runner-slow runner)) (not (runner-looked-at runner)))
           (warn-of-slow-step task frame seconds))))))
 
-(defun call-offering-again (frame function)
+(defun call-with-step-retry (frame function)
   "Call FUNCTION, which takes a step at FRAME, with the restart RETRY, which takes the step again."
   (let ((counter (frame-counter frame))
         (data (frame-data frame)))
@@ -109,7 +109,7 @@ true."
           (setf (frame-counter frame) counter
                 (frame-data frame) data))))))
 
-(defun watched-step (node task frame value)
+(defun instrumented-step (node task frame value)
   "Take the step of NODE as RUN-STEPS does, but with timing, the stepper or restarts."
   (let* ((runner (task-runner task))
          (stepper (runner-stepper runner)))
@@ -122,7 +122,7 @@ true."
       (when stepper (funcall stepper task frame))
       ;; A leaf offers the same, and a value in its place.
       (if (and *leaves-offer-restarts* (not (leaf-p node)))
-          (call-offering-again frame #'take)
+          (call-with-step-retry frame #'take)
           (take)))))
 
 (defun evaporate-self (task frame)
@@ -136,7 +136,7 @@ true."
                (evaporate-now task))
            +parked+)))
 
-(defun interrupt (task frame value)
+(defun check-interruptions (task frame value)
   "Evaporate TASK if this was requested, or let TASK yield to a higher level or because it has used
 its steps. FRAME and VALUE are what the last step returned. Return the values that RUN-STEPS
 continues with."
@@ -167,15 +167,15 @@ continues with."
       (when (or (>= (runner-mask runner) higher)
                 (>= (runner-steps runner) (runner-pause runner))
                 (runner-ends-requested runner))
-        (multiple-value-setq (frame value) (interrupt task frame value)))
-      (cond ((null frame) (return (finish task :succeeded (single-value value))))
+        (multiple-value-setq (frame value) (check-interruptions task frame value)))
+      (cond ((null frame) (return (finish-task task :succeeded (single-value value))))
             ((eq frame +parked+) (return)))
       (setf (task-frame task) frame)
       (incf (runner-steps runner))
       (let ((node (frame-node frame)))
         (multiple-value-setq (frame value)
           (if watched
-              (watched-step node task frame value)
+              (instrumented-step node task frame value)
               (funcall (node-step node) node task frame value)))))))
 
 (defun begin-turn (task runner)
@@ -202,7 +202,7 @@ this round."
     (let ((*asker* task))
       (when signal
         (setf (task-signal task) nil)
-        (multiple-value-setq (frame value) (receive task frame signal)))
+        (multiple-value-setq (frame value) (receive-signal task frame signal)))
       (run-steps task frame value))
     (let ((taken (- (runner-steps runner) start)))
       (decf (task-slice task) taken)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(tasks-awaited stuck-wait-text report-circle preemptors all-preemptors report-deadlock
-          report-stillness +no-fluent+ wait-for-no-fluent doubt-awaited waiting-parts
+          report-stillness +no-fluent+ wait-forever warn-of-awaited-value waiting-parts
           text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
 
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
@@ -148,10 +148,10 @@ their own parts."
   "True if FLUENT has a name as the fluents of TASK-STATUS have."
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
-(defun end-elsewhere (name part tasks)
+(defun end-wait-advice (name part tasks)
   "Return the text of the form that waits for the end of the command NAME on PART, or NIL if TASKS
 wait for that."
-  (let ((text (end-text name part)))
+  (let ((text (wait-for-end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
          text)))
@@ -168,7 +168,7 @@ wait for that."
                  plan))
         (name
          (format nil "The last command of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
-                      end~]." plan name (end-elsewhere name part tasks)))
+                      end~]." plan name (end-wait-advice name part tasks)))
         (t (format nil "~A has issued no command by a function such as rpl-robot-turn; only such ~
                         functions change the fluents of a robot." plan))))))
 
@@ -248,13 +248,13 @@ probably meant."
   (when (first-warning-p (task-form task) (task-runner task))
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
-(defun wait-for-no-fluent (task)
+(defun wait-forever (task)
   "Let TASK wait forever, because it got something other than a fluent to wait for. Queue a warning,
 once for each form."
   (park task +no-fluent+)
   (warn-of-wait task (no-fluent-advice task)))
 
-(defun doubt-awaited (task value)
+(defun warn-of-awaited-value (task value)
   "Queue a warning, once for each form, if TASK waits for VALUE and VALUE is probably not meant as a
 condition."
   (multiple-value-bind (kind remedy)

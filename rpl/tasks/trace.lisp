@@ -14,7 +14,7 @@
 
 (defgeneric traced-subject (awaited)
   (:documentation "Return the object that a trace stores for AWAITED, an object that a task waits
-for. It does not refer to tasks.")
+for. The stored object does not refer to tasks.")
   (:method (awaited) awaited)
   (:method ((watcher watcher)) (watcher-fluent watcher))
   (:method ((timer timer)) (timer-due timer)))
@@ -33,7 +33,7 @@ if TASK does not wait, or waits for its own parts."
 (define-record (trace-entry (:constructor make-trace-entry
                                 (tick event task form subject value agent)))
   "An entry of a trace: at TICK, EVENT happened to the task with the number TASK (or to no task if
-TASK is 0) at the expression FORM. AGENT has caused the event. It is the number of a task, an
+TASK is 0) at the expression FORM. AGENT, the cause of the event, is the number of a task, an
 ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT and VALUE are:
   :start: the name, and the number of the parent
   :wait and :wake: the object that the task waits for

@@ -28,7 +28,7 @@ TRACE-ENTRY; they are evaluated only if there is a trace."
     (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
                      (form-now task) subject value)))
 
-(defun trace-doing (runner event subject value)
+(defun trace-running-task (runner event subject value)
   "Add to the trace of RUNNER that the running task, if any, caused EVENT."
   (let* ((asker *asker*)
          (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
@@ -38,9 +38,9 @@ TRACE-ENTRY; they are evaluated only if there is a trace."
                      subject value)))
 
 (defun trace-changes (runner)
-  (setf (runner-wrapper runner) #'keep-asker
+  (setf (runner-wrapper runner) #'keep-current-asker
         (runner-on-change runner)
-        (lambda (kind fluent value) (trace-doing runner kind fluent value))))
+        (lambda (kind fluent value) (trace-running-task runner kind fluent value))))
 
 (defun start-trace (runner)
   "Start a trace of RUNNER. Tasks that already run appear to start now. Does nothing if RUNNER keeps
@@ -61,7 +61,7 @@ a trace already."
 
 ;;; What is posted.
 
-(defun keep-asker (entry)
+(defun keep-current-asker (entry)
   "Return a function that applies the posted ENTRY on behalf of the current asker."
   (let ((asker *asker*))
     (lambda ()
@@ -87,7 +87,7 @@ record of the call for WITH-ANSWER; NIL if no task is running or no trace is kep
 in the trace. ISSUE is a value of NOTE-COMMAND."
   (let ((*asker* (if issue (make-answer issue error) *asker*)))
     (when (and issue *runner* (runner-trace *runner*))
-      (trace-doing *runner* :answer issue error))
+      (trace-running-task *runner* :answer issue error))
     (funcall function)))
 
 (defmacro with-answer ((issue error) &body body)

@@ -14,7 +14,7 @@
   (cells '() list))
 (declaim-final task-bindings)
 
-(defvar *defaults* (make-hash-table :test 'eq :synchronized t)
+(defvar *task-variable-defaults* (make-hash-table :test 'eq :synchronized t)
   "The default values of task variables, by name.")
 
 (defvar *calling-task* nil
@@ -25,7 +25,7 @@
   (or *calling-task*
       (and *runner* (running-task *runner*))))
 
-(defun own-cell (name task)
+(defun variable-cell (name task)
   (or (loop for frame = (task-frame task) then (frame-up frame)
             while frame
             thereis (and (task-bindings-p (frame-data frame))
@@ -35,15 +35,15 @@
 (defun task-variable (name)
   "Return the value of the task variable NAME for the calling task."
   (let ((cell (loop for task = (calling-task) then (task-parent task)
-                    while task thereis (own-cell name task))))
-    (if cell (cdr cell) (values (gethash name *defaults*)))))
+                    while task thereis (variable-cell name task))))
+    (if cell (cdr cell) (values (gethash name *task-variable-defaults*)))))
 
 (defun (setf task-variable) (value name)
   (let* ((task (calling-task))
-         (cell (and task (own-cell name task))))
+         (cell (and task (variable-cell name task))))
     (cond (cell (setf (cdr cell) value))
           (task (push (cons name value) (task-variables task)))
-          (t (setf (gethash name *defaults*) value)))
+          (t (setf (gethash name *task-variable-defaults*) value)))
     value))
 
 (defun task-variable-p (name &optional environment)
@@ -55,6 +55,6 @@
 
 (defun install-task-variable (name value documentation)
   "Define VALUE as the default of the task variable NAME."
-  (setf (gethash name *defaults*) value
+  (setf (gethash name *task-variable-defaults*) value
         (documentation name 'variable) documentation)
   name)
