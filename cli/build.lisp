@@ -275,7 +275,7 @@ and try again. If the second try fails, too, exit with status 2."
 
 (defun get-window-libraries ()
   "Load McCLIM through Quicklisp. If that fails, print the reason and exit with status 1."
-  (handler-case (uiop:symbol-call :ars-magna.clx :get-by-quicklisp)
+  (handler-case (uiop:symbol-call :ars-magna.clx :load-by-quicklisp)
     (error (condition)
       (format t "~&*** ~A~%" (one-line condition))
       (uiop:quit 1))))

@@ -177,7 +177,7 @@
 (test functions.that-the-prompt-calls-otherwise-are-named
   (is-true (has-words-p (definitions::function-slip-text 'hand-grasp) "write ars:hand-grasp-desig"))
   (is-true (has-words-p (language:advice-on-call 'rpl-hand-grasp)
-                        "plans call it rpl-hand-grasp-desig"))
+                        "plans use the function rpl-hand-grasp-desig"))
   (is (null (language:advice-on-call 'driver:rpl-robot-turn))))
 
 (test plans.that-are-begun-while-no-ticks-pass-are-told

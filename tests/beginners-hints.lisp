@@ -168,7 +168,7 @@
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (driver:rpl-init-robot rover)
                                                     (rpl:wait-time 3))))
-                        "ends the plan" "Call it before the plan, not in it")))
+                        "ends the plan" "Call it before the plan, not in the plan")))
 
 (test manipulations.say-that-no-method-is-for-the-things
   (with-own-definitions

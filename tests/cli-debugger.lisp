@@ -51,15 +51,15 @@
 (test hook.that-threads-share-follows-from-the-prompts-at-work
   "Whichever comes first: that of a window may, and go before the terminal's does."
   (let ((before (base:global-debugger-hook)))
-    (cli::begin-sharing 'cli::enter-debugger)
-    (cli::begin-sharing 'cli::enter-debugger)
-    (cli::end-sharing 'cli::enter-debugger)
+    (cli::begin-sharing-hook 'cli::enter-debugger)
+    (cli::begin-sharing-hook 'cli::enter-debugger)
+    (cli::end-sharing-hook 'cli::enter-debugger)
     (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
-    (cli::begin-sharing 'cli::debugger-disabled-hook)
+    (cli::begin-sharing-hook 'cli::debugger-disabled-hook)
     (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
-    (cli::end-sharing 'cli::enter-debugger)
+    (cli::end-sharing-hook 'cli::enter-debugger)
     (is (host:disabled-hook-p (base:global-debugger-hook)))
-    (cli::end-sharing 'cli::debugger-disabled-hook)
+    (cli::end-sharing-hook 'cli::debugger-disabled-hook)
     (is (eq before (base:global-debugger-hook)))))
 
 ;;; Where somebody does.
@@ -89,7 +89,7 @@
             (list (cli::make-break-request (make-condition 'simple-condition :format-control "oh")
                                            (list (find-restart 'continue))
                                            (base:current-thread) (list session))))
-      (is (equal " A break waits for one of 0 continue." (cli::ongoing-work-text session))))))
+      (is (equal " Answer the break by one of 0 continue." (cli::ongoing-work-text session))))))
 
 (test break.can-be-left-with-the-prompt
   (is-false (written-p "5" (type-at-terminal "(break)" "quit" "(+ 2 3)")))
@@ -292,10 +292,10 @@
         (window (cli:make-session :place (constantly nil)))
         (request (cli::make-break-request (make-condition 'simple-condition :format-control "look")
                                           '() (base:current-thread) '())))
-    (is (mentions-p (cli::words-for-repl (list window) request) "look"))
-    (is (null (cli::words-for-repl (list window (cli:make-session)) request)))
+    (is (mentions-p (cli::repl-break-message (list window) request) "look"))
+    (is (null (cli::repl-break-message (list window (cli:make-session)) request)))
     (setf cli::*own-process-p* t)
-    (is (null (cli::words-for-repl (list window) request)))))
+    (is (null (cli::repl-break-message (list window) request)))))
 
 ;;; Whose matter a break is.
 
@@ -306,9 +306,9 @@
                                                  (base:current-thread) (copy-list sessions))))
     (dolist (session sessions)
       (setf (cli::break-state-others (cli::session-break-state session)) (list break-request)))
-    (cli::release-all (first sessions))
+    (cli::continue-orphaned-breaks (first sessions))
     (is (null (cli::break-request-call break-request)) "the other one has not answered yet")
-    (cli::release-all (second sessions))
+    (cli::continue-orphaned-breaks (second sessions))
     (is-true (cli::break-request-call break-request))))
 
 (test breaks.of-a-users-own-thread-are-for-lisps-debugger
@@ -318,7 +318,7 @@
              (setf cli::*session* nil cli::*own-process-p* nil)
              (unwind-protect
                   (base:join-thread (funcall start (lambda ()
-                                                     (push (cli::outside-prompts-p) answer))))
+                                                     (push (cli::break-ignored-p) answer))))
                (setf cli::*session* session cli::*own-process-p* own-p))
              answer)))
     (is (equal '(t) (there-p (lambda (function) (bordeaux-threads:make-thread function)))))
@@ -387,7 +387,7 @@ asked goes."
 
 (test debuggers.of-an-editor-that-has-gone-ask-nobody
   "Its hooks stay: what breaks then is for the prompts that are at work, if there are any."
-  (let ((base:*editor-gone-p* (constantly t)) (cli::*hooks-at-work* '(cli::enter-debugger)))
+  (let ((base:*editor-gone-p* (constantly t)) (cli::*prompt-debugger-hooks* '(cli::enter-debugger)))
     (base:with-debugger-hook ((constantly nil))
       (is (eq 'cli::enter-debugger (base:debugger-hook))))
     (base:with-debugger-hook ('cli::debugger-disabled-hook)

@@ -23,7 +23,7 @@ function of its name. Return that parameter."
   (lambda (name) (type-batch (format nil control name))))
 
 (defparameter *roads*
-  (list (cons "--world and WORLD" #'cli::world-robots-called)
+  (list (cons "--world and WORLD" #'cli::robot-names-in-world)
         (cons "(load ...)" (road-by-line "(load ~S)"))
         (cons "world" (road-by-line "world ~S"))
         (cons "--load" (lambda (name)
@@ -48,7 +48,7 @@ function of its name. Return that parameter."
                       (format out "(defmap shed (5 5)) (defrobot hen (shed (2 2) 0))"))
                     (base:with-own-definitions ()
                       (is (equal '("HEN")
-                                 (mapcar #'symbol-name (cli::world-robots-called file)))
+                                 (mapcar #'symbol-name (cli::robot-names-in-world file)))
                           "~A" name)))
           (delete-file (base:native-path file)))))))
 
@@ -108,7 +108,7 @@ function of its name. Return that parameter."
     (write-string "(defmap pen (9 9) (obj t12345))" out)
     :close-stream
     (base:with-own-definitions ()
-      (handler-case (cli::world-robots-called (base:native-name path))
+      (handler-case (cli::robot-names-in-world (base:native-name path))
         (error (condition)
           (let* ((*package* (find-package :cl-user)) (said (cli::ending-reason condition)))
             (is-true (has-words-p said "(obj t12345)") "~A" said)))))))
@@ -193,7 +193,7 @@ function of its name. Return that parameter."
              :close-stream
              (loop repeat 2
                    collect (mapcar #'symbol-name
-                                   (cli::world-robots-called (uiop:native-namestring path)))))))
+                                   (cli::robot-names-in-world (uiop:native-namestring path)))))))
     (base:with-own-definitions ()
       (is (equal '(("ROBBIE" "COW") ("ROBBIE" "COW")) (robots "robbie" "cow")))
       (is (equal '(("COW" "ROBBIE") ("COW" "ROBBIE")) (robots "cow" "robbie"))))))

@@ -119,7 +119,7 @@ ok."
 
 (test scripts.give-up-once-what-repeat-waits-for-too-long
   "The next line does not wait for it again."
-  (let ((cli::*patience* 3))
+  (let ((cli::*wait-limit* 3))
     (is (= 1 (count-if (lambda (line) (search "not completed within 3 ticks" line))
                        (run-script (format nil "repeat 2 go-forward 50~%(list 1)")))))))
 

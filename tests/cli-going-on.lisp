@@ -82,7 +82,7 @@
   (in-shed
     (let* ((output (make-string-output-stream))
            (waiting (cli:make-session :input (make-string-input-stream "") :output output)))
-      (cli::call-among-sessions
+      (cli::call-as-running-session
        waiting
        (lambda ()
          (cli::listen-to waiting time:*simulation*)

@@ -13,7 +13,7 @@
         do (is-true (apply #'has-words-p (complaint line) words) "~A" line)))
 
 (test hints.name-lines-that-there-are
-  (loop for (nil hint) in cli::*hints*
+  (loop for (nil hint) in cli::*newcomer-hints*
         do (loop for word in (uiop:split-string hint :separator " ,.:()\"")
                  when (and (< 2 (length word)) (string= word (string-upcase word))
                            (every #'alpha-char-p word) (string/= word "FILE"))

@@ -98,7 +98,7 @@
 (test robots.displace-what-was-merely-read
   (with-names ("DOT")
     (let ((read (intern "DOT" :ars-user)))
-      (cli::call-by-name '(ars-worlds:dot))
+      (cli::import-robot-names '(ars-worlds:dot))
       (is (eq 'ars-worlds:dot (known-as "DOT")))
       (is (null (symbol-package read))))))
 
@@ -123,9 +123,9 @@
     (with-names ("DOT")
       (let ((own (intern "DOT" :ars-user)))
         (funcall define own)
-        (cli::call-by-name '(ars-worlds:dot))
+        (cli::import-robot-names '(ars-worlds:dot))
         (is (eq own (known-as "DOT"))))))
-  (cli::call-by-name '(loop robot))
+  (cli::import-robot-names '(loop robot))
   (is (eq 'ars-magna.nisp:loop (known-as "LOOP")))
   (is (eq 'robot:robot (known-as "ROBOT"))))
 

@@ -124,7 +124,7 @@
     (setf (base:global-value '*gate*) (base:make-semaphore "started"))
     (enter talk "(progn (ars-magna.base:signal-semaphore ars-magna.tests::*gate*) (loop))")
     (is-true (base:wait-on-semaphore *gate* 20))
-    (is-true (cli:at-work-on (talk-session talk)))
+    (is-true (cli:running-line-p (talk-session talk)))
     (cli:interrupt-session (talk-session talk))
     (is-true (await-turns talk 2))
     (is (mentions-p (told-to talk) "Interrupted."))
@@ -179,7 +179,7 @@
                                                           (1 (run:stop-clock simulation))
                                                           (9 (error "It waits for ever.")))))))
       (run:start-clock simulation :paused-p t)
-      (is (null (cli::await-live (constantly nil) simulation))))))
+      (is (null (cli::await-test-live (constantly nil) simulation))))))
 
 (defun await-debugging (talk)
   "Wait until the user of TALK is asked how a line goes on: before that, to end the session ends the
@@ -197,9 +197,9 @@ line."
            (progn
              (enter lost (format nil "(progn (break \"oh\") ~A)" (pushing 3)))
              (await-debugging lost)
-             (is-false (cli:asked-of-others-p (talk-session lost)))
+             (is-false (cli:answerable-by-others-p (talk-session lost)))
              (cli:abandon-session (talk-session lost))
-             (is-true (cli:asked-of-others-p (talk-session lost)))
+             (is-true (cli:answerable-by-others-p (talk-session lost)))
              (cli:end-session (talk-session lost))
              (await-break other)
              (enter other "0")

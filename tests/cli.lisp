@@ -343,14 +343,14 @@ of lines, and the number of errors."
           do (is-true (search option usage) "~A" option))))
 
 (test worlds.are-found-by-name-or-file
-  (is (member 'ars-user::butler (cli::world-robots-called "PARLOUR")))
-  (signals cli:bad-line (cli::world-robots-called "no-such-world"))
+  (is (member 'ars-user::butler (cli::robot-names-in-world "PARLOUR")))
+  (signals cli:bad-line (cli::robot-names-in-world "no-such-world"))
   (uiop:with-temporary-file (:pathname path :stream stream :type "lisp")
     (format stream "#| A #| loft |# (oops) |# ; (and) so on~%~
                     (defmap attic (5 5)) (defrobot bat (attic (2 2) 0))")
     :close-stream
     (is (equal '("BAT") (mapcar #'symbol-name
-                                (cli::world-robots-called (uiop:native-namestring path)))))))
+                                (cli::robot-names-in-world (uiop:native-namestring path)))))))
 
 ;;; Aliases, restarts, errors that repeat.
 

@@ -53,7 +53,7 @@
       (cli::show-prompt console "Break> ")
       (cli::report-waiting-break (window::window-session window)
                                  (broken "oh" (base:current-thread)))
-      (is (mentions-p (said-in window) "It waits until the one before is answered"))
+      (is (mentions-p (said-in window) "It waits until the break before it is answered"))
       (is (equal "Break> " (cli:unpainted-text (first (window::shown-input-line conversation))))))))
 
 (test awaiting.code-that-draws-in-a-window-is-not-waited-for
@@ -112,7 +112,7 @@
                              (cli:make-session)
                              (format nil "~D" (ars-magna.rpl:task-serial task))))))
         (is (mentions-p said "ends"))
-        (is (null (ars-magna.rpl.seeing::courses-of (ars-magna.rpl:task-runner task))))))))
+        (is (null (ars-magna.rpl.seeing::stepping-courses (ars-magna.rpl:task-runner task))))))))
 
 (test awaiting.lines-of-menus-and-buttons-come-after-the-answer
   "They would be taken for wrong answers; forms are evaluated where it has broken."

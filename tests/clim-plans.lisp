@@ -274,7 +274,7 @@
            (session (cli:make-session :input (make-string-input-stream ""))))
       (setf (cli::session-lisp-p session) t)
       (command:robot-turn robot 1 nil)
-      (cli::catch-up session)
+      (cli::await-session-commands session)
       (is (plusp (run:simulation-tick (time:current-simulation))))
       (is (equal (list (run:simulation-tick (time:current-simulation))) seen)))))
 

@@ -12,7 +12,7 @@
         (trial (cli::make-open-trial nil nil 1 nil)))
     (setf (cli::session-trial session) trial
           (cli::session-whereabouts session) (time:current-simulation))
-    (cli::call-among-sessions session (lambda () (funcall function trial)))))
+    (cli::call-as-running-session session (lambda () (funcall function trial)))))
 
 (defun time-said (window)
   (window::check-progress (window::window-watcher window))
@@ -54,7 +54,7 @@
     (let ((session (window::window-session window)))
       (setf (cli::session-forks session) 1
             (cli::session-whereabouts session) (time:current-simulation))
-      (cli::call-among-sessions
+      (cli::call-as-running-session
        session
        (lambda ()
          (is (mentions-p (time-said window) "in a fork")))))))

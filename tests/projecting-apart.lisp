@@ -169,7 +169,7 @@
     (rpl-init-robot runner)
     (let ((task (begin-plan 'toss 1 9)))
       (rpl-init-robot second-runner)
-      (refused ("a task of the plans of the robot that is driven here")
+      (refused ("a task of the plans that drive the current robot")
         (project task :trials 1)))))
 
 (test project.says-that-worlds-believed-in-know-no-tasks

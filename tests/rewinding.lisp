@@ -354,7 +354,7 @@ as STATES say. GO-ON is called after each."
        (driver:begin-plan 'turn-for-ever)
        (setf interface (shiftf driver::*interface* nil))))
     (is-true (run:simulation-over (driver::interface-simulation interface)))
-    (awaiting (null (driver::thread-of interface)))
+    (awaiting (null (driver::plans-thread interface)))
     (is (null (driver::tasks-of interface)))))
 
 (test rewind.live-plans-go-on

@@ -54,11 +54,11 @@
    '(ars-user::butler)))
 
 (test images.change-their-mark-when-tasks-go-on
-  (let* ((runner (seen-until 3)) (mark (rpl:runner-mark runner)))
-    (is (equal mark (rpl:runner-mark runner)))
+  (let* ((runner (seen-until 3)) (mark (rpl:runner-change-mark runner)))
+    (is (equal mark (rpl:runner-change-mark runner)))
     (rpl:advance-timers runner 7)
     (rpl:react-to-all runner)
-    (is (not (equal mark (rpl:runner-mark runner))))))
+    (is (not (equal mark (rpl:runner-change-mark runner))))))
 
 ;;; Pictures.
 

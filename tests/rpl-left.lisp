@@ -104,7 +104,7 @@ after that."
                                     (rpl:wait-time 0))))
       (let ((old driver::*interface*))
         (run:run-ticks 2)
-        (let ((driver::*reacting* old))
+        (let ((driver::*reacting-interface* old))
           (handler-case (driver:rpl-robot-turn 1)
             (base:misuse (condition) (setf trouble condition)))))
       (is-true trouble))))

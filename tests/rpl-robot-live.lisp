@@ -349,7 +349,7 @@ tick."
                                                              #'sb-thread:abort-thread)
                                       (rpl:wait-time 1)))))
       (awaiting (rpl:task-over-p task))
-      (awaiting (not (member (driver::thread-of interface) '(nil :starting))))
+      (awaiting (not (member (driver::plans-thread interface) '(nil :starting))))
       (is-false (rpl:task-over-p other))
       (driver:end-plan other)
       (awaiting (rpl:task-over-p other))

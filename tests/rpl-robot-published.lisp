@@ -120,7 +120,7 @@ that breaks is stopped there until the semaphore is signalled."
         (let ((task (driver:begin-plan (rpl:make-plan '(rpl:seq (rpl:wait-time 800) :fine)))))
           (awaiting (eq :waiting (rpl:task-state task)))
           (run:stop-clock simulation)
-          (awaiting (null (driver::thread-of driver::*interface*)))
+          (awaiting (null (driver::plans-thread driver::*interface*)))
           (is-false (rpl:task-over-p task))
           (funcall go-on simulation)
           (awaiting (rpl:task-over-p task))

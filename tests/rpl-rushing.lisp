@@ -20,7 +20,7 @@
       (is-true (rushing-failure-p failure))
       (is (equal '(loop (driver:rpl-camera-view 0)) (rpl:failure-form failure)))
       (let ((remedy (getf (rpl:failure-data failure) :remedy)))
-        (is (search "gives rpl-camera-view without waiting" remedy))
+        (is (search "issues rpl-camera-view without waiting" remedy))
         (is (search "such as (wait-for (vref camera-input* 0)) or (wait-time 1)" remedy))))))
 
 (test rushing.in-calls-and-parts-too

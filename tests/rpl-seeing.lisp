@@ -235,4 +235,4 @@
 (test why.of-long-histories-is-cut
   (let ((runner (seen-until 40 :plan (rpl:make-plan '(rpl:n-times 40 (rpl:wait-time 1))))))
     (is (< (length (lines-of (why-text 1 runner))) 20))
-    (is (search "more things happened" (why-text 1 runner)))))
+    (is (search "more events happened" (why-text 1 runner)))))

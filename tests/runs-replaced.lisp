@@ -310,5 +310,5 @@ function and its arguments."
     (let ((driver::*interface* nil) (called nil))
       (start-dray)
       (driver:rpl-init-robot (symbol-value 'dray))
-      (driver::call-as-thread driver::*interface* (lambda () (setf called t)))
+      (driver::call-as-plans-thread driver::*interface* (lambda () (setf called t)))
       (is-false called))))

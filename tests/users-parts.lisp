@@ -119,8 +119,8 @@
 
 (test command.says-what-warnings-are-to-know
   (let ((command (command::find-command 'probe-empty)))
-    (is-false (driver::came-to-nothing-p command :empty))
-    (is-true (driver::came-to-nothing-p command :failed))
+    (is-false (driver::command-failed-p command :empty))
+    (is-true (driver::command-failed-p command :failed))
     (is-true (command::trait-p :asks command))
     (is-false (command::trait-p :drives command))))
 

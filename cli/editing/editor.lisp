@@ -244,7 +244,7 @@ pasted text is drawn fast. If the key after the text ends the line, return the t
 
 (defun do-keys (stream)
   "Handle keys until one ends the line. Return the text of the line, or :EOF."
-  (when (console-asked-p (edited-console stream)) (tell-asking (edited-console stream)))
+  (when (console-asked-p (edited-console stream)) (announce-program-input (edited-console stream)))
   (loop for key = (read-key (octet-reader stream))
         for end = (if (stringp key) (insert-typed-text stream key) (do-key stream key))
         until end
@@ -256,7 +256,7 @@ pasted text is drawn fast. If the key after the text ends the line, return the t
 (defun edit-line (stream)
   "Return a line from the user, with newlines if several were pasted; :EOF at the end of the input."
   (flet ((edit () (call-editing (lambda () (do-keys stream)) stream)))
-    (prog1 (if *program-reads* (call-asking (edited-console stream) #'edit) (edit))
+    (prog1 (if *program-reads* (call-reading-program-input (edited-console stream) #'edit) (edit))
       ;; A Control-C typed after the line is for that line.
       (let ((ahead (edited-ahead stream)))
         (add-octets ahead (octets-come stream))

@@ -47,7 +47,7 @@ NIL."
 
 (defun by-part-p (by)
   "True if BY, a list (variable type) of a method, stands for a part of the robot."
-  (and (second by) (part-type-p (type-key (second by)))))
+  (and (second by) (part-type-p (type-keyword (second by)))))
 
 (defun method-usage (name method)
   (multiple-value-bind (objects by others) (method-signature method)
@@ -64,7 +64,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
 
 (defun manipulation-called (name)
   (or (find-manipulation name nil)
-      (reject-absent "manipulation" name (mapcar #'manipulation-name (all-manipulations))
+      (reject-unknown-name "manipulation" name (mapcar #'manipulation-name (all-manipulations))
                    "MANIPULATE lists all.")))
 
 (defun arguments-for (method data robot)
@@ -78,7 +78,7 @@ values is wrong."
                       collect (designator-numbered number robot))
                 ;; The part that acts, the first if its number is left out, or the robot.
                 (list (if (by-part-p by)
-                          (read-argument (type-key (second by))
+                          (read-argument (type-keyword (second by))
                                          (if (= 1 extra) (nth count data) 0) robot)
                           robot))
                 (nthcdr (+ count extra) data))))))

@@ -28,7 +28,7 @@ searches. The beginning of a command's name is enough. A line in parentheses is 
 lists the keys that edit a line. Scroll up in your terminal for what has left the screen." 0))
 
 (defun line-parameter-help (parameter)
-  (let ((texts (list (line-parameter-text parameter) (line-parameter-words parameter))))
+  (let ((texts (list (line-parameter-text parameter) (parameter-description parameter))))
     (format nil "~A: ~{~A~^; ~}~:[~; (may be left out)~]." (line-parameter-name parameter)
             (remove "" (remove-duplicates texts :test #'string=) :test #'string=)
             (line-parameter-optional-p parameter))))

@@ -32,7 +32,7 @@ is WORDS."
 
 (defun number-typed (text)
   (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
-    (and (realp datum) (whole-if-whole datum))))
+    (and (realp datum) (integer-if-whole datum))))
 
 (defun map-part (numbers)
   "Return the options of TEXT-MAP for NUMBERS, a typed radius or region, or none."
@@ -112,9 +112,9 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
 SIMULATION is idle."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
-    (await (lambda ()
-             (or (>= (simulation-tick simulation) goal)
-                 (idle-here-p session simulation))))))
+    (await-test (lambda ()
+                  (or (>= (simulation-tick simulation) goal)
+                      (idle-here-p session simulation))))))
 
 ;;; One after the other.
 
@@ -130,7 +130,7 @@ SIMULATION is idle."
 
 (defun screen-p (session)
   "True if SESSION has a terminal on which maps can be redrawn in place and keys can be read."
-  (and (watched-p session)
+  (and (can-poll-input-p session)
        (terminal-stream-p (session-input session))
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
@@ -205,7 +205,7 @@ typed. Return true if a key was pressed."
 nothing happens any more. A key or Control-C ends WATCH. Words after the number are as for MAP.
 Where time stands still, WATCH 20 lets 20 ticks pass. Lines pasted meanwhile are read afterwards; if
 no number was given, they end WATCH."
-  (check-run)
+  (check-run-not-over)
   (multiple-value-bind (count rest) (take-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))
       (check-watchable session simulation count)

@@ -11,12 +11,12 @@
   (dolist (job (with-lock (*plan-jobs-lock*)
                  (remove old *plan-jobs* :key #'plan-job-simulation :test-not #'eq)))
     (setf (plan-job-forgotten-p job) t
-          (session-after-rewind (plan-job-session job)) #'take-up-plans)))
+          (session-after-rewind (plan-job-session job)) #'adopt-plans)))
 
 (attend *rewind-hooks* forget-jobs)
 
 (defun check-rewindable (session)
-  (check-run)
+  (check-run-not-over)
   (when (session-trial session)
     (reject-line "A trial cannot be rewound. TRIAL starts it again, at tick 0.")))
 
@@ -26,9 +26,9 @@
     ;; No session waits for commands that are in progress again.
     (setf (session-after-rewind session) nil
           (session-lisp-p session) t)
-    (take-up-plans session)
-    (tell-others session *simulation*
-                 (format nil "Another prompt has rewound the run to tick ~D.~%" tick))
+    (adopt-plans session)
+    (tell-other-sessions session *simulation*
+                         (format nil "Another prompt has rewound the run to tick ~D.~%" tick))
     (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
             (time-text session *simulation* tick) (mapcar #'task-label (plans)))))
 
@@ -65,7 +65,7 @@ that."
   "Return the experiment named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
   (let ((names (experiment-names name)))
     (cond ((null names)
-           (reject-absent "experiment" name (mapcar #'experiment-name (all-experiments))
+           (reject-unknown-name "experiment" name (mapcar #'experiment-name (all-experiments))
                         "TRIAL lists all; (load \"FILE\") loads others."))
           ((rest names) (reject-ambiguous name names))
           (t (find-experiment (first names))))))
@@ -172,7 +172,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
          (*trace-plans* t))
     (run-again experiment condition number
                :journal t
-               :gate (trial-gate session trial)
+               :gate (make-trial-gate session trial)
                :then (lambda (result) (read-after-end session trial result parts row)))))
 
 (defun call-with-others-paused (function)
@@ -194,7 +194,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
            (setf left-p t))
       (setf (session-trial session) nil)
       (drop-jobs session)
-      (call-by-name (current-robot-names))
+      (import-robot-names (current-robot-names))
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
 
 (defun drop-jobs (session)
@@ -202,15 +202,15 @@ at the next tick. A second Control-C before that tick leaves the trial."
     (when (plan-job-p job) (close-job job))))
 
 (defun go-to-trial (session trial)
-  (call-outside session
-                (lambda ()
-                  (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
-                                     pass, TRIAL OFF leaves it."
-                            (open-trial-name trial)
-                            (trial-seed (open-trial-experiment trial) (open-trial-number trial))
-                            (experiment-limit (open-trial-experiment trial)))
-                  (unless (watched-p session) (setf (open-trial-rate trial) :free))
-                  (funcall (call-with-others-paused (lambda () (enter-trial session trial)))))))
+  (flet ((enter ()
+           (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
+                              pass, TRIAL OFF leaves it."
+                     (open-trial-name trial)
+                     (trial-seed (open-trial-experiment trial) (open-trial-number trial))
+                     (experiment-limit (open-trial-experiment trial)))
+           (unless (can-poll-input-p session) (setf (open-trial-rate trial) :free))
+           (funcall (call-with-others-paused (lambda () (enter-trial session trial))))))
+    (call-outside-trial session #'enter)))
 
 (defun leave-trial (session)
   (unless (session-trial session) (reject-line "The prompt is not in a trial."))
@@ -265,7 +265,7 @@ opens one of them."
            ~{~A~^, ~}.~]~%"
           (simulation-tick *simulation*) (mapcar #'task-label (plans)))
   (loop until (session-over-p session)
-        do (call-guarded session (lambda () (next-line-inside session)))
+        do (call-guarded session (lambda () (run-nested-line session)))
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
@@ -284,12 +284,12 @@ meanwhile."
   "Run SESSION in a fork of the current run until a line leaves the fork; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
-    (tell-others session run
-                 (format nil "Another prompt is in a fork of the run, which is paused.~%"))
+    (tell-other-sessions session run
+                         (format nil "Another prompt is in a fork of the run, which is paused.~%"))
     (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
-      (tell-others session run
-                   (format nil "The fork is left; the run ~:[continues~;is still paused~].~%"
-                           (paused-p run)))
+      (tell-other-sessions
+       session run
+       (format nil "The fork is left; the run ~:[continues~;is still paused~].~%" (paused-p run)))
       (stop-listening session)
       (release-fork fork)
       (unless (session-over-p session)
@@ -302,7 +302,7 @@ meanwhile."
     "Continue in a copy of the run, plans included. The copy does exactly what the run would do.
 With SEED, the copy has other random numbers. The run itself is paused. FORK OFF discards the copy
 and returns to the run, which has not changed."
-  (check-run)
+  (check-run-not-over)
   (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
         ((null seed) (go-to-fork session nil))
         ((string-equal seed "off")

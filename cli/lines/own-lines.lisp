@@ -66,7 +66,7 @@ your own commands. Without SETTING, tell whether ECHO is on."
 command is a job of JOBS, or a waiting request that is not in the list INBOX."
   (when (and (waits-for-resume-p session)
              (or (notevery #'job-over-p jobs)
-                 (some #'awaited-p (set-difference (requests-waiting) inbox))))
+                 (some #'issued-outside-plans-p (set-difference (waiting-requests) inbox))))
     (reject-line "Time stands still: ~A runs once, after RESUME, and is not repeated." cmd)))
 
 (defun await-repetition (session cmd jobs inbox)
@@ -81,7 +81,7 @@ issued. Signals BAD-LINE if one waits for RESUME. INBOX lists the requests that 
 
 (defun repeat-once (session cmd)
   "Run the line CMD, and wait for the commands that the line issues, unless SESSION is in a trial."
-  (let ((before (session-jobs session)) (inbox (requests-waiting)))
+  (let ((before (session-jobs session)) (inbox (waiting-requests)))
     (run-text session cmd)
     (unless (session-trial session)
       (await-repetition session cmd

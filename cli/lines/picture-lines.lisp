@@ -60,7 +60,7 @@ from 4 to 40 for which the map has at most 900 x 700 pixels."
 stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
 failed commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY
 saves the film even if definitions have changed since the run began."
-  (check-run)
+  (check-run-not-over)
   (let* ((words (split-words (or what "")))
          (others (remove "ANYWAY" words :test #'string-equal))
          (options (picture-options (format nil "~{~A~^ ~}" others) "FILM")))
@@ -92,7 +92,7 @@ is the text of the error."
 (defun load-windows (quicklisp-p)
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
-    (call-or-say #'ars-magna.clx:get-by-quicklisp
+    (call-or-say #'ars-magna.clx:load-by-quicklisp
                  "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
                   WINDOW again."))
   (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))

@@ -18,7 +18,7 @@ package. NIL if there is none."
 BAD-LINE."
   (let ((candidates (items-with-prefix (string-upcase name) (plan-names) #'string)))
     (cond ((plan-called name))
-          ((null candidates) (reject-absent "plan" name (plan-names) "PLAN lists all plans."))
+          ((null candidates) (reject-unknown-name "plan" name (plan-names) "PLAN lists all plans."))
           ((rest candidates) (reject-ambiguous name candidates))
           (t (plan-called (string (first candidates)))))))
 
@@ -67,7 +67,7 @@ BAD-LINE."
 
 (defun send-plan (session plan arguments)
   (let ((job (make-plan-job (procedure-name plan) session (current-simulation))))
-    (check-run)
+    (check-run-not-over)
     (setf (session-failure session) nil)
     (pushnew (procedure-name plan) (session-plans session))
     (let ((task (let ((*robot-to-drive* #'session-robot))

@@ -4,7 +4,7 @@
 
 (defun live-simulation ()
   "Return the current simulation. Signals BAD-LINE if it is not live."
-  (check-run)
+  (check-run-not-over)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
       (reject-line "Time passes here only as commands need it. STEP lets ticks pass."))
@@ -36,7 +36,7 @@ run."
 
 (defun resume-here (session)
   "Resume the run of SESSION. If its clock was stopped, start the clock again."
-  (check-run)
+  (check-run-not-over)
   (let ((simulation (current-simulation)))
     (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
           (t (start-clock simulation :rate (or (simulation-rate simulation) *default-rate*)
@@ -53,11 +53,11 @@ trial to its end."
 (defun step-here (session count)
   "Pass COUNT ticks of the run of SESSION, and print the tick. If not all of the ticks have passed,
 also print how time passes."
-  (check-run)
+  (check-run-not-over)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))
     (step-ticks count simulation)
-    (if (await (lambda () (>= (simulation-tick simulation) goal)))
+    (if (await-test (lambda () (>= (simulation-tick simulation) goal)))
         (format t "Tick ~D.~%" (simulation-tick simulation))
         (format t "~A~%" (time-text session simulation)))))
 

@@ -197,6 +197,6 @@ as true or false.")
   "If SESSION reports objects, report the status of ROBOT, whose world stands still, as an object
 and return true."
   (let ((account (session-account session)))
-    (when (reports-p account)
+    (when (reports-objects-p account)
       (apply #'report-object account "status"
              (object-for-json (printing-plainly () (status robot)))))))

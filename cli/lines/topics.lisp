@@ -55,7 +55,7 @@
 
 (defun map-words (map)
   (format nil "~D by ~D cells.~@[ WORLD ~(~A~) goes there.~]" (map-width map) (map-height map)
-          (and (robots-of map) (map-name map))))
+          (and (robot-names-in-map map) (map-name map))))
 
 (defun robot-words (blueprint)
   (format nil "Lives in ~(~A~)." (blueprint-map blueprint)))

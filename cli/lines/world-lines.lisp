@@ -4,7 +4,7 @@
 
 (defun start-robot (session robot-name)
   (cond ((session-trial session)
-         (call-outside session (lambda () (start-robot session robot-name))))
+         (call-outside-trial session (lambda () (start-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         ((plusp (session-forks session))
@@ -18,11 +18,11 @@
 (defun end-replaced-run (session old robot)
   "End the run OLD, which SESSION has left for the run of ROBOT. Move the other prompts of OLD to
 the run of ROBOT, too."
-  (setf (gethash old *replacements*) (list (robot-simulation robot) (robot-name robot)))
+  (setf (gethash old *replaced-runs*) (list (robot-simulation robot) (robot-name robot)))
   (end-run-left old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
     (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
-      (when simulation (tell-of-run other simulation name)))))
+      (when simulation (announce-run other simulation name)))))
 
 (defun start-live (session robot-name)
   "End the run of SESSION, and start a run of the world of ROBOT-NAME at tick 0 and the same rate."
@@ -49,12 +49,12 @@ the run of ROBOT, too."
     "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. The
 present run ends."
   (if name
-      (start-robot session (robot-among (world-robots-called name) robot))
+      (start-robot session (robot-among (robot-names-in-world name) robot))
       (write-worlds)))
 
 (defun robot-called (name)
   (or (find name (robot-names) :test #'same-name-p)
-      (reject-absent "robot" name (robot-names) "ROBOT lists those of this world.")))
+      (reject-unknown-name "robot" name (robot-names) "ROBOT lists those of this world.")))
 
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
@@ -65,7 +65,7 @@ present run ends."
   "Signal BAD-LINE with a text that tells how to get to the robot NAME in another world."
   (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at tick 0, ~
                 and ends this run."
-               name (map-name (world-of name))))
+               name (map-name (map-of-robot name))))
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)
@@ -74,7 +74,7 @@ worlds and their robots."
   (let ((name (and name (robot-called name))))
     (cond ((null name) (list-robots))
           ((member name (current-robot-names))
-           (call-by-name (current-robot-names))
+           (import-robot-names (current-robot-names))
            (setf *prompt-robot* name)
            (note-robot-commanded))
           (t (reject-elsewhere name)))))

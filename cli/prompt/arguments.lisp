@@ -9,24 +9,24 @@
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
   (:documentation
-   "Return the argument of the type called TYPE (a keyword) that DATUM, as typed, means for ROBOT.
-Signal BAD-LINE if it means none. Parts are given by number. Without a method for TYPE, return
+   "Return the argument of type TYPE, a keyword, that the typed DATUM stands for. Parts of ROBOT are
+typed by number. Signal BAD-LINE if DATUM is not valid for TYPE. Without a method for TYPE, return
 DATUM.")
   (:method (type datum robot)
     (cond ((part-type-p type)
-           (number-of-element datum (parts-of-kind robot type) (kind-words type) robot))
-          ((by-number-p type) (designator-numbered datum robot))
+           (element-numbered datum (parts-of-kind robot type) (part-kind-text type) robot))
+          ((typed-by-number-p type) (designator-numbered datum robot))
           (t datum))))
 
 (defun part-type-p (type)
   (and (find-kind-name type 'part) t))
 
-(defun kind-words (type)
+(defun part-kind-text (type)
   (substitute #\Space #\- (string-downcase type)))
 
 ;;; Parts by number.
 
-(defun number-of-element (index elements kind robot)
+(defun element-numbered (index elements kind robot)
   (let ((count (length elements)))
     (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
           ((not (typep index 'unsigned-byte))
@@ -43,17 +43,17 @@ DATUM.")
   (declare (ignore robot))
   (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
 
-(defun by-number-p (type)
+(defun typed-by-number-p (type)
   (or (member type '(:designator :destination))
       (part-type-p type)))
 
-(defmethod argument-words ((type symbol))
-  (let ((key (type-key type)))
-    (if (by-number-p key)
-        (format nil "the number of a ~A" (if (part-type-p key) (kind-words key) "designator"))
+(defmethod argument-description ((type symbol))
+  (let ((key (type-keyword type)))
+    (if (typed-by-number-p key)
+        (format nil "the number of a ~A" (if (part-type-p key) (part-kind-text key) "designator"))
         (format nil "~A~@[, such as ~A~]" (argument-type-text type) (quantity-examples type)))))
 
-(defmethod argument-words ((type (eql 'designator-type)))
+(defmethod argument-description ((type (eql 'designator-type)))
   "local or non-local")
 
 ;;; The prompt's own types.
@@ -69,7 +69,8 @@ DATUM.")
   (error "#~C is for programs" char))
 
 (defun read-data-from-string (text start)
-  "Return the Lisp datum in TEXT at START and where it ends. Nothing that it says is evaluated."
+  "Read the Lisp datum in TEXT at START. Return the datum and the position of its end. Nothing is
+evaluated: #. and #S signal errors."
   (let ((*read-eval* nil) (*readtable* (copy-readtable)))
     ;; That makes objects by calling functions.
     (set-dispatch-macro-character #\# #\S #'refuse-syntax)
@@ -82,8 +83,8 @@ DATUM.")
       datum))
 
 (defun read-datum (text start line)
-  "Return the Lisp datum in TEXT at START and where it ends (reading 196). It is not evaluated, so a
-quote before it does not matter."
+  "Return the Lisp datum in TEXT at START and the position of its end (reading 196). The datum is
+not evaluated, so a quote before the datum does not matter."
   (handler-case (multiple-value-bind (datum end) (read-data-from-string text start)
                   (values (strip-quote datum) end))
     (end-of-file ()
@@ -96,20 +97,20 @@ quote before it does not matter."
                                  (condition-text condition)))
                    (arguments-text line)))))
 
-(defun whole-if-whole (value)
-  "Return VALUE, or the integer that it is if it is a float such as 1e3."
+(defun integer-if-whole (value)
+  "Return VALUE, converted to an integer if VALUE is a float without a fraction, such as 1e3."
   (if (and (floatp value) (quantity-p value) (= value (round value)))
       (round value)
       value))
 
 (defun coerce-for-type (value type)
-  "Return VALUE, as typed, or the integer that it is, if only that is of the argument TYPE."
+  "Return the typed VALUE, converted to an integer if only the integer is of the argument TYPE."
   (if (argument-of-type-p value type)
       value
-      (let ((whole (whole-if-whole value)))
+      (let ((whole (integer-if-whole value)))
         (if (argument-of-type-p whole type) whole value))))
 
-(defun check-read (value parameter line)
+(defun check-argument-read (value parameter line)
   (unless (argument-of-type-p value (line-parameter-type parameter))
     (let ((trouble (trouble-with value (line-parameter-type parameter))))
       (reject-line "~A cannot be ~S~@[: ~A~]~:[.~;~] ~A"
@@ -126,7 +127,8 @@ quote before it does not matter."
   (if (eq type :file) (native-name (path-called token)) token))
 
 (defun read-line-parameter (parameter text start line)
-  "Return what TEXT has at START for PARAMETER of LINE, and where that ends."
+  "Return the argument for PARAMETER of LINE that begins in TEXT at START, and the position of its
+end."
   (typecase (line-parameter-type parameter)
     (rest-type (values (string-trim " " (subseq text start)) (length text)))
     (keyword (let* ((end (token-end text start))
@@ -134,32 +136,33 @@ quote before it does not matter."
                (values (token-value (line-parameter-type parameter) token) end)))
     (t (multiple-value-bind (datum end) (read-number-or-datum parameter text start line)
          (let ((value (coerce-for-type
-                       (read-argument (type-key (line-parameter-type parameter)) datum
-                                      (reading-robot line))
+                       (read-argument (type-keyword (line-parameter-type parameter)) datum
+                                      (robot-of-arguments line))
                        (line-parameter-type parameter))))
-           (check-read value parameter line)
+           (check-argument-read value parameter line)
            (values value end))))))
 
 (defun read-number-or-datum (parameter text start line)
-  "Return the argument typed in TEXT at START for PARAMETER of LINE, a number in the simulator's own
-units or another datum, and where that ends."
+  "Return the number or datum typed in TEXT at START for PARAMETER of LINE, and the position of its
+end. Numbers with units are converted to the simulator's own units."
   (multiple-value-bind (datum end) (read-datum text start line)
     (read-quantity datum text start end (line-parameter-type parameter)
                    (lambda (trouble) (reject-line "~A ~A" trouble (arguments-text line))))))
 
-(defun reading-robot (line)
-  "Return the robot whose parts the arguments of LINE name; NIL if they name none."
-  (and (some (lambda (parameter) (by-number-p (type-key (line-parameter-type parameter))))
+(defun robot-of-arguments (line)
+  "Return the robot whose parts the arguments of LINE name; NIL if the arguments name no parts."
+  (and (some (lambda (parameter) (typed-by-number-p (type-keyword (line-parameter-type parameter))))
              (line-parameters line))
        (session-robot)))
 
-(defun reject-rest (line text)
-  "Signal BAD-LINE as TEXT follows the arguments of LINE; list the units if one could stand there."
+(defun reject-surplus-text (line text)
+  "Signal BAD-LINE because TEXT follows the last argument of LINE. List the units if a unit could
+stand there."
   (let* ((parameter (first (last (line-parameters line))))
          (dimension (and parameter (dimension-of (line-parameter-type parameter)))))
     (if (and dimension (alpha-char-p (char text 0)))
         (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
-                     (words-for dimension) (unit-names dimension) (arguments-text line))
+                     (dimension-text dimension) (unit-names dimension) (arguments-text line))
         (reject-line "~A is too much. ~A~@[ ~A~]" text (arguments-text line)
                      (and (string= "GO" (line-name line)) "GO-TO x y drives to a place.")))))
 
@@ -175,14 +178,15 @@ units or another datum, and where that ends."
                                      (arguments-text line))
                    collect (multiple-value-call #'advance
                              (read-line-parameter parameter text position line)))
-        (unless (over-p) (reject-rest line (subseq text position)))))))
+        (unless (over-p) (reject-surplus-text line (subseq text position)))))))
 
 ;;;; What can be typed for an argument
 
 (defgeneric choices (type session typed)
-  (:documentation "Return what can be typed in SESSION for an argument of TYPE, a keyword, after
-TYPED: a list of strings, symbols and numbers, which may include others. NIL if that is not known.
-May signal BAD-LINE, as when there is no robot.")
+  (:documentation "Return a list of possible arguments of TYPE, a keyword, in SESSION: strings,
+symbols and numbers. TYPED is the text typed so far; choices that do not begin with TYPED may be
+included. Return NIL if the choices are not known. May signal BAD-LINE, for example without a
+robot.")
   (:method (type session typed)
     (declare (ignore session typed))
     (when (part-type-p type)
@@ -222,8 +226,9 @@ May signal BAD-LINE, as when there is no robot.")
 
 ;;; Files.
 
-(defun entries-of (directory)
-  "Return the names of the files in DIRECTORY as the system has them; directories end in a slash."
+(defun directory-entries (directory)
+  "Return the names of the files and subdirectories in DIRECTORY, as the operating system spells
+them. Names of subdirectories end in a slash."
   (let ((path (path-called directory)))
     (flet ((without-directory (entry)
              (let ((name (native-name entry)))
@@ -237,7 +242,7 @@ May signal BAD-LINE, as when there is no robot.")
   (let* ((slash (position #\/ typed :from-end t))
          (directory (subseq typed 0 (if slash (1+ slash) 0)))
          (start (subseq typed (length directory))))
-    (loop for name in (entries-of (if slash directory "./"))
+    (loop for name in (directory-entries (if slash directory "./"))
           when (and (starts-with-subseq start name)
                     (or (string/= "" start) (char/= #\. (char name 0))))
             collect (uiop:strcat directory name))))

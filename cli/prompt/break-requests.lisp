@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-(export '(awaited-answers ways-awaited simulator-broken-p asker-of-break answers-break-p))
+(export '(waiting-break-texts restart-choices-text simulator-broken-p other-debugger-text
+          answers-any-break-p))
 
 (defvar *session* nil "The session that the debugger asks, in any thread; the newest.")
 
@@ -10,33 +11,34 @@
 
 ;;; What the user sees.
 
-(defun whereabouts (session break-request)
-  "Return in words where BREAK-REQUEST is, if not in the thread of SESSION."
-  (words-for-thread session (break-request-thread break-request)))
+(defun break-thread-text (session break-request)
+  "Return text that names the thread of BREAK-REQUEST; NIL if it is the thread of SESSION."
+  (thread-description session (break-request-thread break-request)))
 
-(defun words-for-thread (session thread)
-  "Return in words what THREAD is, if not that of SESSION."
+(defun thread-description (session thread)
+  "Return text that names THREAD; NIL if THREAD is the thread of SESSION."
   (cond ((eq thread (session-thread session)) nil)
-        ((simulator-p session thread) "the simulator's thread")
+        ((simulator-thread-p session thread) "the simulator's thread")
         (t (format nil "another thread, ~A" (thread-name thread)))))
 
-(defun simulator-p (session thread)
-  "True if THREAD passes the ticks of the run that SESSION listens to."
+(defun simulator-thread-p (session thread)
+  "True if THREAD runs the simulation whose messages SESSION shows."
   (let ((simulation (session-simulation session)))
     (and simulation (eq thread (simulation-thread simulation)))))
 
 (defun break-text (session break-request)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
                A number chooses. BACKTRACE, PLAN-TREE tell where it is; (...) is Lisp.~%"
-          (break-words (break-request-condition break-request))
-          (whereabouts session break-request)
+          (break-condition-text (break-request-condition break-request))
+          (break-thread-text session break-request)
           (loop for restart in (break-request-restarts break-request)
                 for number from 0
                 collect (list number (plain-name (restart-name restart))
                               (complaint-text (own-text restart))))))
 
-(defun tell-break (session break-request)
-  "Show what has happened, and make the present prompt the debugger's."
+(defun show-break (session break-request)
+  "Show the condition and the restarts of BREAK-REQUEST in SESSION, and change its prompt to
+Break>."
   (let ((console (session-console session)))
     (setf (break-request-told-p break-request) t)
     (write-fitted console "~A" (break-text session break-request))
@@ -47,25 +49,28 @@
 (defun report-waiting-break (session break-request)
   (let ((console (session-console session)))
     (write-fitted console
-                  "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the one before is answered.~%"
-                  (break-words (break-request-condition break-request))
-                  (whereabouts session break-request))
+                  "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the break before it is answered.~%"
+                  (break-condition-text (break-request-condition break-request))
+                  (break-thread-text session break-request))
     (restore-prompt console)))
 
-(defun break-line (session break-request)
-  "Return on one line what has broken, and where if not in the thread of SESSION."
-  (let ((words (break-words (break-request-condition break-request))))
+(defun break-summary (session break-request)
+  "Return a line with the condition of BREAK-REQUEST, and with its thread unless that is the thread
+of SESSION."
+  (let ((words (break-condition-text (break-request-condition break-request))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
-            (whereabouts session break-request))))
+            (break-thread-text session break-request))))
 
-(defun awaited-answers (session)
-  "Return a list of texts on the breaks that wait for SESSION's user; the first is asked about now.
-Any thread may ask."
-  (mapcar (lambda (break-request) (break-line session break-request)) (breaks-awaiting session)))
+(defun waiting-break-texts (session)
+  "Return a list of texts, one for each break that waits for an answer of SESSION's user. The user
+is being asked about the first break. Any thread may call this function."
+  (mapcar (lambda (break-request) (break-summary session break-request))
+          (breaks-for-session session)))
 
-(defun ways-awaited (session)
-  "Return in words the restarts that SESSION's user can choose now, or NIL. Any thread may ask."
-  (let ((break-request (first (breaks-awaiting session))))
+(defun restart-choices-text (session)
+  "Return text that lists the restarts that SESSION's user can choose now; NIL if no break waits.
+Any thread may call this function."
+  (let ((break-request (first (breaks-for-session session))))
     (and break-request
          (format nil "~{~A~^, ~}"
                  (loop for restart in (break-request-restarts break-request)
@@ -73,20 +78,21 @@ Any thread may ask."
                        collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
 
 (defun simulator-broken-p (session)
-  "True if SESSION's user is asked about a break in the simulator's thread. Any thread may ask."
-  (some (lambda (break-request) (simulator-p session (break-request-thread break-request)))
-        (breaks-awaiting session)))
+  "True if SESSION's user is asked about a break in the simulator's thread. Any thread may call this
+function."
+  (some (lambda (break-request) (simulator-thread-p session (break-request-thread break-request)))
+        (breaks-for-session session)))
 
-(defun asker-of-break (simulation)
-  "Return a text, to follow others, if another debugger than the prompts' asks about a break in the
-thread of SIMULATION; or NIL."
+(defun other-debugger-text (simulation)
+  "Return text for the end of a sentence if a debugger other than the prompt's asks about a break in
+the thread of SIMULATION; otherwise NIL."
   (let ((debugger (debugger-asking (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-showing simulation))
          (format nil "and ~A waits for the answer" debugger))))
 
-(defun answers-break-p (text)
-  "True if TEXT, a line, is valid while any break is answered."
+(defun answers-any-break-p (text)
+  "True if the line TEXT is Lisp or a comment, and so is valid whatever break is being answered."
   (or (comment-p text) (lisp-p text)))
 
 ;;;; Who is asked
@@ -95,48 +101,50 @@ thread of SIMULATION; or NIL."
 ;;; on the running prompts, however they start and end: the debugger's if one of them can ask its
 ;;; user; else the one that reports that no user can answer; without prompts, the original hook.
 
-(defvar *hooks-at-work* '() "The hooks of the running prompts, the newest first.")
-(defvar *hook-before* nil "The hook that all threads shared before the first prompt.")
+(defvar *prompt-debugger-hooks* '() "The hooks of the running prompts, the newest first.")
+(defvar *hook-before-prompts* nil "The hook that all threads shared before the first prompt.")
 
-(defun hook-to-share ()
-  (cond ((find-if-not #'disabled-hook-p *hooks-at-work*))
-        (*hooks-at-work* (first *hooks-at-work*))
-        (t *hook-before*)))
+(defun shared-debugger-hook ()
+  (cond ((find-if-not #'disabled-hook-p *prompt-debugger-hooks*))
+        (*prompt-debugger-hooks* (first *prompt-debugger-hooks*))
+        (t *hook-before-prompts*)))
 
 (defclass prompts () ()
-  (:documentation "The running prompts, as the front end that asks their users."))
+  (:documentation "The running prompts, as a front end that asks users how to continue from
+breaks."))
 
 (setf *front-end* (make-instance 'prompts))
 
 ;; When an editor connects it replaces the prompts; they ask again when it has gone.
 (defmethod hook-of-front-end ((prompts prompts))
-  (and *hooks-at-work* (hook-to-share)))
+  (and *prompt-debugger-hooks* (shared-debugger-hook)))
 
-(defun begin-sharing (hook)
+(defun begin-sharing-hook (hook)
   (with-lock (*sessions-lock*)
-    (unless *hooks-at-work* (setf *hook-before* (global-debugger-hook)))
-    (push hook *hooks-at-work*)
-    (setf (global-debugger-hook) (hook-to-share))))
+    (unless *prompt-debugger-hooks* (setf *hook-before-prompts* (global-debugger-hook)))
+    (push hook *prompt-debugger-hooks*)
+    (setf (global-debugger-hook) (shared-debugger-hook))))
 
-(defun end-sharing (hook)
+(defun end-sharing-hook (hook)
   (with-lock (*sessions-lock*)
-    (setf *hooks-at-work* (remove hook *hooks-at-work* :count 1)
-          (global-debugger-hook) (hook-to-share))))
+    (setf *prompt-debugger-hooks* (remove hook *prompt-debugger-hooks* :count 1)
+          (global-debugger-hook) (shared-debugger-hook))))
 
 (defun answered-elsewhere-p ()
-  "True if another front end, such as an editor, answers breaks, and this is not the thread of the
-prompt in which it started."
+  "True if another front end, such as an editor, answers breaks, and the simulator itself has
+started this thread."
   (let ((hook (global-debugger-hook)))
-    (and (own-thread-p) (null *hooks-at-work*) hook (not (disabled-hook-p hook)))))
+    (and (own-thread-p) (null *prompt-debugger-hooks*) hook (not (disabled-hook-p hook)))))
 
-(defun call-sharing (hook function)
-  "Call FUNCTION, a prompt, with HOOK as this thread's debugger hook, which others may share."
+(defun call-sharing-hook (hook function)
+  "Call FUNCTION, which runs a prompt, with HOOK as this thread's debugger hook. Threads without a
+prompt may share HOOK."
   (with-debugger-hook (hook)
     (if (answered-elsewhere-p)
         (funcall function)
-        (progn (begin-sharing hook)
+        (progn (begin-sharing-hook hook)
                (unwind-protect (funcall function)
-                 (end-sharing hook))))))
+                 (end-sharing-hook hook))))))
 
 ;;; Programs that read typed input in the thread of a run or of plans.
 
@@ -152,7 +160,8 @@ prompt in which it started."
 for each line, or, without a terminal or window, reads from the original input."))
 
 (defun ask-for-answer ()
-  "Ask a prompt's user for the line that a program reads. Return it, or NIL if the user has gone."
+  "Ask a prompt's user for the line that a program reads. Return the typed line, or NIL if the user
+has gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
       :report "Give it the text that follows, or is typed next."
@@ -160,8 +169,8 @@ for each line, or, without a terminal or window, reads from the original input."
       line)))
 
 (defun sessions-to-ask ()
-  "Return the sessions whose users can answer a break in this thread: the one of this thread, or all
-in its simulation, or the newest."
+  "Return the sessions whose users can answer a break in this thread: the session of this thread,
+else all sessions in its simulation, else the newest session."
   (let ((own *session*))
     (cond ((and own (eq (session-thread own) (current-thread))) (list own))
           ((remove-if-not #'session-terminal-p (sessions-showing *simulation*)))

@@ -7,19 +7,19 @@
 ;;; span lines. Typed numbers are double-floats. Code that runs, loaded files included, finds the
 ;;; standard variables of Lisp as everywhere else.
 
-(defvar *undefined* '()
-  "Lists (name kind new-p) of undefined names that the compiler has found in the present forms,
-newest first. NEW-P is true if the name had no value then.")
+(defvar *undefined-names* '()
+  "Lists (name kind new-p) of undefined names that the compiler has found in the forms being
+evaluated, newest first. NEW-P is true if the name had no value when found.")
 
 (defun handle-warning (condition)
-  "Muffle the compiler's report on CONDITION if users get a message on it. Warnings about
+  "Muffle the compiler's report on CONDITION if users get a message on CONDITION. Warnings about
 definitions become messages."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
     (t (multiple-value-bind (name kind) (undefined-name condition)
          (when name
-           (pushnew (list name kind (still-undefined-p name kind)) *undefined* :test #'equal)
+           (pushnew (list name kind (still-undefined-p name kind)) *undefined-names* :test #'equal)
            (muffle-warning condition)))
        (when (typep condition '(or style-warning compiler-note)) (muffle-warning condition)))))
 
@@ -28,17 +28,17 @@ definitions become messages."
                  (compiler-note #'muffle-warning))
     (funcall function)))
 
-(defun call-telling-undefined (function &optional file)
-  "Call FUNCTION and return its values. Report names that its forms, of FILE or typed, use and that
-are still undefined at the end."
-  (let ((*undefined* '()))
+(defun call-reporting-undefined (function &optional file)
+  "Call FUNCTION, which evaluates forms of FILE or typed forms, and return its values. At the end,
+report the names in these forms that are still undefined."
+  (let ((*undefined-names* '()))
     (multiple-value-prog1 (funcall function)
-      (loop for (name kind new-p) in (reverse *undefined*)
+      (loop for (name kind new-p) in (reverse *undefined-names*)
             do (cond ((still-undefined-p name kind)
                       (warning-set (format nil "~@[~A: ~]The ~(~A~) ~(~A~) is not defined."
                                            file kind (safe-text name))))
                      ((and new-p (null file) (eq :variable kind))
-                      (tell-of-new-variable name)))))))
+                      (warn-of-new-variable name)))))))
 
 (define-condition file-trouble (ars-magna-error)
   ((file  :initarg :file  :reader file-trouble-file)
@@ -48,56 +48,57 @@ are still undefined at the end."
              (format stream "~A, line ~D: ~A"
                      (file-trouble-file condition) (file-trouble-line condition)
                      (condition-text (file-trouble-cause condition)))))
-  (:documentation "A form in a file that is being loaded has failed; those before it have not."))
+  (:documentation "A form in a file that is being loaded has failed; the forms before it were
+evaluated."))
 
-(defun placed-p (condition)
+(defun names-location-p (condition)
   "True if CONDITION itself names the file and line of the error."
   (or (typep condition 'file-trouble)
       (and (typep condition 'malformed-definition)
            (malformed-definition-place condition))))
 
-(defun tell-with-place (tell condition)
-  "Report CONDITION, which came up in COMPILE-FILE, with file and line, by TELL, ERROR-SET or
-WARNING-SET. Do nothing elsewhere."
+(defun report-from-compiler (tell condition)
+  "Report CONDITION, signalled in COMPILE-FILE, with file and line, by calling TELL: ERROR-SET or
+WARNING-SET. Do nothing outside of COMPILE-FILE."
   (let ((text (one-line (condition-text condition))))
     (multiple-value-bind (file line) (if (typep condition 'reader-error)
                                          (reading-place condition)
                                          (compiling-place))
       (cond ((null file))
-            ((placed-p condition) (funcall tell text))
+            ((names-location-p condition) (funcall tell text))
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
-(defun tell-of-compiling (condition)
+(defun report-compiler-condition (condition)
   "Report CONDITION if it is an error or warning of COMPILE-FILE about a form."
   (cond ((null *compile-file-truename*))
         ((compiler-error-p condition)
-         (tell-with-place #'error-set (encapsulated-condition condition)))
-        ((typep condition 'warning) (tell-with-place #'warning-set condition))))
+         (report-from-compiler #'error-set (encapsulated-condition condition)))
+        ((typep condition 'warning) (report-from-compiler #'warning-set condition))))
 
-(defun call-telling-doubts (function)
-  "Call FUNCTION and return its values. Warnings about the forms that it evaluates, taken together,
-and errors in files that it compiles, are messages."
+(defun call-reporting-warnings (function)
+  "Call FUNCTION and return its values. Report as messages the warnings about all forms that it
+evaluates, and the errors in files that it compiles."
   (let ((last nil))
     ;; Each nested EVAL signals the compiler's conditions once more.
     (handler-bind ((condition (lambda (condition)
                                 (unless (eq condition (shiftf last condition))
-                                  (tell-of-compiling condition)))))
+                                  (report-compiler-condition condition)))))
       (call-quietly (lambda () (call-as-unit function))))))
 
 (defun eval-quietly (form)
-  "Evaluate FORM. Show what it writes to the error output at its end."
+  "Evaluate FORM. At the end, show the text that FORM wrote to the error output."
   (let ((diagnostics (make-string-output-stream)))
     (unwind-protect (let ((*error-output* diagnostics)
                           (*read-default-float-format* 'single-float))
-                      (call-quietly (lambda () (eval (with-own-name form)))))
+                      (call-quietly (lambda () (eval (replace-robot-symbol form)))))
       ;; Except those of the compiler, and Lisp's own note on a full stack, which users are told of.
       (dolist (line (lines-in (get-output-stream-string diagnostics)))
         (unless (or (string= line "") (char= #\; (char line 0))
                     (starts-with-subseq "Control stack guard page" line))
           (format *standard-output* "~&~A~%" line))))))
 
-(defun eval-placing (form)
-  "Evaluate FORM. Errors in reading a file that it loads, by LOAD, are reported with their place."
+(defun eval-locating-read-errors (form)
+  "Evaluate FORM. If LOAD in FORM cannot read a file, signal FILE-TROUBLE with file and line."
   (handler-bind ((reader-error (lambda (condition)
                                  (multiple-value-bind (file line) (reading-place condition)
                                    (when file
@@ -116,10 +117,10 @@ and errors in files that it compiles, are messages."
 (defun evaluate (session form)
   (setf (session-lisp-p session) t)
   (let ((values (multiple-value-list
-                 (call-telling-doubts
+                 (call-reporting-warnings
                   (lambda ()
                     (call-refusing-exits
-                     (lambda () (eval-placing form))
+                     (lambda () (eval-locating-read-errors form))
                      "EXIT would end the simulator amid a line. QUIT leaves."))))))
     (shiftf *** ** * (first values))
     (unless (report-values (session-account session) (mapcar #'value-line values))
@@ -132,20 +133,20 @@ and errors in files that it compiles, are messages."
       (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
-(defun wrong-parameter ()
+(defun parameter-error ()
   (handler-case (check-parameters)
     (wrong-argument (condition) condition)))
 
 (defun call-checking-parameters (function)
-  "Call FUNCTION; signal WRONG-ARGUMENT if it has given a parameter a value that it cannot have."
-  (let ((before (wrong-parameter)))
+  "Call FUNCTION; signal WRONG-ARGUMENT if it has given a parameter an invalid value."
+  (let ((before (parameter-error)))
     (funcall function)
-    (let ((after (wrong-parameter)))
+    (let ((after (parameter-error)))
       (unless (equal (and before (princ-to-string before)) (and after (princ-to-string after)))
         (when after (error after))))))
 
 (defun note-clause-line (session text form clause)
-  "Note the line on which CLAUSE of FORM is, in TEXT, which ends with what SESSION has read last."
+  "Record the line number of CLAUSE of FORM in TEXT. TEXT ends with the last line read in SESSION."
   (let ((line (line-of-clause text form clause)))
     (when line
       (note-trouble-line (session-account session)
@@ -153,8 +154,8 @@ and errors in files that it compiles, are messages."
                             (count #\Newline text)
                             1)))))
 
-(defun evaluate-placing (session text form)
-  "Evaluate FORM, read from TEXT in SESSION, and note on which line a clause makes no sense."
+(defun evaluate-locating-clauses (session text form)
+  "Evaluate FORM, read from TEXT in SESSION, and record the line number of an invalid clause."
   (handler-bind ((malformed-definition
                    (lambda (condition)
                      (unless (malformed-definition-place condition)
@@ -164,15 +165,15 @@ and errors in files that it compiles, are messages."
     (evaluate session form)))
 
 (defun check-legible (session text start end)
-  "Signal BAD-LINE if TEXT, which ends with what SESSION has read last, has bytes from START to END
-that could not be read."
+  "Signal BAD-LINE if TEXT has bytes from START to END that are not UTF-8. TEXT ends with the last
+line read in SESSION."
   (let ((place (position +illegible+ text :start start :end end)))
     (when place
       (note-trouble-line (session-account session)
                          (- (lines-typed (session-input session))
                             (count #\Newline text :start place)))
-      (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which stands for such. Write ~
-                    it in UTF-8."))))
+      (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which replaces such bytes. ~
+                    Write it in UTF-8."))))
 
 (defun evaluate-forms (session text)
   (loop with position = 0
@@ -187,15 +188,15 @@ that could not be read."
            (check-line-in-parentheses form)
            (check-typed-call form)
            (check-typed-load form)
-           (call-checking-parameters (lambda () (evaluate-placing session text form)))))
+           (call-checking-parameters (lambda () (evaluate-locating-clauses session text form)))))
 
 (defun evaluate-text (session text)
-  (call-telling-undefined (lambda () (evaluate-forms session text))))
+  (call-reporting-undefined (lambda () (evaluate-forms session text))))
 
 ;;; Lines of both kinds.
 
 (defun expand-alias (text &optional known)
-  "Return TEXT with the alias at its beginning, if any, replaced, repeatedly, but each only once."
+  "Return TEXT with an alias at its beginning expanded, repeatedly, but each alias only once."
   (multiple-value-bind (name rest) (split-line text)
     (let ((alias (assoc name *aliases* :test #'string-equal)))
       (if (and alias (not (member alias known)))
@@ -209,11 +210,11 @@ that could not be read."
               :test #'string=)))
 
 (defun text-width (session)
-  "Return the most characters of a line of running text for SESSION: its window's, at most 79."
+  "Return the largest number of characters in a line of text for SESSION, at most 79."
   (if (session-terminal-p session) (clamp (1- (size-of-window session)) 40 79) 79))
 
 (defun run-line (session line text)
-  "Run LINE with the arguments in TEXT. Its output is written in one piece."
+  "Run the line command LINE with the arguments in TEXT. Write its output in one piece."
   (let ((arguments (read-arguments line text))
         (*text-width* (text-width session))
         (*asker* (asker-for (session-account session) :typed-p t)))
@@ -225,13 +226,13 @@ that could not be read."
                               (session-console session))))))
 
 (defun evaluate-line (session text)
-  "Evaluate TEXT as Lisp. The tables that it prints fit the window of SESSION, if it has one."
+  "Evaluate TEXT as Lisp. Fit printed tables to the window of SESSION, if there is a window."
   (if (session-terminal-p session)
       (call-with-page-width (lambda () (evaluate-text session text)) (1- (size-of-window session)))
       (evaluate-text session text)))
 
 (defun run-text (session text)
-  "Run TEXT, a line as typed; its requests are those of the prompt."
+  "Run the typed line TEXT, and mark its requests as requests of the prompt."
   (let* ((*asker* (asker-for (session-account session)))
          (*told-of* *asker*))
     (cond ((comment-p text))
@@ -240,7 +241,7 @@ that could not be read."
                (if (lisp-p text)
                    (evaluate-line session text)
                    (multiple-value-bind (name rest) (split-line text)
-                     (tell-of-comment text)
+                     (warn-of-command-in-comment text)
                      (check-legible session text 0 nil)
                      (run-line session (find-line name) rest))))))))
 
@@ -255,9 +256,9 @@ that could not be read."
              (not (typep condition '(or ars-magna-error storage-condition))))
     (invoke-debugger condition)))
 
-(defun complain-of-printing (session trouble)
-  "Report in SESSION that the error cannot be printed, because of TROUBLE. At a terminal no line
-could be typed either: so signal that."
+(defun report-printing-error (session trouble)
+  "Report in SESSION that an error cannot be printed. TROUBLE is the error in printing; at a
+terminal, signal TROUBLE, because the prompt could not print either."
   (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
@@ -269,31 +270,31 @@ could be typed either: so signal that."
       (regain-room condition)
       (handler-case (let* ((advice (advice-on-function condition))
                            (*report-addition* (if advice (constantly nil) *report-addition*)))
-                      (complain session
-                                (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
-        (error (trouble) (complain-of-printing session trouble))))))
+                      (report-session-error
+                       session (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
+        (error (trouble) (report-printing-error session trouble))))))
 
 (defun running-command-name (robot)
-  (let ((event (and (at-work-p robot) (resource-event robot))))
+  (let ((event (and (carries-out-command-p robot) (resource-event robot))))
     (and (typep event 'operation)
          (string-upcase (command-prompt-name (operation-command event))))))
 
-(defun command-going-on (session)
-  "Return the robot that SESSION commands, and the name of the line or command that it carries out;
-NIL if it carries out none."
+(defun command-in-progress (session)
+  "Return the robot that SESSION commands, and the name of the line or command that the robot
+carries out; NIL if the robot carries out nothing."
   (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
          (name (and robot (or (some #'job-name (jobs-under-way session))
                               (running-command-name robot)))))
     (and name (values robot name))))
 
 (defun ongoing-work-text (session)
-  "Return sentences that say what continues in the simulator after the line of SESSION has ended,
-and how to end it; or, if nothing does, how to leave the prompt. In a trial, nothing continues.
-During the answer to a break, return how to answer."
-  (multiple-value-bind (robot command) (command-going-on session)
+  "Return text for the user of SESSION after an interrupted line: what continues in the simulator
+and how to end that; if nothing continues, how to leave the prompt; during a break, how to answer.
+In a trial, return an empty string."
+  (multiple-value-bind (robot command) (command-in-progress session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
-      (cond ((ways-awaited session)
-             (format nil " A break waits for one of ~A." (ways-awaited session)))
+      (cond ((restart-choices-text session)
+             (format nil " Answer the break by one of ~A." (restart-choices-text session)))
             ((session-trial session) "")
             ((or robot plans-p)
              (format nil "~@[ ~A continues with ~]~@[~A; STOP ends that.~]~
@@ -302,16 +303,16 @@ During the answer to a break, return how to answer."
             (t " QUIT leaves.")))))
 
 (defun running-code-owner (&optional (calls *user-calls*))
-  "Return in words whose code a thread runs, by CALLS, or which form of a file it loads; NIL if
-neither, or if that is not recorded."
+  "Return text that says whose code the thread of CALLS runs, or which form of a file the thread
+loads; NIL if CALLS records neither."
   (let ((origin (and calls (user-calls-origin calls)))
         (place (and calls (user-calls-place calls))))
     (cond (origin (text-of-origin origin))
           (place (funcall place)))))
 
-(defun report-with-place (session text)
-  "Write TEXT to the error output, with the place of the running line of SESSION."
-  (let* ((account (session-account session)) (line (line-done-now account)))
+(defun report-with-line-number (session text)
+  "Write TEXT to the error output, after script and line number of SESSION's running line."
+  (let* ((account (session-account session)) (line (running-line-number account)))
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
                                  (and line (account-file account)) line text))))
 
@@ -321,10 +322,10 @@ neither, or if that is not recorded."
           count))
 
 (defun report-interrupt (session whose)
-  "Report in SESSION that an interrupt has ended the line, in code of WHOSE, a text or NIL. Users'
-code that keeps the simulator waiting is aborted, too."
+  "Report in SESSION that an interrupt has ended the line. WHOSE, a text or NIL, names the code that
+was running. Abort users' code that blocks the simulator, too."
   (when (session-batch-p session)
-    (report-with-place session (format nil "stopped~@[ in ~A~]." whose))
+    (report-with-line-number session (format nil "stopped~@[ in ~A~]." whose))
     (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
   (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))

@@ -10,20 +10,21 @@
 ;;; McCLIM.
 
 (defpackage :ars-magna.clx
-  (:documentation "Versions of CLX: which one ASDF finds, and whether it works on this SBCL.")
+  (:documentation "Checks which version of the library CLX ASDF finds, and whether it works on this
+SBCL.")
   (:use :cl)
   (:export #:library-text #:clx-trouble #:*clx-remedy*
-           #:find-library #:quicklisp-file #:get-by-quicklisp))
+           #:find-library #:quicklisp-file #:load-by-quicklisp))
 
 (in-package :ars-magna.clx)
 
 (defvar *clx-remedy*
   (format nil "Install CLX 0.7.6 or newer where ASDF finds it first, for example with: ~
                git clone https://github.com/sharplispers/clx ~~/common-lisp/clx")
-  "How a user gets a CLX that works.")
+  "Text that tells users how to install a version of CLX that works.")
 
 (defun find-library (name)
-  "Return the ASDF system of the library called NAME, such as CLX, or NIL."
+  "Return the ASDF system of the library named NAME, such as CLX, or NIL."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
     (ignore-errors (asdf:find-system (string-downcase name) nil))))
 
@@ -31,26 +32,27 @@
   "Return the file that loads Quicklisp, where the user has installed it, or NIL."
   (probe-file (merge-pathnames "quicklisp/setup.lisp" (user-homedir-pathname))))
 
-(defun get-by-quicklisp ()
+(defun load-by-quicklisp ()
   "Fetch McCLIM with Quicklisp, if necessary, and load it."
   (unless (find-package :quicklisp) (load (quicklisp-file)))
   (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
 
 (defun library-text (name &optional (system (find-library name)))
-  "Return which library NAME, a SYSTEM of ASDF's or NIL, is meant: its version and directory."
+  "Return text with NAME, the name of a library, and the version and directory of its ASDF SYSTEM,
+which may be NIL."
   (format nil "~A~@[ ~A~]~@[ in ~A~]" name
           (and system (asdf:component-version system))
           (and system (asdf:system-source-directory system))))
 
 (defun leading-numbers (version)
-  "Return VERSION, such as 2.5.2.debian, up to what is not a number."
+  "Return the numbers at the beginning of VERSION, a string: of 2.5.2.debian, return 2.5.2."
   (let ((end (position-if-not (lambda (char) (find char "0123456789.")) version)))
     (string-right-trim "." (subseq version 0 end))))
 
 (defun clx-trouble (&optional (clx (find-library "CLX"))
                       (lisp-version (lisp-implementation-version)))
   "Return a text that says why the system CLX does not work on SBCL of LISP-VERSION, and what to do;
-NIL if nothing is known against it."
+NIL if no problem is known."
   (when (and clx
              (uiop:version<= "2.4.7" (leading-numbers lisp-version))
              (null (asdf:find-component clx "common")))

@@ -3,8 +3,9 @@
 (in-package :ars-magna.cli)
 
 (defvar *completer* nil
-  "NIL, or a function of a text and of the position of the cursor in it. It returns where the text
-to complete begins, a list of all completions, and what follows a single completion.")
+  "NIL, or a function that completes text. The function gets a text and the position of the cursor.
+It returns the start of the part to complete, a list of all completions, and the text to add after a
+single completion.")
 
 (defun common-start (texts)
   "Return the longest common beginning of TEXTS, ignoring case."
@@ -16,8 +17,8 @@ to complete begins, a list of all completions, and what follows a single complet
 
 ;;; Listing.
 
-(defun last-part (text)
-  "Return TEXT, or if it is a file's name, that without the directory."
+(defun name-without-directory (text)
+  "Return TEXT, without the directory if TEXT is the name of a file."
   (let ((slash (position #\/ text :from-end t :end (max 0 (1- (length text))))))
     (if slash (subseq text (1+ slash)) text)))
 
@@ -34,11 +35,11 @@ to complete begins, a list of all completions, and what follows a single complet
                                                          append (list column text)))))))
 
 (defun list-choices (stream texts)
-  "Show TEXTS above the line that is typed, as many as the window has room for."
+  "Show as many of TEXTS above the typed line as the window has room for."
   (multiple-value-bind (width height) (funcall (console-window (edited-console stream)))
-    (let* ((lines (in-columns (mapcar #'last-part texts) (1- width)))
+    (let* ((lines (in-columns (mapcar #'name-without-directory texts) (1- width)))
            (room (max 1 (- height 4))))
-      (write-fresh (format nil "~{~A~%~}~:[~;There are more. Type more of it.~%~]"
+      (write-fresh (format nil "~{~A~%~}~:[~;There are more completions. Type more letters.~%~]"
                            (subseq lines 0 (min room (length lines))) (< room (length lines)))
                    (edited-console stream))
       (finish-output (edited-console stream)))))
@@ -55,7 +56,7 @@ to complete begins, a list of all completions, and what follows a single complet
 
 (defun complete (stream start texts after)
   "Replace the part of the line from START to the cursor by the longest common beginning of TEXTS,
-followed by AFTER if there is one text. List the texts if that adds nothing."
+followed by AFTER if there is one text. If that adds nothing to the line, list TEXTS."
   (let ((typed (subseq (typed-text-of stream) start (drawn-line-point (line-of stream))))
         (common (common-start texts)))
     (cond ((null (rest texts))
@@ -70,7 +71,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
            (setf (edited-listed stream) texts)))))
 
 (define-key *actions* (:tab) (stream)
-  "Complete what was begun."
+  "Complete the word before the cursor."
   (let ((line (line-of stream)))
     (when (and *completer* (not *program-reads*))
       (multiple-value-bind (start texts after)
@@ -106,7 +107,7 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
   (let ((before (position-if-not #'token-char-p text :end point :from-end t)))
     (if before (1+ before) 0)))
 
-(defun open-quote (text point)
+(defun open-quote-position (text point)
   (loop with start = nil
         for position from 0 below point
         do (case (char text position)
@@ -137,8 +138,8 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
     (and end
          (find (subseq text (1+ colon) end) (attribute-keys) :test #'string-equal))))
 
-(defun values-of (key)
-  "Return the values that the attribute called KEY can have, if they are few; none of NIL."
+(defun known-values (key)
+  "Return the possible values of the attribute named KEY if they are listed; NIL if KEY is NIL."
   (and key (attribute-domain (declared-attribute key))))
 
 ;;; Lisp.
@@ -154,15 +155,16 @@ followed by AFTER if there is one text. List the texts if that adds nothing."
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun meaningful-symbols ()
-  "Return the symbols of this package, except those that have no meaning and were only typed."
+  "Return the symbols of the current package. Omit its own symbols that name no variable or
+function."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
       (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))
         (push symbol symbols)))))
 
 (defun symbol-choices (typed operator-p operator)
-  "Return the symbols that TYPED may be the beginning of; only those of functions and the like if
-OPERATOR-P is true, otherwise keywords of OPERATOR too."
+  "Return a list of symbols that may complete TYPED. If OPERATOR-P is true, return only names of
+functions and macros. If TYPED begins with a colon, return keywords of OPERATOR and attributes."
   (let* ((colon (position #\: typed))
          (package (and colon (plusp colon)
                        (find-package (string-upcase (subseq typed 0 colon))))))
@@ -175,7 +177,7 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
           (t (meaningful-symbols)))))
 
 (defun lisp-completions (session text point)
-  (let ((quote (open-quote text point)))
+  (let ((quote (open-quote-position text point)))
     (if quote
         (let ((typed (subseq text (1+ quote) point)))
           (values (1+ quote) (matching-texts typed (choices :file session typed)) "\""))
@@ -184,7 +186,7 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
                (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
           (values start
                   (and (string/= "" typed)
-                       (or (matching-texts typed (values-of (last-attribute text start)))
+                       (or (matching-texts typed (known-values (last-attribute text start)))
                            (matching-texts typed (symbol-choices typed operator-p
                                                                  (operator-at text start)))))
                   "")))))
@@ -197,18 +199,20 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
     (values start
             (matching-texts typed (if (or (null key) (starts-with-subseq ":" typed))
                                       (attribute-keys)
-                                      (values-of key)))
+                                      (known-values key)))
             "")))
 
 ;;; Arguments.
 
 (defun unit-end (text position)
-  "Return where the unit at POSITION in TEXT ends; POSITION if there is none or it is being typed."
+  "Return the end of the unit, such as deg, at POSITION in TEXT. Return POSITION if there is no
+unit, or if the unit is still being typed."
   (let ((end (nth-value 1 (unit-after text position))))
     (if (and end (< end (length text))) end position)))
 
 (defun argument-end (parameter text start)
-  "Return where the argument for PARAMETER at START ends, or NIL if it may continue after TEXT."
+  "Return the end of the argument for PARAMETER that begins in TEXT at START; NIL if the argument
+may continue after TEXT."
   (let ((end (typecase (line-parameter-type parameter)
                (rest-type nil)
                (keyword (token-end text start))
@@ -220,8 +224,9 @@ OPERATOR-P is true, otherwise keywords of OPERATOR too."
           (t end))))
 
 (defun argument-at-end (line text start)
-  "Return the parameter of LINE being typed at the end of TEXT, or NIL if it has no more; where its
-argument begins; and the parameter before it. START is where the first argument begins."
+  "Return three values: the parameter of LINE whose argument is being typed at the end of TEXT, or
+NIL if LINE has no more parameters; the start of that argument; and the parameter before. START is
+where the first argument begins."
   (loop for before = nil then parameter
         for parameter in (append (line-parameters line) '(nil))
         for position = (or (position-if-not #'blank-p text :start start) (length text))
@@ -238,17 +243,18 @@ argument begins; and the parameter before it. START is where the first argument 
          (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
          (unit-names dimension))))
 
-(defun as-arguments (start texts quoted-p)
-  "Return what COMPLETIONS-IN does if an argument that begins at START can become one of TEXTS; in
-double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
+(defun argument-completion-values (start texts quoted-p)
+  "Return the values of COMPLETIONS-IN for an argument that begins at START and has the completions
+TEXTS. Quote the completions if QUOTED-P, the argument begins with a double quote, or if one of
+TEXTS has a blank."
   (if (or quoted-p (some (lambda (text) (some #'blank-p text)) texts))
       (values start (mapcar (lambda (text) (uiop:strcat "\"" text)) texts) "\" ")
       (values start texts " ")))
 
 (defun argument-completions (session line text start)
-  "Complete the argument of LINE at the end of TEXT; START is where the first one begins."
+  "Complete the argument of LINE at the end of TEXT. START is where the first argument begins."
   (multiple-value-bind (parameter start before) (argument-at-end line text start)
-    (let ((type (and parameter (type-key (line-parameter-type parameter)))))
+    (let ((type (and parameter (type-keyword (line-parameter-type parameter)))))
       (case type
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
@@ -257,14 +263,15 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
         (t (let* ((typed (subseq text start))
                   (quoted-p (starts-with-subseq "\"" typed))
                   (begun (if quoted-p (subseq typed 1) typed)))
-             (as-arguments start
-                           (matching-texts begun (append (unit-choices before text start)
-                                                         (and type (choices type session begun))))
-                           quoted-p)))))))
+             (argument-completion-values
+              start
+              (matching-texts begun (append (unit-choices before text start)
+                                            (and type (choices type session begun))))
+              quoted-p)))))))
 
 (defun word-completions (text words)
   (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
-    (as-arguments start (matching-texts (subseq text start) words) nil)))
+    (argument-completion-values start (matching-texts (subseq text start) words) nil)))
 
 (defun line-completions (session text start)
   (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
@@ -277,8 +284,8 @@ double quotes if it begins with one, QUOTED-P, or one of TEXTS has a blank."
                (argument-completions session line text end))))))
 
 (defun completions-in (session text point)
-  "Return where the part to complete begins in TEXT, typed in SESSION up to POINT, all its
-completions, and what follows a single completion."
+  "Complete TEXT, typed in SESSION, at the position POINT. Return the start of the part to complete,
+a list of all completions, and the text to add after a single completion."
   (let* ((text (subseq text 0 point))
          (break-request (first (session-breaks session))))
     (handler-case

@@ -12,8 +12,8 @@
 
 ;;; What the user says.
 
-(defun post-call (session break-request function)
-  "Make the other thread of BREAK-REQUEST call FUNCTION soon, with this one's package and syntax."
+(defun post-call-to-thread (session break-request function)
+  "Make the thread of BREAK-REQUEST call FUNCTION soon, with the current package and syntax."
   (flet ((call-posted ()
            (let* ((console (session-console session))
                   (*standard-output* console)
@@ -26,13 +26,15 @@
   (signal-semaphore (break-request-posted break-request)))
 
 (defun call-in-broken-thread (session break-request function)
-  "Make the thread of BREAK-REQUEST call FUNCTION, and wait until it has done so or continues."
+  "Make the thread of BREAK-REQUEST call FUNCTION. Wait until FUNCTION has returned or the thread
+continues."
   (cond ((broken-here-p break-request) (funcall function))
-        (t (post-call session break-request function)
+        (t (post-call-to-thread session break-request function)
            (wait-on-semaphore (break-request-done break-request)))))
 
-(defun restart-called (word break-request)
-  "Return the restart that WORD, a number or the beginning of a name, means. Signals BAD-LINE."
+(defun restart-named (word break-request)
+  "Return the restart of BREAK-REQUEST that WORD, a number or the beginning of a name, stands for.
+Signals BAD-LINE."
   (let ((number (ignore-errors (parse-integer word)))
         (restarts (break-request-restarts break-request)))
     (or (and number (<= 0 number) (nth number restarts))
@@ -58,7 +60,7 @@
           ((lisp-p text) (let ((form (read-form session text)))
                            (call-in-broken-thread session break-request
                                                   (lambda ()
-                                                    (call-telling-undefined
+                                                    (call-reporting-undefined
                                                      (lambda () (evaluate session form)))))))
           ((says-p "quit") (setf (session-over-p session) t))
           ((says-p "backtrace") (call-in-broken-thread session break-request #'write-backtrace))
@@ -66,12 +68,13 @@
            (call-in-broken-thread session break-request
                                   (lambda () (print-plans *standard-output* t))))
           (t (multiple-value-bind (word rest) (split-line text)
-               (continue-by-restart session break-request (restart-called word break-request)
+               (continue-by-restart session break-request (restart-named word break-request)
                                     rest))))))
 
 (defun continue-by-restart (session break-request restart rest)
-  "Continue BREAK-REQUEST by RESTART. If it needs a value, that is REST, or else the next line."
-  (let* ((needs-value-p (and (restart-asks-p restart) (not (broken-here-p break-request))))
+  "Continue the thread of BREAK-REQUEST by RESTART. If RESTART needs a value, read the value from
+REST or, if REST is blank, from the next line."
+  (let* ((needs-value-p (and (restart-needs-value-p restart) (not (broken-here-p break-request))))
          (answer (cond ((not needs-value-p) nil)
                        ((every #'blank-p rest) (read-input session "Value> "))
                        (t rest))))
@@ -92,71 +95,76 @@
 
 ;;; How a program waits.
 
-(defun call-debugging (session break-request function)
-  "Call FUNCTION, which reads lines for this thread's BREAK-REQUEST, before others' breaks."
+(defun call-answering-break (session break-request function)
+  "Call FUNCTION, which reads answers to BREAK-REQUEST, a break in this thread. Later breaks in
+other threads wait until FUNCTION returns."
   (let* ((state (session-break-state session))
          (before (shiftf (break-state-own state) break-request)))
     (unwind-protect (funcall function)
       (setf (break-state-own state) before)
       (when (and (session-breaks session) (not before) (not (session-over-p session)))
-        (tell-break session (first (session-breaks session)))))))
+        (show-break session (first (session-breaks session)))))))
 
-(defun answer-those-before (session break-request)
-  "Read lines for breaks in other threads before BREAK-REQUEST, which is in this one."
+(defun answer-earlier-breaks (session break-request)
+  "Read lines that answer the breaks in other threads that came before BREAK-REQUEST, a break in
+this thread."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)
-      (unless (break-request-told-p other) (tell-break session other))
+      (unless (break-request-told-p other) (show-break session other))
       (loop while (member other (session-breaks session))
             until (session-over-p session)
             do (call-reporting-session-errors
                 session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session break-request)
-  "Report BREAK-REQUEST, of another thread than that of SESSION: all, if it can be answered now."
+  "Report BREAK-REQUEST, a break in another thread, in SESSION. Show the restarts of BREAK-REQUEST
+if the user can answer now."
   (if (or (break-state-own (session-break-state session))
           (not (eq break-request (first (session-breaks session)))))
       (report-waiting-break session break-request)
-      (tell-break session break-request)))
+      (show-break session break-request)))
 
-(defun forget-break (session break-request)
-  "Release SESSION from BREAK-REQUEST, which continues; another prompt may have answered it."
+(defun remove-break (session break-request)
+  "Remove BREAK-REQUEST from SESSION, because its thread continues, perhaps after an answer at
+another prompt."
   (let* ((console (session-console session)) (state (session-break-state session))
          (first-p (eq break-request (first (break-state-others state))))
          (left (removef (break-state-others state) break-request)))
     (unless (or (break-state-own state) (session-over-p session))
-      (cond ((and left first-p) (tell-break session (first left)))
+      (cond ((and left first-p) (show-break session (first left)))
             ((and (console-prompt console) (null left))
              (show-prompt console "Robot> "))))
     (signal-semaphore (break-request-done break-request))))
 
 (defvar *own-process-p* nil "True in a process that does nothing but this program.")
 
-(defun words-for-repl (sessions break-request)
-  "Return a message for the error output if only windows, those of SESSIONS, ask about
-BREAK-REQUEST, as the user may wait in Lisp's own REPL; or NIL."
+(defun repl-break-message (sessions break-request)
+  "If all SESSIONS are windows, return a message on BREAK-REQUEST for the error output, because the
+user may be waiting in Lisp's own REPL. Otherwise return NIL."
   (and (not *own-process-p*)
        (every #'session-place sessions)
        (format nil "~A: a window asks how to continue."
-               (break-line (first sessions) break-request))))
+               (break-summary (first sessions) break-request))))
 
-(defun debug-elsewhere (sessions break-request)
-  "Make the calls that the threads of SESSIONS post for BREAK-REQUEST, until one continues it."
+(defun await-break-answer (sessions break-request)
+  "Wait in the broken thread until users of SESSIONS answer BREAK-REQUEST. Make the calls that the
+sessions' threads post, until a call continues this thread."
   (dolist (state (mapcar #'session-break-state sessions))
     (setf (break-state-others state) (append (break-state-others state) (list break-request))))
   (unwind-protect (progn (dolist (session sessions) (announce-break session break-request))
-                         (let ((words (words-for-repl sessions break-request)))
+                         (let ((words (repl-break-message sessions break-request)))
                            (when words (say-on-error-output words)))
                          (loop
                            (wait-on-semaphore (break-request-posted break-request))
                            (funcall (break-request-call break-request))
                            (signal-semaphore (break-request-done break-request))))
-    (dolist (session sessions) (forget-break session break-request))))
+    (dolist (session sessions) (remove-break session break-request))))
 
 ;; A user's window may be lost although there is another, or the terminal.
-(defun sessions-to-answer-for (session)
-  "Return the sessions whose users can answer for the user of SESSION, which is over: those in its
-run, or else all; NIL if its user has left it."
+(defun substitute-sessions (session)
+  "Return the sessions whose users can answer breaks of SESSION, whose user was lost: sessions in
+the same run, else all sessions. Return NIL if the user ended SESSION."
   (flet ((can-answer-p (other)
            (and (session-terminal-p other)
                 (not (eq other session))
@@ -164,7 +172,7 @@ run, or else all; NIL if its user has left it."
                 (not (session-abandoned-p other)))))
     (and (session-abandoned-p session)
          (or (remove-if-not #'can-answer-p (sessions-showing *simulation*))
-             (remove-if-not #'can-answer-p (sessions-at-work))))))
+             (remove-if-not #'can-answer-p (running-sessions))))))
 
 (defun break-request-for-condition (condition sessions)
   "Return a break request for CONDITION in this thread, for the users of SESSIONS."
@@ -172,26 +180,26 @@ run, or else all; NIL if its user has left it."
 
 (defun run-debugger-prompt (session break-request)
   (flet ((read-lines ()
-           (answer-those-before session break-request)
-           (tell-break session break-request)
+           (answer-earlier-breaks session break-request)
+           (show-break session break-request)
            (loop until (session-over-p session)
                  do (call-guarded session (lambda () (read-debug-line session break-request))))))
-    (call-debugging session break-request
+    (call-answering-break session break-request
                     (lambda ()
                       (if (session-trial session)
                           (call-outside-trial #'read-lines)
                           (read-lines)))))
   ;; Others may say how to continue if its user no longer can.
-  (let ((others (sessions-to-answer-for session)))
+  (let ((others (substitute-sessions session)))
     (when others
-      (debug-elsewhere
+      (await-break-answer
        others (break-request-for-condition (break-request-condition break-request) others))))
   (invoke-restart 'end-line))
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defmethod serve-while-waiting ((prompts prompts))
-  "If this thread has a prompt that runs a line, read lines for breaks in other threads, until
-those continue."
+  "If this thread runs a line of a prompt, read lines that answer breaks in other threads, until no
+break waits."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
       (loop for break-request = (first (session-breaks session))
@@ -200,132 +208,138 @@ those continue."
                (call-reporting-session-errors
                 session (lambda () (read-debug-line session break-request)))))))
 
-(defun give-up (condition)
-  "Abort what has signalled CONDITION, by the innermost restart for that."
+(defun abort-by-restart (condition)
+  "Invoke the innermost of the restarts ABORT and END-LINE for CONDITION."
   (invoke-restart (or (find-if (lambda (restart)
                                  (member (restart-name restart) '(abort end-line)))
-                               (restarts-within condition))
+                               (restarts-of-line condition))
                       'abort)))
 
 (define-event *break-hooks*
-  "Functions of no arguments, or their names. A thread that breaks calls them before it asks how to
-continue, to show its state.")
+  "Functions without arguments, or names of functions. A thread that breaks calls these functions,
+for example to show its state, before it asks how to continue.")
 
-(defun outside-prompts-p ()
-  "True if prompts ignore breaks of this thread: it is a user's own, without a prompt, in a Lisp
-that does other things too."
+(defun break-ignored-p ()
+  "True if prompts ignore breaks of this thread: the user has started the thread, it has no prompt,
+and Lisp runs other programs, too."
   (not (or *own-process-p*
            (own-thread-p)
            (and *session* (eq (session-thread *session*) (current-thread))))))
 
 (defun enter-debugger (condition hook)
-  "Ask the user of the prompt how to continue after CONDITION. Called instead of Lisp's debugger."
+  "Ask the user of the prompt how to continue after CONDITION. Lisp calls this hook instead of its
+debugger."
   ;; The question needs stack that is not there.
-  (when (typep condition 'storage-condition) (give-up condition))
+  (when (typep condition 'storage-condition) (abort-by-restart condition))
   (let* ((*asking-p* t) (sessions (sessions-to-ask)))
-    (cond ((outside-prompts-p) nil)
+    (cond ((break-ignored-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)
              (tell-listeners *break-hooks*)
              (if (eq (session-thread (first sessions)) (current-thread))
                  (run-debugger-prompt (first sessions)
                                       (break-request-for-condition condition sessions))
-                 (debug-elsewhere sessions (break-request-for-condition condition sessions)))))
+                 (await-break-answer sessions (break-request-for-condition condition sessions)))))
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
           (*session* (debugger-disabled-hook condition hook)))))
 
 (defun make-process-own ()
-  "Make this Lisp, which is to be saved, run only this program."
+  "Mark this Lisp, which is about to be saved as an image, as a process that runs only this
+program."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
 
-(defun end-for-unhandled (condition)
+(defun exit-for-unhandled (condition)
   "End this process, which is starting or ending, because nothing handles CONDITION."
   (when (typep condition 'user-interrupt) (end-interrupted))
   (say-on-error-output (condition-text condition))
   (end-process 1))
 
-(defun users-thread-text (condition)
-  "Return the message on CONDITION, which nothing handles in this thread of a user's program."
+(defun thread-error-text (condition)
+  "Return the message on CONDITION, which is not handled in this thread of a user's program."
   (let ((serious-p (typep condition 'serious-condition)))
     (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
                  ~:[It continues~;That thread ends; everything else continues~]."
             serious-p (thread-name (current-thread))
             (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
 
-(defconstant +most-reported+ 100 "How many different errors in threads of programs are reported.")
+(defconstant +most-thread-errors+ 100
+  "How many different errors in threads of programs are reported.")
 
 (defvar *reported-thread-errors* '()
-  "What was reported of threads of programs; each is reported once.")
+  "The messages already reported on errors in threads of programs; a message is reported once.")
 (defvar *reported-lock* (make-lock "reported thread errors"))
 
-(defun report-users-thread (condition)
-  "Write a message on CONDITION to the error output, once, and not after very many others."
-  (let* ((text (users-thread-text condition))
+(defun report-thread-error (condition)
+  "Write a message on CONDITION to the error output, unless it was written before. Write nothing
+after +MOST-THREAD-ERRORS+ messages."
+  (let* ((text (thread-error-text condition))
          (count (with-lock (*reported-lock*)
                   (unless (or (member text *reported-thread-errors* :test #'string=)
-                              (< +most-reported+ (length *reported-thread-errors*)))
+                              (< +most-thread-errors+ (length *reported-thread-errors*)))
                     (length (push text *reported-thread-errors*))))))
     (when count
-      (say-on-error-output (if (<= count +most-reported+)
+      (say-on-error-output (if (<= count +most-thread-errors+)
                                text
-                               "There are more errors in threads; they are no longer reported.")))))
+                               "There are more errors in threads; they are not reported.")))))
 
 ;; The rest of the program recognises by this name that there is no debugger.
 (defun debugger-disabled-hook (condition hook)
-  "Report CONDITION and continue, if it is no error, or end what this thread does. Called instead of
-Lisp's debugger without a terminal or window, or while a break is being answered."
+  "Report CONDITION. Continue if CONDITION is no error; otherwise abort the work of this thread.
+Lisp calls this hook instead of its debugger when there is no terminal or window, or while a break
+is being answered."
   (declare (ignore hook))
-  (cond (*session* (complain *session* (format nil "Break: ~A" (condition-text condition))))
-        ((and *own-process-p* (users-thread-p)) (report-users-thread condition))
-        (*own-process-p* (end-for-unhandled condition)))
+  (cond (*session*
+         (report-session-error *session* (format nil "Break: ~A" (condition-text condition))))
+        ((and *own-process-p* (users-thread-p)) (report-thread-error condition))
+        (*own-process-p* (exit-for-unhandled condition)))
   (unless (typep condition 'serious-condition) (continue condition))
-  (give-up condition))
+  (abort-by-restart condition))
 
 ;;; Another debugger, such as an editor's, may ask instead.
 
 (defmethod ask-how-to-go-on ((prompts prompts) condition)
   (when (sessions-to-ask) (enter-debugger condition nil)))
 
-(defun tell-of-inquiry (condition asker)
+(defun report-debugger-question (condition asker)
   "Report in the prompts of the simulation that ASKER asks how to continue after CONDITION."
   (unless (eq 'enter-debugger (global-debugger-hook))
     (dolist (session (remove-if-not #'session-terminal-p (sessions-showing *simulation*)))
       (show-line-in-session
        session (format nil "*BREAK* -> ~A~@[ (in ~A)~]. ~@(~A~) waits for the answer.~%"
-                       (break-words condition)
-                       (words-for-thread session (current-thread))
+                       (break-condition-text condition)
+                       (thread-description session (current-thread))
                        asker)))))
 
-(attend *inquiry-hooks* tell-of-inquiry)
+(attend *inquiry-hooks* report-debugger-question)
 
 ;;; From when to when.
 
-(defun release (session break-request)
-  "Continue BREAK-REQUEST, which only SESSION could answer, by the most likely restart; report
-that."
+(defun continue-orphaned-break (session break-request)
+  "Continue the thread of BREAK-REQUEST, which only SESSION could answer, by the most likely
+restart, and report the restart."
   (let ((restart (first (break-request-restarts break-request))))
-    (post-call session break-request
-               (lambda ()
-                 (warning-set (format nil "The prompt that asked about ~A has gone; ~A was ~
-                                           chosen"
-                                      (break-line session break-request)
-                                      (plain-name (restart-name restart))))
-                 (invoke-restart restart)))))
+    (post-call-to-thread session break-request
+                         (lambda ()
+                           (warning-set
+                            (format nil "The prompt that asked about ~A has gone; ~A was chosen"
+                                    (break-summary session break-request)
+                                    (plain-name (restart-name restart))))
+                           (invoke-restart restart)))))
 
-(defun release-all (session)
-  "Continue all breaks that wait for SESSION, which is over, and for no other."
+(defun continue-orphaned-breaks (session)
+  "Continue all breaks that wait for no session but SESSION, which is over."
   (dolist (break-request (session-breaks session))
     (unless (removef (break-request-sessions break-request) session)
-      (release session break-request))))
+      (continue-orphaned-break session break-request))))
 
 (defun call-with-debugger (session function)
   (let ((outer *session*))
     (setf *session* session
           (break-state-thread (session-break-state session)) (current-thread))
-    (unwind-protect (call-sharing (if (session-terminal-p session)
-                                      'enter-debugger
-                                      'debugger-disabled-hook)
-                                  (lambda () (call-among-sessions session function)))
+    (unwind-protect (call-sharing-hook (if (session-terminal-p session)
+                                           'enter-debugger
+                                           'debugger-disabled-hook)
+                                       (lambda () (call-as-running-session session function)))
       (setf *session* outer)
-      (release-all session))))
+      (continue-orphaned-breaks session))))

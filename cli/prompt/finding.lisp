@@ -9,51 +9,53 @@
   (append *lines*
           (remove-if (lambda (line)
                        (find (line-name line) *lines* :key #'line-name :test #'string=))
-                     (robot-lines))))
+                     (robot-line-commands))))
 
 (defun all-line-names ()
-  "Return a list of the names of all line commands, and of the functions that they stand for."
+  "Return a list of the names of all line commands, and of the functions that line commands call."
   (let ((lines (all-lines)))
     (remove-duplicates (append (mapcar #'line-name lines)
-                               (remove nil (mapcar #'line-full-name (robot-lines))))
+                               (remove nil (mapcar #'line-full-name (robot-line-commands))))
                        :test #'string= :from-end t)))
 
 (defun items-with-prefix (start items key)
-  "Return those of ITEMS whose names, which KEY returns, begin with START."
+  "Return the ITEMS whose names begin with START. KEY is a function that returns the name of an
+item."
   (remove-if-not (lambda (item)
                    (let ((name (funcall key item)))
                      (and name (starts-with-subseq start name))))
                  items))
 
 (defun reject-ambiguous (name names &optional hint)
-  "Signal BAD-LINE: NAME, as typed, may mean each of NAMES."
+  "Signal BAD-LINE because the typed NAME is the beginning of several NAMES."
   (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
                names hint))
 
-(defun reject-absent (kind name names &optional hint)
-  "Signal BAD-LINE: there is no KIND, words, called NAME; NAMES are known."
+(defun reject-unknown-name (kind name names &optional hint)
+  "Signal BAD-LINE because NAME is not among NAMES, the known names. KIND is a word for the kind of
+object, such as plan."
   (reject-line "There is no ~A ~A.~@[ Did you mean ~A?~]~@[ ~A~]" kind (string-upcase name)
                (nearest-name name names) hint))
 
-(defparameter *other-names*
+(defparameter *foreign-line-names*
   '(("?" "HELP") ("EXIT" "QUIT") ("BYE" "QUIT") ("LOGOUT" "QUIT"))
-  "Lists (name line): other programs' words for lines.")
+  "Lists (name line): names that other programs use for line commands of the prompt.")
 
-(defparameter *hints*
+(defparameter *newcomer-hints*
   '((("LEFT")  "TURN-LEFT turns by a quarter, TURN -30 deg by an angle.")
     (("RIGHT") "TURN-RIGHT turns by a quarter, TURN 30 deg by an angle.")
     (("FORWARD" "FORWARDS" "FD" "FWD" "AHEAD" "MOVE" "DRIVE" "WALK" "STRAIGHT")
-     "GO 5 m drives so far ahead, GO-FORWARD 5 for so many ticks, GOTO-WALL up to a wall.")
+     "GO 5 m drives 5 metres ahead, GO-FORWARD 5 drives for 5 ticks, GOTO-WALL to a wall.")
     (("BACK" "BACKWARD" "BACKWARDS" "REVERSE" "BK")
-     "A robot drives forwards only. ABOUT-FACE turns it round.")
+     "A robot drives forwards only. ABOUT-FACE turns the robot round.")
     (("ROTATE" "SPIN") "TURN 90 deg turns the robot, to the left if the angle is below 0.")
     (("LOOK" "SEE" "SCAN" "FIND" "SEARCH")
      "CAM-VIEW 0 looks, OBJ-DESIG 1 non-local ((:color red)) searches, MAP draws the world.")
     (("GRAB" "TAKE" "PICK" "PICKUP" "GRASP")
-     "HAND-GRASP 0 0 grasps what camera 0 tracks: OBJ-DESIG and CAM-TRACK come first.")
+     "HAND-GRASP 0 0 grasps the thing that camera 0 tracks, after OBJ-DESIG and CAM-TRACK.")
     (("DROP" "RELEASE" "PUT" "UNGRASP") "HAND-UNGRASP 0 lets go of what hand 0 holds.")
     (("WHERE" "POSITION" "WHEREAMI" "LS" "DIR" "LIST" "INVENTORY")
-     "STATUS tells of the robot, THINGS of what there is, MAP draws it all.")
+     "STATUS describes the robot, THINGS lists the things, MAP draws the world.")
     (("UNDO") "REWIND 10 goes 10 ticks back.")
     (("RESET" "RESTART") "WORLD name starts a world again, REWIND 10 goes 10 ticks back.")
     (("WAIT" "SLEEP" "TICK" "RUN-TICKS")
@@ -62,17 +64,18 @@
      "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name argument...).")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
     (("LOAD" "SOURCE" "RUN")
-     "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name goes elsewhere.")
+     "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name enters a world.")
     (("SIMULATOR" "START") "WORLD name starts a robot's world again, RESUME continues.")
     (("EXPERIMENT" "EXPERIMENTS") "TRIAL lists the experiments, and runs a trial of one.")
     (("JOURNAL" "SAVE") "SAVE-JOURNAL name keeps what was done, REPLAY name repeats it.")
     (("SET" "SETQ" "SETF" "PARAM" "PARAMETER")
-     "PARAMS lists the parameters; (setq motion-noise* 0), a line of Lisp, sets one.")
+     "PARAMS lists the parameters; Lisp such as (setq motion-noise* 0) sets a parameter.")
     (("PRINT" "ECHO" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
-  "Lists (words hint): words that newcomers type which are no lines, and hints.")
+  "Lists (words hint): words that newcomers type although no line command has the name, and a
+hint.")
 
 (defun hint-for (name)
-  (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *hints*)))
+  (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *newcomer-hints*)))
 
 ;;; Advice for words that are not lines.
 
@@ -80,11 +83,11 @@
   (let ((plan (find-procedure name nil)))
     (and plan (format nil "~A is a plan: PLAN ~A." (procedure-name plan) (plan-usage plan)))))
 
-(defun line-called (name)
+(defun line-named (name)
   (find name (all-lines) :key #'line-name :test #'string-equal))
 
 (defun line-advice (name)
-  (let ((line (line-called name)))
+  (let ((line (line-named name)))
     (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
                       (line-name line) (usage line)))))
 
@@ -95,7 +98,8 @@
                  (parameter-name parameter)))))
 
 (defun call-advice (name)
-  "Return a sentence on how to type the line that NAME, such as TURN(90), begins with; else NIL."
+  "If NAME, such as TURN(90), begins with the name of a line command, return a sentence on how to
+type the line command; else NIL."
   (let ((place (position #\( name)))
     (and place (plusp place) (line-advice (subseq name 0 place)))))
 
@@ -108,11 +112,11 @@
                  (and (null hint)
                       (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))))
 
-(defun complete-line (name)
-  "Return the line command whose name, or else full name, begins with NAME: the only one, or the one
-whose name begins all the others."
+(defun line-with-prefix (name)
+  "Return the line command whose name, or else full name, begins with NAME. Of several line
+commands, return the one whose name is the beginning of all the others. Otherwise signal BAD-LINE."
   (let ((candidates (or (items-with-prefix name (all-lines) #'line-name)
-                        (items-with-prefix name (robot-lines) #'line-full-name))))
+                        (items-with-prefix name (robot-line-commands) #'line-full-name))))
     (cond ((null candidates) (reject-unknown name))
           ;; STOP, not STOP-PLAN.
           ((find-if (lambda (line) (every (lambda (other)
@@ -123,14 +127,14 @@ whose name begins all the others."
           (t (reject-ambiguous name (mapcar #'line-name candidates) (hint-for name))))))
 
 (defun find-line (name)
-  "Return the line command called NAME, a string of any case: its name, the full name of a command's
-function, another program's word for it, or the beginning of a name. If several begin so, it is the
-one whose name begins all the others. Signals BAD-LINE."
+  "Return the line command for NAME, a string of any case. NAME may be the command's name, the full
+name of its function, another program's name for the command, or the beginning of a name. Of several
+line commands, return the one whose name is the beginning of all the others. Signals BAD-LINE."
   (let* ((typed (string-upcase name))
-         (name (or (second (assoc typed *other-names* :test #'string=)) typed)))
-    (or (line-called name)
-        (find name (robot-lines) :key #'line-full-name :test #'equal)
-        (complete-line name))))
+         (name (or (second (assoc typed *foreign-line-names* :test #'string=)) typed)))
+    (or (line-named name)
+        (find name (robot-line-commands) :key #'line-full-name :test #'equal)
+        (line-with-prefix name))))
 
 ;;; Undefined functions.
 
@@ -164,18 +168,19 @@ one whose name begins all the others. Signals BAD-LINE."
 ;; Lisp's own STEP and GO, which are called like lines, do nothing with a number. An undefined
 ;; function is reported before its arguments, such as DEG, are evaluated.
 (defun check-line-in-parentheses (form)
-  "Signal BAD-LINE if FORM, as typed, is a line in parentheses, such as (step 5) or (turn 90 deg)."
+  "Signal BAD-LINE if FORM, as typed, is a line command in parentheses, such as (step 5) or (turn 90
+deg)."
   (when (and (typep form '(cons symbol))
              (or (typep form '(cons (member step go) (or null (cons real))))
                  (not (fboundp (first form))))
-             (line-called (symbol-name (first form))))
+             (line-named (symbol-name (first form))))
     (reject-line "~A" (line-advice (symbol-name (first form))))))
 
 ;;; New variables.
 
-(defun tell-of-new-variable (name)
-  "Warn of the undefined variable NAME, which typed Lisp has set, if a defined one has a similar
-name, or the same."
+(defun warn-of-new-variable (name)
+  "Warn that typed Lisp has set the undefined variable NAME, if NAME is similar to a defined
+variable or ends in an asterisk."
   (let ((meant (variable-slip name)))
     (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))
@@ -186,8 +191,8 @@ name, or the same."
 ;;; A second command in a line.
 
 (defun command-in-comment (text)
-  "Return the comment in TEXT, a line that is not Lisp, if it follows a word without a blank and
-begins with the name of a line, as in turn 1; go 3. Otherwise return NIL."
+  "Return the comment in TEXT, a line that is not Lisp, if the comment looks like a second line
+command, as in turn 1; go 3. Otherwise return NIL."
   (let ((start (position #\; text)))
     (when (and start
                (plusp start)
@@ -195,10 +200,10 @@ begins with the name of a line, as in turn 1; go 3. Otherwise return NIL."
                (not (blank-p (char text (1- start)))))
       (let ((comment (string-trim " ;" (subseq text start))))
         (and (string/= "" comment)
-             (line-called (split-line comment))
+             (line-named (split-line comment))
              comment)))))
 
-(defun tell-of-comment (text)
+(defun warn-of-command-in-comment (text)
   (let ((comment (command-in-comment text)))
     (when comment
       (warning-set (format nil "What follows ; is a comment: ~A was left out. Type one command a ~

@@ -8,13 +8,13 @@
 ;;; lasts until the grasp is lost, so only its beginning is waited for. Plans are jobs, too: see
 ;;; plans.lisp.
 
-(defparameter *patience* 100000
+(defparameter *wait-limit* 100000
   "How many ticks a headless prompt waits for one command to complete.")
 
 (defstruct (job (:constructor make-job (&key name verdict-p resource)) (:copier nil))
-  "A command or plan that the prompt has issued. NAME is the name of a line that gives several
-commands one after the other, or NIL; VERDICT-P is true if that line recovers from their errors and
-reports the outcome itself. RESOURCE is what carries out a single command, or NIL."
+  "A command or plan that the prompt has issued. NAME is the name of a line command that issues
+several commands, or NIL. VERDICT-P is true if that line command recovers from errors and reports
+the outcome itself. RESOURCE is the robot or part that carries out a single command, or NIL."
   (done-p nil)
   ;; It has ended with an error.
   (failed-p nil)
@@ -27,14 +27,14 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
 ;; It belongs to the prompt, even if it leads on from a run.
 (define-shared job)
 
-(defun requests-waiting ()
+(defun waiting-requests ()
   (and *simulation* (timeline-inbox (timeline-of *simulation*))))
 
 (defun job-over-p (job)
   "True if JOB is done, or lasts until something happens, such as the loss of a grip."
   (or (job-done-p job)
       (and (job-resource job)
-           (null (requests-waiting))
+           (null (waiting-requests))
            (grip-watched-p (job-resource job)))))
 
 (defun end-job (job error-code)
@@ -44,11 +44,11 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
 
 ;;; Waiting.
 
-(defun held-up-p (simulation)
+(defun paused-for-good-p (simulation)
   "True if SIMULATION, which is live, is paused, and no one can resume it."
   (and (not *waits-while-paused-p*) (stands-still-p simulation)))
 
-(defun await-live (test simulation)
+(defun await-test-live (test simulation)
   (let ((true (make-semaphore "fact")))
     (flet ((look (simulation)
              (declare (ignore simulation))
@@ -59,29 +59,29 @@ reports the outcome itself. RESOURCE is what carries out a single command, or NI
       (unwind-protect (loop until (or (wait-a-while true 0.2)
                                       ;; The answer to a break may have stopped its clock.
                                       (not (live-p simulation))
-                                      (held-up-p simulation)
+                                      (paused-for-good-p simulation)
                                       (simulation-over simulation)))
         (asking (simulation) (remove-observer #'look simulation)))))
   (funcall test))
 
-(defun await (test)
-  "Let time pass until TEST, a function of no arguments, returns true between two ticks. Return NIL
-if it does not in time, when only this waiting lets ticks pass."
+(defun await-test (test)
+  "Let time pass until TEST, a function of no arguments, returns true between two ticks. In a
+headless simulation, return NIL after *WAIT-LIMIT* ticks."
   (cond ((simulation-over *simulation*) (funcall test))
         ((simulation-gate *simulation*)
-         (reject-line "In a trial time passes between lines only. STEP and RESUME let it pass."))
-        ((live-p *simulation*) (await-live test *simulation*))
-        (t (run-until test :limit *patience* :simulation *simulation*))))
+         (reject-line "In a trial time passes between lines only. STEP and RESUME let time pass."))
+        ((live-p *simulation*) (await-test-live test *simulation*))
+        (t (run-until test :limit *wait-limit* :simulation *simulation*))))
 
 (defgeneric await-job (job)
   (:documentation "Wait until JOB is done; signal BAD-LINE if that takes too many ticks.")
   (:method (job)
-    (unless (or (await (lambda () (job-over-p job)))
-                (held-up-p *simulation*))
-      (reject-line "The command has not completed within ~D ticks; it continues." *patience*))))
+    (unless (or (await-test (lambda () (job-over-p job)))
+                (paused-for-good-p *simulation*))
+      (reject-line "The command has not completed within ~D ticks; it continues." *wait-limit*))))
 
-(defun send (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, a job of SESSION that is done when it completes."
+(defun issue-job (session command resource arguments)
+  "Issue COMMAND on RESOURCE with ARGUMENTS. Add a job to SESSION that is done when COMMAND completes."
   (let ((job (make-job :resource resource)) (*caller-passes-ticks-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)
@@ -93,41 +93,41 @@ if it does not in time, when only this waiting lets ticks pass."
   (remove-if #'job-over-p (session-jobs session)))
 
 (defun await-jobs (session &optional (jobs (session-jobs session)))
-  "Wait until JOBS of SESSION, by default all, are done, or time stands still for good."
+  "Wait until JOBS of SESSION, by default all, are done, or until no user can let time pass."
   (unwind-protect (mapc #'await-job (reverse jobs))
     (setf (session-jobs session)
-          (if (and *simulation* (held-up-p *simulation*))
+          (if (and *simulation* (paused-for-good-p *simulation*))
               (jobs-under-way session)
               (remove-if (lambda (job) (member job jobs)) (session-jobs session))))))
 
 ;;; Lisp may have issued commands too. Plans that it has begun run by themselves: the prompt does
 ;;; not wait for their commands, which may never end.
 
-(defun awaited-p (request)
+(defun issued-outside-plans-p (request)
   (not (request-forked-p request)))
 
-(defun at-work-p (resource)
+(defun carries-out-command-p (resource)
   "True if RESOURCE, a robot or part, carries out a command that is expected to complete."
   (let ((event (resource-event resource)))
     (and (typep event 'operation) (not (grip-watched-p resource)))))
 
 (defun some-request-p (test)
-  "True if TEST, a function, is true of a request of the current run that waits or is carried out."
+  "True if a request of the current run, waiting or in progress, passes TEST, a function."
   (flet ((busy-p (resource)
-           (and (at-work-p resource) (funcall test (resource-event resource)))))
+           (and (carries-out-command-p resource) (funcall test (resource-event resource)))))
     (or (some test (timeline-inbox (timeline-of *simulation*)))
         (some (lambda (robot) (some #'busy-p (robot-resources robot)))
               (simulation-robots *simulation*)))))
 
-(defun settled-p ()
+(defun no-command-pending-p ()
   "True if no command, except those of plans, waits or is in progress in the current simulation."
-  (not (some-request-p #'awaited-p)))
+  (not (some-request-p #'issued-outside-plans-p)))
 
-(defun await-requests (&optional (test #'awaited-p))
-  "Let time pass until no request for which TEST is true waits or is in progress, for *PATIENCE*
-ticks at most. True if there is none."
+(defun await-requests (&optional (test #'issued-outside-plans-p))
+  "Let time pass, for at most *WAIT-LIMIT* ticks, until no waiting or running request passes TEST.
+Return true if no request is left that passes TEST."
   (let ((simulation *simulation*))
-    (await (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
+    (await-test (lambda () (let ((*simulation* simulation)) (not (some-request-p test)))))))
 
 (defun waits-for-commands-p (session)
   "True if SESSION reads the next line only after the commands issued so far have completed."
@@ -140,8 +140,9 @@ ticks at most. True if there is none."
            ;; A simulation stopped by STOP-SIMULATOR waits for RESUME.
            (or (session-patient-p session) (headless-p *simulation*)))))
 
-(defun catch-up (session)
-  "Wait for what SESSION has issued, itself or by Lisp, if SESSION waits for that."
+(defun await-session-commands (session)
+  "Wait until the commands that SESSION and its Lisp have issued are done, if SESSION waits for
+commands before it reads the next line."
   (let ((after-rewind (shiftf (session-after-rewind session) nil)))
     (when after-rewind (funcall after-rewind session)))
   (if (waits-for-commands-p session)
@@ -149,44 +150,45 @@ ticks at most. True if there is none."
              (setf (session-lisp-p session)
                    (and (shiftf (session-lisp-p session) nil)
                         (not (await-requests))
-                        (held-up-p *simulation*)))
-             (tell-whereabouts session))
+                        (paused-for-good-p *simulation*)))
+             (call-whereabouts-hooks session))
       (setf (session-jobs session) (jobs-under-way session))))
 
 (defun waits-for-resume-p (session)
-  "True if time does not pass in the run of SESSION, as that is paused."
+  "True if the run of SESSION is live and paused, so that time does not pass."
   (and *simulation*
        (null (session-trial session))
        (live-p *simulation*)
        (stands-still-p *simulation*)))
 
 (defun outcome-of-jobs (jobs lisp-p)
-  "Return :OK or :FAILED if JOBS are done and, if LISP-P, what Lisp has issued is; else NIL."
+  "Return :OK or :FAILED if JOBS are done and, if LISP-P, the requests of Lisp too; else NIL."
   (cond ((notevery #'job-over-p jobs) nil)
-        ((and lisp-p (not (settled-p))) nil)
+        ((and lisp-p (not (no-command-pending-p))) nil)
         ((some #'job-failed-p jobs) :failed)
         (t :ok)))
 
-(defun lisp-goes-on-p (session)
+(defun lisp-requests-pending-p (session)
   "True if time stands still and Lisp in the running line of SESSION has unfinished requests."
   (let ((account (session-account session)))
     (and (account-text account)
          (waits-for-resume-p session)
-         (some-request-p (lambda (request) (of-lisp-in-line-p (request-asker request) account))))))
+         (some-request-p (lambda (request)
+                           (asked-by-lisp-of-line-p (request-asker request) account))))))
 
-(defun end-of-jobs (session)
-  "Return NIL if what SESSION has issued last has ended, or if CATCH-UP has not waited for it. Else
-return a function that returns what OUTCOME-OF-JOBS does."
+(defun pending-outcome-function (session)
+  "Return NIL if the jobs that SESSION issued last are done. Otherwise return a function that
+returns the value of OUTCOME-OF-JOBS for these jobs."
   (let ((jobs (remove-if #'job-apart-p (jobs-under-way session)))
-        (lisp-p (lisp-goes-on-p session)))
+        (lisp-p (lisp-requests-pending-p session)))
     (unless (outcome-of-jobs jobs lisp-p)
       (dolist (job jobs) (setf (job-apart-p job) t))
       (lambda () (outcome-of-jobs jobs lisp-p)))))
 
 (defun unfinished-p (session)
-  "True if something that SESSION or its Lisp has issued has not ended because time stands still."
+  "True if a job or request of SESSION has not ended because time stands still."
   (and *simulation*
        (or (jobs-under-way session)
            (and (session-lisp-p session)
                 (waits-for-resume-p session)
-                (not (settled-p))))))
+                (not (no-command-pending-p))))))

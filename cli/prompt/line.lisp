@@ -11,8 +11,9 @@
 (defstruct (line-parameter (:constructor make-line-parameter (name type text optional-p))
                            (:copier nil))
   "A parameter of a line command. TYPE is an argument type of the command layer, or a keyword.
-:REST, :LINE (another line) and :FORM (of Lisp) are the whole rest of the line. :TOKEN is the text
-up to the next blank; others, such as :FILE, are such texts with a meaning (see CHOICES)."
+:REST, :LINE (another line) and :FORM (of Lisp) stand for the whole rest of the line. :TOKEN stands
+for the text up to the next blank; so do other keywords, such as :FILE, which also determine
+CHOICES."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)
@@ -45,9 +46,9 @@ ALIAS.")
 
 (defmacro define-line (name (session &rest parameters) (family &rest details) sentence &body body)
   "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]),
-the last ones optional. BODY runs with the variables bound to what was read, NIL if left out, and
-SESSION to the session. FAMILY, a keyword, says where HELP lists it, SENTENCE is its help, and
-DETAILS, strings, are paragraphs below the parameters."
+the last ones optional. BODY runs with the variables bound to the arguments, NIL for arguments left
+out, and SESSION bound to the session. FAMILY, a keyword, says where HELP lists the line command.
+SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
   `(register-line
     (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
                :details (list ,@details)
@@ -61,8 +62,8 @@ DETAILS, strings, are paragraphs below the parameters."
 
 ;;; The arguments of a line command, in words.
 
-(defgeneric argument-words (type)
-  (:documentation "Return in words what to type for an argument of TYPE, a symbol."))
+(defgeneric argument-description (type)
+  (:documentation "Return text that says what to type for an argument of TYPE, a symbol."))
 
 (defun usage (line)
   "Return how to type LINE, such as \"POS x y\"."
@@ -71,20 +72,21 @@ DETAILS, strings, are paragraphs below the parameters."
                 collect (format nil "~:[~A~;[~A]~]" (line-parameter-optional-p parameter)
                                 (line-parameter-name parameter)))))
 
-(defun line-parameter-words (parameter)
+(defun parameter-description (parameter)
   (if (keywordp (line-parameter-type parameter))
       (line-parameter-text parameter)
-      (argument-words (line-parameter-type parameter))))
+      (argument-description (line-parameter-type parameter))))
 
 (defun arguments-text (line)
   (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
           (loop for parameter in (line-parameters line)
-                collect (line-parameter-name parameter) collect (line-parameter-words parameter))))
+                collect (line-parameter-name parameter) collect (parameter-description parameter))))
 
 ;;; What a plan takes.
 
-(defun parameter-word (parameter keyword)
-  "Return how PARAMETER, of a plan's lambda list after the lambda list keyword KEYWORD, is typed."
+(defun plan-parameter-usage (parameter keyword)
+  "Return how to type the argument for PARAMETER of a plan. KEYWORD is the lambda list keyword
+before PARAMETER, or NIL."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (ecase keyword
       ((nil) (format nil "~(~A~)" name))
@@ -94,17 +96,18 @@ DETAILS, strings, are paragraphs below the parameters."
                 (format nil "[:~(~A~)]" name)))
       ((&rest &body) (format nil "[~(~A~)...]" name)))))
 
-(defun parameter-words (lambda-list)
+(defun plan-parameters-usage (lambda-list)
   (loop with keyword = nil
         for parameter in lambda-list
         until (eq parameter '&aux)
         if (member parameter lambda-list-keywords)
           do (setf keyword parameter)
         else
-          collect (parameter-word parameter keyword)))
+          collect (plan-parameter-usage parameter keyword)))
 
 (defun plan-usage (plan)
-  (format nil "~A~{ ~A~}" (procedure-name plan) (parameter-words (procedure-lambda-list plan))))
+  (format nil "~A~{ ~A~}" (procedure-name plan)
+          (plan-parameters-usage (procedure-lambda-list plan))))
 
 ;;;; The robot's commands as line commands
 
@@ -118,10 +121,10 @@ DETAILS, strings, are paragraphs below the parameters."
 (defun robot-resource-p (command)
   (same-name-p (spec-type (command-resource command)) 'robot))
 
-(defun type-key (type) (make-keyword (symbol-name type)))
+(defun type-keyword (type) (make-keyword (symbol-name type)))
 
 (defun part-family (command)
-  (let ((type (type-key (spec-type (command-resource command)))))
+  (let ((type (type-keyword (spec-type (command-resource command)))))
     (case type
       (:robot (case (command-family command)
                 (:moving :moving)
@@ -150,7 +153,7 @@ DETAILS, strings, are paragraphs below the parameters."
          (start (search "-DESIG" name :from-end t)))
     (if start (subseq name 0 (+ start 6)) name)))
 
-(defun robot-line (command)
+(defun line-for-command (command)
   (make-line :name (line-name-of command)
              :full-name (string-upcase (command-name command))
              :family (part-family command)
@@ -161,48 +164,48 @@ DETAILS, strings, are paragraphs below the parameters."
              :details (command-details command)
              :action (lambda (session &rest arguments)
                        (if (robot-resource-p command)
-                           (send session command (session-robot) arguments)
-                           (send session command (first arguments) (rest arguments))))))
+                           (issue-job session command (session-robot) arguments)
+                           (issue-job session command (first arguments) (rest arguments))))))
 
-(defvar *robot-lines* '(() . ())
-  "The robot's commands and the line commands that they make, as last looked up.")
+(defvar *robot-line-cache* '(() . ())
+  "A cons that caches the list of the robot's commands and the list of their line commands.")
 
-(defun robot-lines ()
+(defun robot-line-commands ()
   (let ((commands (all-commands)))
-    (unless (equal commands (car *robot-lines*))
-      (setf *robot-lines* (cons commands (mapcar #'robot-line commands))))
-    (cdr *robot-lines*)))
+    (unless (equal commands (car *robot-line-cache*))
+      (setf *robot-line-cache* (cons commands (mapcar #'line-for-command commands))))
+    (cdr *robot-line-cache*)))
 
 ;;; Those that differ.
 
 (defun tracked-designator (camera)
-  "Return the designator that CAMERA tracks. Signals BAD-LINE if it tracks none."
+  "Return the designator that CAMERA tracks. Signals BAD-LINE if CAMERA tracks nothing."
   (or (camera-tracks camera)
       (reject-line "~A is not tracking anything." camera)))
 
-(defun send-named (session name resource &rest arguments)
-  (send session (find-command name) resource arguments))
+(defun issue-named-command (session name resource &rest arguments)
+  (issue-job session (find-command name) resource arguments))
 
 (define-line "CAM-INSERT-DESIG" (session (cam camera "the camera to insert"))
     (:camera)
     "Insert the camera CAM into the thing whose local designator it tracks."
-  (send-named session 'camera-insert cam (tracked-designator cam)))
+  (issue-named-command session 'camera-insert cam (tracked-designator cam)))
 
 (define-line "CAM-INSERT-BIN" (session (cam camera "the camera to insert")
                                        (bin storage-bin "the storage bin"))
     (:camera)
     "Insert the camera CAM into the storage bin BIN."
-  (send-named session 'camera-insert cam bin))
+  (issue-named-command session 'camera-insert cam bin))
 
 (define-line "HAND-INSERT-DESIG" (session (hand hand "the hand to insert")
                                           (cam camera "the camera that tracks the thing"))
     (:hand)
     "Insert the hand HAND into the thing whose local designator the camera CAM tracks."
-  (send-named session 'hand-insert hand (tracked-designator cam)))
+  (issue-named-command session 'hand-insert hand (tracked-designator cam)))
 
 ;; As reading 195 says.
 (define-line "HAND-GRASP" (session (hand hand "the hand that is to grasp")
                                    (cam camera "the camera that tracks the thing"))
     (:hand)
     "Grasp with the hand HAND the thing that the camera CAM tracks, in the same location."
-  (send-named session 'hand-grasp-desig hand cam (tracked-designator cam)))
+  (issue-named-command session 'hand-grasp-desig hand cam (tracked-designator cam)))

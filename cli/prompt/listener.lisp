@@ -7,16 +7,18 @@
 ;;; by itself, it continues until that code changes or is in another run.
 
 (defstruct tally
-  "How often an error was reported, in CODE, a function that runs by itself, or NIL, last at TICK."
+  "How often an error was reported, the last time at TICK. CODE is the function, such as a kicker's,
+that runs by itself and signals the error, or NIL."
   (count 0 :type (integer 0))
   (code nil)
   (tick 0 :type integer))
 
 (defun item-at-fault (message)
-  "Return the item of MESSAGE that says whose code, running by itself, is at fault, or NIL."
+  "Return the item of MESSAGE that names the code at fault, if that code runs by itself, as a kicker
+does; else NIL."
   (find-if #'recurring-code (message-items message)))
 
-(defun tick-of (message)
+(defun message-tick (message)
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
 
@@ -25,7 +27,7 @@
          (code (let ((item (item-at-fault message)))
                  (and item (recurring-code item))))
          (tally (gethash text counts)))
-    (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (tick-of message)))
+    (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (message-tick message)))
            tally)
           (t (when (< *message-limit* (hash-table-count counts)) (clrhash counts))
              (setf (gethash text counts) (make-tally :code code))))))
@@ -35,29 +37,31 @@
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
 (defun repeated-often-p (message counts)
-  "Count MESSAGE in COUNTS. True if it repeats so often that it is hidden."
+  "Count MESSAGE in the table COUNTS. Return true if MESSAGE is to be hidden because it has come too
+often."
   (let* ((tally (tally-for message counts)) (count (incf (tally-count tally))))
-    (setf (tally-tick tally) (tick-of message))
+    (setf (tally-tick tally) (message-tick message))
     (and (< 3 count) (not (power-of-ten-p count)))))
 
 (defun repetition-text (message counts)
-  "Return a note on how often MESSAGE, which is shown, was reported, by COUNTS; or NIL."
+  "Return text that says how often MESSAGE was reported according to the table COUNTS; NIL if not
+often."
   (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
     (when (<= 3 count)
-      (format nil "That has come up ~D times; it is shown again after ~D.~@[ ~A~] PAUSE stops ~
-                   time.~%"
+      (format nil "This error has come up ~D times; it is shown again after ~D.~@[ ~A~] PAUSE ~
+                   stops time.~%"
               count
               (loop for next = 10 then (* 10 next) when (< count next) return next)
               (and item (recurring-remedy item))))))
 
 (defun reset-line-error-counts (counts)
-  "Remove the errors of lines from COUNTS."
+  "Remove the errors that lines caused from the table COUNTS."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
 (defun merge-counts (counts others)
-  "Add to COUNTS the higher counts of the table OTHERS."
+  "Copy into the table COUNTS those counts of the table OTHERS that are higher."
   (maphash (lambda (text tally)
              (let ((own (gethash text counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
@@ -66,9 +70,9 @@
 
 ;;; Plans may give more messages than a user can read.
 
-(define-constant +flood+ 50
-  :documentation "After this many messages from others' commands, with no line between them, a
-message says how to hide them.")
+(define-constant +many-messages+ 50
+  :documentation "After this many messages from commands of plans and programs, with no line in
+between, a message says how to hide such messages.")
 
 ;;;; Messages
 
@@ -102,30 +106,32 @@ message says how to hide them.")
   ;; Its user is lost, but has not left it: other users are asked instead.
   (abandoned-p nil :type boolean))
 
-(defun flood-text (listener count)
-  "Count COUNT more messages from others' commands. Return, once, a message if they are too many."
+(defun many-messages-hint (listener count)
+  "Count COUNT more messages from commands of plans and programs. Return a hint, once, when there
+are too many messages."
   (let ((before (listener-others-shown listener)))
-    (and (< before +flood+)
-         (<= +flood+ (incf (listener-others-shown listener) count))
+    (and (< before +many-messages+)
+         (<= +many-messages+ (incf (listener-others-shown listener) count))
          (format nil "ECHO OFF hides messages from commands that plans and programs ~
                       issue.~%"))))
 
-(defun reset-flood (listener)
-  "Start counting again in LISTENER, unless there were too many."
-  (when (< (listener-others-shown listener) +flood+)
+(defun reset-message-count (listener)
+  "Let LISTENER count the messages of plans and programs from 0 again, unless the hint was given."
+  (when (< (listener-others-shown listener) +many-messages+)
     (setf (listener-others-shown listener) 0)))
 
 ;;; Complaints and messages.
 
-(defun complain (listener text)
+(defun report-session-error (listener text)
   (incf (listener-errors listener))
   (let ((account (listener-account listener)) (console (listener-console listener)))
-    (unless (and (reports-p account) (report-message account :error text))
+    (unless (and (reports-objects-p account) (report-message account :error text))
       (write-fitted console "~A"
                     (painted (format nil "*ERROR* -> ~A~%"
                                      (complaint-text
-                                      (placed-text account text (line-of-trouble account))))
-                             (ink-of :error) console)))))
+                                      (text-with-location account text
+                                                          (faulty-line-number account))))
+                             (message-color :error) console)))))
 
 (defun take-all-messages ()
   (append (take-messages)
@@ -135,37 +141,38 @@ message says how to hide them.")
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE ends a command that has a program's continuation, which may handle errors."
+  "True if MESSAGE reports the end of a command with a program's continuation, which may handle
+errors."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))
 
-(defun others-p (message)
-  "True if MESSAGE ends a command that a plan or program has issued."
+(defun from-program-p (message)
+  "True if MESSAGE reports the end of a command that a plan or program has issued."
   (let ((asker (message-asker message)))
-    (not (or (null asker) (equal asker +asker+)))))
+    (not (or (null asker) (equal asker +prompt-asker+)))))
 
-(defun ink-of (kind)
-  "Return the ink of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS, others' commands."
+(defun message-color (kind)
+  "Return the colour of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS for commands of
+plans and programs."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
-(defun message-words (message listener)
-  "Return the text of MESSAGE for LISTENER: with the robot's name, if it is about another robot's
-command; and with the place of its line, if it is an error or warning in a script."
+(defun full-message-text (message listener)
+  "Return the text of MESSAGE for LISTENER. Add the robot's name if another robot's command has
+ended. Add file and line number to errors and warnings in a script."
   (let* ((own (listener-robot-name listener)) (name (message-robot message))
          (text (format nil "~@[~(~A~): ~]~A" (and own (not (eq own name)) name)
                        (message-text message)))
          (account (listener-account listener)))
     (if (member (message-kind message) '(:error :warning))
-        (placed-text account text (line-of-message account message))
+        (text-with-location account text (line-of-message account message))
         text)))
 
 (defun write-painted (message listener out)
-  (write-string (painted (visible (with-output-to-string (text)
-                                    (write-message message text (message-words message listener))))
-                         (ink-of (if (others-p message) :others (message-kind message)))
-                         (listener-console listener))
-                out))
+  (let ((kind (if (from-program-p message) :others (message-kind message)))
+        (text (with-output-to-string (text)
+                (write-message message text (full-message-text message listener)))))
+    (write-string (painted (visible text) (message-color kind) (listener-console listener)) out)))
 
 ;; As reading 197 says.
 (defun write-messages (messages listener)
@@ -177,17 +184,19 @@ command; and with the place of its line, if it is an error or warning in a scrip
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)
-  "Count the error MESSAGE in LISTENER: for the line that caused it, if that is an earlier one."
+  "Count the error MESSAGE in LISTENER. If an earlier line caused the error, count it for that
+line."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
-    (when (and account (not (eql (line-of-message account message) (line-under-way account))))
+    (when (and account (not (eql (line-of-message account message) (last-line-number account))))
       (incf (account-errors account))
       ;; That line may wait for time to pass.
       (let ((waiting (assoc (line-of-message account message) (account-waiting account))))
         (when waiting (setf (third waiting) nil))))))
 
 (defgeneric error-counts-p (message listener)
-  (:documentation "True if LISTENER counts the error MESSAGE itself, and not its cause."))
+  (:documentation "True if LISTENER counts the error MESSAGE. Errors that a plan or program may
+handle do not count."))
 
 (defun messages-for (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
@@ -197,16 +206,18 @@ command; and with the place of its line, if it is an error or warning in a scrip
   (remove-if (lambda (message) (and (eq :error (message-kind message))
                                     (listener-terminal-p listener)
                                     (repeated-often-p message (listener-error-counts listener))))
-             (if (listener-quiet-p listener) (remove-if #'others-p messages) messages)))
+             (if (listener-quiet-p listener) (remove-if #'from-program-p messages) messages)))
 
-(defun texts-about (listener messages)
-  "Return notes for LISTENER on MESSAGES, which it has shown: that some repeat, or are very many."
+(defun notes-on-messages (listener messages)
+  "Return a list of notes on MESSAGES, which LISTENER has shown: on errors that repeat, and on too
+many messages."
   (remove nil (append (loop for message in messages
                             collect (repetition-text message (listener-error-counts listener)))
                       (and (listener-terminal-p listener)
-                           (list (flood-text listener (count-if #'others-p messages)))))))
+                           (list (many-messages-hint
+                                  listener (count-if #'from-program-p messages)))))))
 
-(defun tell-messages (listener messages)
+(defun print-messages (listener messages)
   (with-lock ((listener-lock listener))
     (setf (listener-news-p listener) nil)
     (let ((console (listener-console listener))
@@ -215,6 +226,6 @@ command; and with the place of its line, if it is an error or warning in a scrip
         (printing-words ()
           (or (report-messages (listener-account listener) messages)
               (write-messages messages listener)))
-        (dolist (text (texts-about listener messages))
+        (dolist (text (notes-on-messages listener messages))
           (write-fitted console "~A" text)))
       (restore-prompt console))))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-(export '(*whereabouts-hooks* tell-first-messages go-to-run run-after tell-of-run run-of-robot
-          words-for-run in-trial-or-fork-p trial-or-fork-text pace-of))
+(export '(*whereabouts-hooks* show-definition-messages go-to-run run-after announce-run
+          live-run-of-robot run-description in-trial-or-fork-p trial-or-fork-text simulation-pace))
 
 ;;; Each session has its thread, robot and current simulation. Messages of a simulation are shown by
 ;;; all sessions in it, and each of them can answer a break in its thread.
@@ -11,12 +11,12 @@
 (defvar *sessions* '() "The running sessions, the newest first.")
 (defvar *sessions-lock* (make-lock "sessions"))
 
-(defun call-among-sessions (session function)
+(defun call-as-running-session (session function)
   (with-lock (*sessions-lock*) (push session *sessions*))
   (unwind-protect (funcall function)
     (with-lock (*sessions-lock*) (removef *sessions* session))))
 
-(defun sessions-at-work ()
+(defun running-sessions ()
   (with-lock (*sessions-lock*) (copy-list *sessions*)))
 
 (defun shows-run-p (session simulation)
@@ -26,18 +26,19 @@
 
 (defun sessions-showing (simulation)
   (and simulation
-       (remove-if-not (lambda (session) (shows-run-p session simulation)) (sessions-at-work))))
+       (remove-if-not (lambda (session) (shows-run-p session simulation)) (running-sessions))))
 
 (defun session-with-queue (queue)
-  "Return a running session that shows the messages of a run, which come in QUEUE, or NIL."
+  "Return a running session that shows the messages of the run whose message queue is QUEUE, or
+NIL."
   (find-if (lambda (session)
              (let ((run (session-simulation session)))
                (and run (eq queue (simulation-messages run)))))
            (with-lock (*sessions-lock*) *sessions*)))
 
 (defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
-  "An item of a message: how something that SESSION, or NIL, has started ended, such as a plan.
-Prints as TEXT. SESSION shows the message, whatever run it is in."
+  "An item of a message that says how a plan has ended. SESSION, or NIL, has started the plan. The
+item prints as TEXT. SESSION shows the message even if SESSION is in another run."
   (text "" :type string :read-only t)
   (session nil :type (or null session) :read-only t))
 
@@ -45,21 +46,22 @@ Prints as TEXT. SESSION shows the message, whatever run it is in."
   (write-string (verdict-text verdict) stream))
 
 (defun receivers (message session)
-  "Return the sessions that show MESSAGE, which SESSION has taken: the one that it is for, and those
-in its run; or SESSION if there is none."
+  "Return the sessions that show MESSAGE, which SESSION has taken from a queue: the session named in
+MESSAGE and the sessions in its run; if there are none, SESSION."
   (or (union (let* ((item (first (message-items message)))
                     (meant (and (verdict-p item) (verdict-session item))))
-               (and meant (member meant (sessions-at-work)) (list meant)))
+               (and meant (member meant (running-sessions)) (list meant)))
              (sessions-showing (or (message-run message) (session-simulation session))))
       (list session)))
 
 (defun deliver-messages (session messages)
-  "Show MESSAGES, which SESSION has taken, in those sessions that they are for."
+  "Show MESSAGES, which SESSION has taken from a queue: each message in the sessions that RECEIVERS
+returns."
   (let ((receivers (mapcar (lambda (message) (receivers message session)) messages)))
     (dolist (receiver (remove-duplicates (cons session (apply #'append receivers))))
-      (tell-messages receiver (loop for message in messages
-                                    for those in receivers
-                                    when (member receiver those) collect message)))))
+      (print-messages receiver (loop for message in messages
+                                     for those in receivers
+                                     when (member receiver those) collect message)))))
 
 ;;; Output of users' programs in a simulator's thread, as of continuations, goes to the terminal and
 ;;; to the windows of that simulation.
@@ -67,17 +69,17 @@ in its run; or SESSION if there is none."
 (defmethod mirrors-of ((console console))
   (when (and *simulation*
              (rest *sessions*)
-             (not (find (current-thread) (sessions-at-work) :key #'session-thread)))
+             (not (find (current-thread) (running-sessions) :key #'session-thread)))
     (remove console (mapcar #'session-console (sessions-showing *simulation*)))))
 
 (defvar *showing-p* nil
-  "True while this thread shows messages; what the showing itself reports is left for later.")
+  "True while this thread shows messages. Messages that come up meanwhile are shown later.")
 
 (defvar *showing-lock* (make-lock "showing messages"))
 
 (defun show-messages (session)
-  "Show all queued messages, in SESSION or in the sessions of their runs, and the prompts again. A
-session without a user leaves them to others."
+  "Show all queued messages, in SESSION or in the sessions of their runs, and the prompts again. Do
+nothing if SESSION has lost its user."
   (unless *showing-p*
     (with-lock (*showing-lock*)
       (unless (session-abandoned-p session)
@@ -86,17 +88,17 @@ session without a user leaves them to others."
 
 ;;; Messages about a world's file, while it is loaded, come before there is a run.
 
-(defvar *first-messages* '()
-  "The messages about the definitions of the program, that the prompt has shown before any run.")
+(defvar *definition-messages* '()
+  "The messages about definitions in the program that the prompt has shown before the first run.")
 
-(defun tell-first-messages (session)
-  "Show in SESSION, of a new window, the earlier messages about definitions."
-  (when *first-messages* (tell-messages session *first-messages*)))
+(defun show-definition-messages (session)
+  "Show the earlier messages about definitions in SESSION, the session of a new window."
+  (when *definition-messages* (print-messages session *definition-messages*)))
 
 ;;; Listening to a simulation.
 
 (defun handle-message (session simulation)
-  "Show the messages of SIMULATION, of which one is new."
+  "Show a new message of SIMULATION in SESSION, now or at the end of the tick."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ;; Its tick ends when a user says how to continue, who may need these messages.
         ((users-code-broken-p simulation) (show-messages session))
@@ -109,13 +111,13 @@ session without a user leaves them to others."
            (unless (simulation-ticking-p simulation) (show-if-pending session)))))
 
 (defun show-if-pending (session)
-  "Show what has not been shown at the end of a tick."
+  "Show the messages that SESSION has not shown when a tick ends."
   (when (or (session-news-p session) (overwritten-p (session-console session)))
     (show-messages session)))
 
 (defun observer-for (session)
-  "Return an observer that shows the pending messages of SESSION. It removes itself when SESSION has
-another, so that no thread waits for the end of the tick, which may never come."
+  "Return an observer that shows the pending messages of SESSION. The observer removes itself when
+SESSION has a newer observer. So no thread waits for the end of a tick, which may never come."
   (let ((observer nil))
     (setf observer (lambda (simulation)
                      (if (eq observer (session-observer session))
@@ -160,20 +162,21 @@ another, so that no thread waits for the end of the tick, which may never come."
 ;;; A window follows its user into other runs.
 
 (define-event *whereabouts-hooks*
-  "Functions, or their names, of a session, the run that it was in when it last read a line, and its
-present run, perhaps the same; NIL for none. They are called in its thread before it reads a line,
-while a headless run stands still.")
+  "Functions, or names of functions, that the thread of a session calls before it reads a line. The
+arguments are the session, its run when it last read a line, and its present run, perhaps the same.
+A run may be NIL. A headless run stands still during the calls.")
 
-(defun tell-whereabouts (session)
+(defun call-whereabouts-hooks (session)
   "Call *WHEREABOUTS-HOOKS* with the run that SESSION is in."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
     (tell-listeners *whereabouts-hooks* session old *simulation*)))
 
 ;;;; In which run each session is
 
-(defun words-for-run (simulation)
-  "Return in words what SIMULATION is: a fork, a trial, or the run in a map."
-  (let* ((session (session-entered simulation)) (trial (and session (session-trial session))))
+(defun run-description (simulation)
+  "Return text that describes SIMULATION as a fork, a trial, or the run in a map."
+  (let* ((session (session-in-fork-or-trial simulation))
+         (trial (and session (session-trial session))))
     (cond ((timeline-fork-p (timeline-of simulation))
            (format nil "a fork of ~A at tick ~D" (simulation-name simulation)
                    (simulation-tick simulation)))
@@ -186,23 +189,25 @@ while a headless run stands still.")
   "True if SESSION is in a trial or a fork."
   (or (session-trial session) (plusp (session-forks session))))
 
-(defun session-entered (simulation)
-  "Return the session that has come into SIMULATION by TRIAL or FORK and is there, or NIL."
+(defun session-in-fork-or-trial (simulation)
+  "Return the session that has entered SIMULATION by the line TRIAL or FORK and is still there, or
+NIL."
   (find-if (lambda (session)
              (and (eq simulation (session-whereabouts session)) (in-trial-or-fork-p session)))
-           (sessions-at-work)))
+           (running-sessions)))
 
 (defun trial-or-fork-text (simulation)
-  "Return in words how a prompt has come into SIMULATION, if by TRIAL or FORK, or NIL."
-  (let ((session (session-entered simulation)))
+  "Return \"a trial\" or \"a fork\" if a prompt has entered SIMULATION by the line TRIAL or FORK;
+else NIL."
+  (let ((session (session-in-fork-or-trial simulation)))
     (and session (if (session-trial session) "a trial" "a fork"))))
 
-(defun pace-of (simulation)
-  "Return how time passes in SIMULATION, if a prompt is there by TRIAL or FORK: :RUNNING, :PAUSED,
-:ENDED or :FORKED, and at what rate, or NIL. Else return NIL."
-  (let ((session (session-entered simulation)))
+(defun simulation-pace (simulation)
+  "Return how time passes in SIMULATION, which a prompt has entered by TRIAL or FORK: :RUNNING,
+:PAUSED, :ENDED or :FORKED. The second value is the rate or NIL. Return NIL for other simulations."
+  (let ((session (session-in-fork-or-trial simulation)))
     (cond ((null session) nil)
-          ((session-trial session) (pace-of-trial (session-trial session)))
+          ((session-trial session) (trial-pace (session-trial session)))
           (t :forked))))
 
 ;;; One prompt may end the run that others are in: by WORLD, or by starting a robot again in Lisp.
@@ -210,21 +215,21 @@ while a headless run stands still.")
 ;;; live run now; otherwise in the run that WORLD has led to, with its robot. Prompts that wait for
 ;;; a line say so at once, and show messages from there; each switches before it runs the next line.
 
-(defvar *replacements* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each run that WORLD has replaced, a list of the run that replaced it and the robot's name
-there.")
+(defvar *replaced-runs* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "A table from each run that the line WORLD has replaced to a list of the new run and the name of
+the robot in the new run.")
 
-(defun run-of-robot (name)
-  "Return the live run that the robot called NAME is in now, or NIL."
+(defun live-run-of-robot (name)
+  "Return the live run that the robot named NAME is in now, or NIL."
   (let* ((robot (and name (find-robot name nil)))
          (simulation (and robot (robot-simulation robot))))
     (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
 
 (defun run-after (simulation robot-name)
-  "Return the live run in which a prompt for ROBOT-NAME continues after SIMULATION, which is over,
-and the name of the robot that it commands there; NIL if there is none."
-  (let ((own (run-of-robot robot-name))
-        (next (gethash simulation *replacements*)))
+  "Return the live run in which a prompt for ROBOT-NAME continues after the end of SIMULATION, and
+the name of the robot that the prompt then commands. Return NIL if there is no such run."
+  (let ((own (live-run-of-robot robot-name))
+        (next (gethash simulation *replaced-runs*)))
     (cond (own (values own robot-name))
           ((null next) nil)
           ((simulation-over (first next)) (apply #'run-after next))
@@ -233,39 +238,42 @@ and the name of the robot that it commands there; NIL if there is none."
 ;;; Others are told.
 
 (defun show-line-in-session (session text)
-  "Show TEXT, a line, in SESSION, and the prompt again. Any thread may ask."
+  "Show TEXT, a line, in SESSION, and the prompt again. Any thread may call this function."
   (with-lock ((session-lock session))
     (let ((console (session-console session)))
       (write-fitted console "~A" text)
       (restore-prompt console))))
 
-(defun tell-others (session simulation text)
-  "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions there."
+(defun tell-other-sessions (session simulation text)
+  "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions of
+SIMULATION."
   (dolist (other (remove session (sessions-showing simulation)))
     (show-line-in-session other text)))
 
-(defun tell-of-run (session simulation robot-name)
-  "Move SESSION to the robot ROBOT-NAME of SIMULATION, as another session does so: report that, and
-show messages from there. Do nothing if it is there. Any thread may ask."
+(defun announce-run (session simulation robot-name)
+  "Tell the user of SESSION that the prompt continues with the robot ROBOT-NAME of SIMULATION, and
+show messages of SIMULATION. Do nothing if SESSION already shows these messages. Any thread may call
+this function."
   (unless (eq simulation (session-simulation session))
     (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
-                                          (words-for-run simulation)))
+                                          (run-description simulation)))
     (stop-listening session)
     (listen-to session simulation)))
 
 ;;; Going there.
 
 (defun go-to-run (simulation)
-  "Make SIMULATION the current one in this thread."
+  "Make SIMULATION the current simulation in this thread."
   (setf *simulation* simulation
         *world* (simulation-world simulation)))
 
 (defun continue-in-next-run (session)
-  "If the run of SESSION, in whose thread this is, is over, continue in another if there is one."
+  "If the run of SESSION is over, continue in the run that follows, if there is one. Only the thread
+of SESSION may call this function."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
       (when simulation
-        (tell-of-run session simulation name)
+        (announce-run session simulation name)
         (go-to-run simulation)
         (setf *prompt-robot* name)
-        (call-by-name (current-robot-names))))))
+        (import-robot-names (current-robot-names))))))

@@ -2,34 +2,36 @@
 
 (in-package :ars-magna.cli)
 
-(defun existing-file (name)
-  "Return the path of the Lisp file NAME, with or without its type, or NIL."
+(defun existing-lisp-file (name)
+  "Return the path of the existing Lisp file NAME, which may lack its type; otherwise NIL."
   (let ((path (path-called name)))
     (and (pathname-name path)
          (or (existing-path path)
              (existing-path (make-pathname :type "lisp" :defaults path))))))
 
-(defun file-called (name)
-  "Return the path of the Lisp file NAME, with or without its type. Signals BAD-LINE."
-  (or (existing-file name) (reject-line "There is no file ~A." name)))
+(defun find-lisp-file (name)
+  "Return the path of the existing Lisp file NAME, which may lack its type. Signals BAD-LINE."
+  (or (existing-lisp-file name) (reject-line "There is no file ~A." name)))
 
-(defun foreign-text (path)
-  "Return a sentence on what is in the file PATH and what reads it, or NIL if it is Lisp or lines."
+(defun foreign-file-text (path)
+  "Return a sentence that says what the file PATH contains and which program or command reads it;
+NIL if it contains Lisp or lines of the prompt."
   (let ((advice (file-advice path :lisp)))
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 
 (defun check-lisp-file (path)
-  (let ((text (foreign-text path)))
+  (let ((text (foreign-file-text path)))
     (when text (reject-line "~A" text))))
 
 (defun check-form-of-file (form path)
-  "Signal BAD-LINE if FORM, from the file PATH, which is being loaded, is the beginning of a line."
-  (when (and (symbolp form) (not (boundp form)) (line-called (symbol-name form)))
-    (reject-line "~A is a command of the prompt. It looks like a script of lines: ars-magna ~A."
+  "Signal BAD-LINE if FORM, read while loading the file PATH, is the name of a line command."
+  (when (and (symbolp form) (not (boundp form)) (line-named (symbol-name form)))
+    (reject-line "~A is a command of the prompt. The file looks like a script of lines: ars-magna ~
+                  ~A."
                  form (native-name path))))
 
 (defun start-of-form (text start)
-  "Return where, from START, the next form in TEXT begins; its length if there is none."
+  "Return the start of the next form in TEXT from START on; the length of TEXT if there is none."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
         for end = (and (< position (length text)) (skip-comment text position))
         while end
@@ -52,7 +54,7 @@
   (when (typep form '(cons (eql load) (cons string)))
     (when (many-files-p (second form))
       (reject-line "~A cannot be loaded: ~A." (second form) (unusable-file-text (second form))))
-    (let ((path (existing-file (second form))))
+    (let ((path (existing-lisp-file (second form))))
       (when path
         (check-lisp-file path)
         (check-form-of-file (ignore-errors
@@ -63,8 +65,9 @@
 
 ;;;; Loading
 
-(defun call-watched-at (place function)
-  "Call FUNCTION while PLACE, a function, returns the place in the file being loaded."
+(defun call-recording-location (place function)
+  "Call FUNCTION. During the call, error reports get the file and line being loaded from the
+function PLACE."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))
@@ -75,36 +78,38 @@
 (defun line-at (text position)
   (1+ (count #\Newline text :end position)))
 
-(defun call-on-line (function file line)
-  "Call FUNCTION. Its errors name FILE and the line that LINE, a function, returns for the
-condition, or for NIL."
+(defun call-locating-errors (function file line)
+  "Call FUNCTION. Signal errors in FUNCTION as FILE-TROUBLE with FILE and the line number that the
+function LINE returns for the condition. For NIL, LINE returns the number of the line being loaded."
   (handler-bind ((error (lambda (condition)
-                          (unless (placed-p condition)
+                          (unless (names-location-p condition)
                             (error 'file-trouble :file file :cause condition
                                                  :line (funcall line condition))))))
-    (call-watched-at (lambda () (format nil "~A, line ~D" file (funcall line nil))) function)))
+    (call-recording-location (lambda () (format nil "~A, line ~D" file (funcall line nil)))
+                             function)))
 
-(defun line-of-stumble (condition stream start)
-  "Return the line on which the reader failed in STREAM, with CONDITION; or the line of START, where
-the form begins, if the form does not end."
+(defun line-of-read-error (condition stream start)
+  "Return the number of the line in STREAM on which the reader failed with CONDITION. If the form
+does not end, return the number of the line of START, where the form begins."
   (line-at (grown-text stream)
            (if (typep condition 'end-of-file)
                start
                (max start (1- (grown-position stream))))))
 
-(defun read-placing (stream file)
-  "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if it cannot be read."
+(defun read-form-in-file (stream file)
+  "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if the form cannot be
+read."
   (let ((start (grown-position stream)))
-    (call-on-line (lambda () (read-preserving-whitespace stream)) file
-                  (lambda (condition) (line-of-stumble condition stream start)))))
+    (call-locating-errors (lambda () (read-preserving-whitespace stream)) file
+                          (lambda (condition) (line-of-read-error condition stream start)))))
 
 (defun load-forms (path)
   "Load the Lisp file at PATH as LOAD does. Signals FILE-TROUBLE."
   ;; The message says why a file has been left; the compiler's own is not needed.
   (let ((*error-output* (make-broadcast-stream)))
-    (call-telling-undefined (lambda ()
-                              (call-telling-doubts (lambda () (load-each-form path))))
-                            (native-name path))))
+    (call-reporting-undefined (lambda ()
+                                (call-reporting-warnings (lambda () (load-each-form path))))
+                              (native-name path))))
 
 (defun load-each-form (path)
   (let* ((text (file-text path))
@@ -115,11 +120,11 @@ the form begins, if the form does not end."
     (loop for position = (start-of-form text (min (grown-position stream) (length text)))
           while (< position (length text))
           do (setf (grown-position stream) position)
-             (let ((form (read-placing stream file)))
-               (call-on-line (lambda ()
-                               (check-form-of-file form path)
-                               (call-as-from-file (lambda () (eval-quietly form)) path))
-                             file
-                             (lambda (condition)
-                               (declare (ignore condition))
-                               (line-at text position)))))))
+             (let ((form (read-form-in-file stream file)))
+               (call-locating-errors (lambda ()
+                                       (check-form-of-file form path)
+                                       (call-as-from-file (lambda () (eval-quietly form)) path))
+                                     file
+                                     (lambda (condition)
+                                       (declare (ignore condition))
+                                       (line-at text position)))))))

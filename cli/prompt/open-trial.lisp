@@ -4,7 +4,7 @@
 
 (defstruct (open-trial (:constructor make-open-trial (experiment condition number directory))
                        (:copier nil))
-  "A trial that the prompt is in."
+  "A trial that a prompt has entered."
   (experiment nil :read-only t)
   (condition nil :read-only t)
   (number 0 :type integer :read-only t)
@@ -61,7 +61,7 @@
         ((open-trial-running-p trial) (rate-text (open-trial-rate trial)))
         (t "paused")))
 
-(defun pace-of-trial (trial)
+(defun trial-pace (trial)
   "Return how time passes in TRIAL: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL."
   (cond ((open-trial-result trial) :ended)
         ((plusp (open-trial-steps trial)) :running)
@@ -77,13 +77,13 @@
 ;;; unwinds it; nothing else needs to be ended.
 
 (defun leave-open-trial (session &optional (next #'values))
-  "Leave the trial of SESSION; then call NEXT. The trial's messages on this are not shown."
+  "Leave the trial of SESSION; then call NEXT. The trial's messages about its end are not shown."
   (setf (open-trial-left-p (session-trial session)) t)
   (stop-listening session)
   (throw 'left-trial next))
 
-(defun call-outside (session function)
-  "Call FUNCTION where SESSION is in no trial: if it is in one, leave that first."
+(defun call-outside-trial (session function)
+  "Call FUNCTION outside of trials: if SESSION is in a trial, leave the trial first."
   (if (session-trial session)
       (leave-open-trial session function)
       (funcall function)))
@@ -91,11 +91,12 @@
 ;;; Has a line changed the run? Then it is no longer the experiment's.
 
 (defun trial-state ()
-  "Return what determines the current simulation's course: a digest and the pending requests."
+  "Return a list that determines how the current simulation goes on: the digest of its state, and
+its pending requests."
   (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
 
-(defun note-if-changed (session trial before)
-  "Report it if the run in TRIAL is no longer in the state BEFORE."
+(defun report-changed-trial (session trial before)
+  "If the run in TRIAL is no longer in the state BEFORE, report that lines have changed the run."
   (unless (or (open-trial-changed trial) (every #'eql before (trial-state)))
     (setf (open-trial-changed trial) (simulation-tick *simulation*))
     (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
@@ -104,41 +105,42 @@
 
 ;;; Lines.
 
-(defun answer-others ()
-  "Answer what other threads, such as a window's, ask of the current simulation."
+(defun serve-other-threads ()
+  "Serve requests of other threads, such as a window's, to the current simulation."
   (answer-questions (timeline-custody (timeline-of *simulation*))))
 
 (defun await-typed-line (session seconds)
-  "Wait until a line is typed for SESSION, for SECONDS at most. True if there is one."
+  "Wait until a line is typed for SESSION, for SECONDS at most. Return true if a line was typed in
+time."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session) (unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
   (loop with end = (+ (seconds-now) seconds)
         for left = (- end (seconds-now))
-        do (answer-others)
+        do (serve-other-threads)
         thereis (or (reader-lines (session-reader session))
                     (typed-within-p (session-input session) (max 0 (min 0.05 left))))
         while (plusp left)))
 
 (defun begin-trial (session trial)
-  "Make the robots' names known to Lisp, and open a window if there can be one."
+  "Make the robots' names known to Lisp, and open a window if windows are available."
   (unless (shiftf (open-trial-begun-p trial) t)
-    (call-by-name (current-robot-names))
+    (import-robot-names (current-robot-names))
     (when (display-wanted-p session)
       (announce-display (session-robot) '()))))
 
 (defun run-line-in-trial (session trial)
   (call-outside-trial
    (lambda ()
-     (tell-whereabouts session)
+     (call-whereabouts-hooks session)
      (begin-trial session trial)
      (let ((before (trial-state)))
        (call-guarded session (lambda ()
-                               (when (watched-p session)
+                               (when (can-poll-input-p session)
                                  (loop until (await-typed-line session 1)))
-                               (let ((*while-typing* #'answer-others))
-                                 (next-line-inside session))))
-       (note-if-changed session trial before))
+                               (let ((*while-typing* #'serve-other-threads))
+                                 (run-nested-line session))))
+       (report-changed-trial session trial before))
      (call-guarded session (lambda () (show-messages session)))
      (when (session-over-p session) (leave-open-trial session)))))
 
@@ -153,22 +155,23 @@
     (when (open-trial-progress trial) (end-progress (shiftf (open-trial-progress trial) nil)))
     (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
 
-(defun next-due (trial)
-  "Return when the tick after the one of TRIAL that is due now will be."
+(defun time-of-next-tick (trial)
+  "Return the time, in seconds, of the tick of TRIAL that follows the tick due now."
   (let ((rate (open-trial-rate trial)))
     (if (eq :free rate)
         (seconds-now)
         (+ (max (open-trial-due trial) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
 
 (defun wait-for-tick (session trial)
-  "Wait until the next tick is due in TRIAL. NIL if a line was typed before."
+  "Wait until the next tick is due in TRIAL. Return NIL if a line was typed before the tick was
+due."
   (let ((left (if (eq :free (open-trial-rate trial)) 0 (- (open-trial-due trial) (seconds-now)))))
-    (if (watched-p session)
+    (if (can-poll-input-p session)
         (unless (call-outside-trial (lambda () (await-typed-line session left)))
-          (setf (open-trial-due trial) (next-due trial))
+          (setf (open-trial-due trial) (time-of-next-tick trial))
           t)
         (progn (when (plusp left) (await-time (open-trial-due trial) *simulation*))
-               (setf (open-trial-due trial) (next-due trial))
+               (setf (open-trial-due trial) (time-of-next-tick trial))
                t))))
 
 (defun tick-passes-p (session trial)
@@ -182,7 +185,7 @@
          t)
         ((open-trial-running-p trial) (wait-for-tick session trial))))
 
-(defun trial-gate (session trial)
+(defun make-trial-gate (session trial)
   (lambda (simulation)
     (declare (ignore simulation))
     (when (open-trial-left-p trial) (leave-open-trial session))

@@ -12,8 +12,8 @@
 
 (defstruct (plan-job (:include job) (:copier nil)
                      (:constructor make-plan-job (plan session simulation)))
-  "A plan that the prompt has started. STUCK is a list of two texts, what keeps it from ever
-continuing and what could be done, or NIL."
+  "A plan that the prompt has started. STUCK is a list of two texts, or NIL: what keeps the plan
+from ever continuing, and what could be done."
   (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)
@@ -42,7 +42,8 @@ yet.")
 ;;; A plan may end before BEGIN-PLAN has returned its task.
 
 (defun note-plan-end (task)
-  "Notify the waiting sessions that TASK, a plan, is over. True if the prompt has started it."
+  "Notify the waiting sessions that TASK, a plan, is over. Return true if a prompt has started
+TASK."
   (flet ((started-p (job)
            (if (plan-job-task job)
                (eq task (plan-job-task job))
@@ -59,16 +60,18 @@ yet.")
 
 ;;; What is told.
 
-(defun in-user-words (function)
-  "Return the string that FUNCTION makes, with names and numbers as users would read them."
+(defun call-in-user-syntax (function)
+  "Return the string that FUNCTION makes. Names and numbers in the string are printed as users type
+them."
   (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
     (printing-words () (funcall function))))
 
 (defun user-text (function object)
-  "Return the string that FUNCTION makes of OBJECT, as users would read it, on a line."
-  (cut (one-line (in-user-words (lambda () (funcall function object)))) 300))
+  "Return the string that FUNCTION makes of OBJECT on one line, with names and numbers as users type
+them."
+  (cut (one-line (call-in-user-syntax (lambda () (funcall function object)))) 300))
 
 (defun reason-text (failure)
   (if (eq (type-of failure) 'plan-failure)
@@ -77,12 +80,12 @@ yet.")
               (mapcar #'safe-text (failure-data failure)))
       (condition-text failure)))
 
-(defun verdict-of (job control &rest arguments)
+(defun make-plan-verdict (job control &rest arguments)
   (make-verdict (format nil "~(~A~) ~?" (plan-job-plan job) control arguments)
                 (plan-job-session job)))
 
 (defmacro with-messages-to ((job) &body body)
-  "Run BODY, whose messages belong to the simulation of JOB and to its line."
+  "Run BODY. Messages of BODY belong to the simulation of JOB and to the line that started JOB."
   `(let ((*message-queue* (simulation-messages (plan-job-simulation ,job)))
          (*told-of* (plan-job-asker ,job)))
      ,@body))
@@ -98,37 +101,42 @@ yet.")
   (and (null (session-trial session))
        (or (verdict-p (first (message-items message)))
            (not (or (left-to-program-p message)
-                    (and (waiting-for-plan-p session) (not (of-line-p message)))
-                    (and (others-p message)
+                    (and (waiting-for-plan-p session) (not (about-line-request-p message)))
+                    (and (from-program-p message)
                          (some #'job-verdict-p (jobs-under-way session))))))))
 
 (defun note-failure (job failure)
-  "Make PLANS report FAILURE, of the plan of JOB, in each session that shows it."
+  "Let the line PLANS report FAILURE, of the plan of JOB, in each session that shows the plan's
+run."
   (dolist (session (adjoin (plan-job-session job)
                            (sessions-showing (plan-job-simulation job))))
     (setf (session-failure session) (list failure (plan-job-plan job)))))
 
-(defun tell-end (job)
+(defun report-plan-end (job)
   (let ((result (task-result (plan-job-task job))))
     (with-messages-to (job)
       (case (task-state (plan-job-task job))
-        (:succeeded (message-set (verdict-of job "succeeded: ~A"
-                                             (user-text #'safe-text result))))
+        (:succeeded (message-set (make-plan-verdict job "succeeded: ~A"
+                                                    (user-text #'safe-text result))))
         (:failed (note-failure job result)
-                 (error-set (verdict-of job "failed: ~A. PLANS tells more."
-                                        (string-right-trim "." (user-text #'reason-text result)))))
-        (t (message-set (verdict-of job "was stopped.")))))))
+                 (error-set (make-plan-verdict
+                             job "failed: ~A. PLANS tells more."
+                             (string-right-trim "." (user-text #'reason-text result)))))
+        (t (message-set (make-plan-verdict job "was stopped.")))))))
 
-(defun tell-stuck (job)
-  "Queue a message on what the plan of JOB waits for forever, and what could be done."
+(defun report-stuck-plan (job)
+  "Queue a message that says what the plan of JOB waits for in vain, and what could be done."
   (with-messages-to (job)
     (destructuring-bind (waits advice) (plan-job-stuck job)
       (if (session-patient-p (plan-job-session job))
-          (error-set (verdict-of job "is in a deadlock: it ~A, which nothing will bring about; ~
-                                      it was stopped.~@[ ~A~]" waits advice))
-          (warning-set (verdict-of job "~A, which neither the robot nor time will bring about, ~
-                                        but you may. STOP-PLAN ends it.~@[ ~A~]"
-                                 waits advice))))))
+          (error-set (make-plan-verdict
+                      job "is in a deadlock and was stopped: it ~A, which nothing will bring ~
+                           about.~@[ ~A~]"
+                      waits advice))
+          (warning-set (make-plan-verdict
+                        job "~A. Neither the robot nor time will bring that about, but you may. ~
+                             STOP-PLAN ends the plan.~@[ ~A~]"
+                        waits advice))))))
 
 (defun close-job (job)
   (with-lock (*plan-jobs-lock*) (removef *plan-jobs* job))
@@ -140,14 +148,14 @@ yet.")
 ;;; Deadlocks.
 
 (defun stuck-texts (runner task)
-  "Return in words what TASK of RUNNER waits for, and what could be done, if no plan of RUNNER can
-ever continue; else NIL. Call it while no plan reacts."
+  "If no plan of RUNNER can ever continue, return a list of two texts: what TASK waits for, and what
+could be done. Otherwise return NIL. Call this function while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (let ((tasks (waiting-parts task)))
       (list (user-text (lambda (tasks)
                          (format nil "waits for ~A" (or (text-of-waits tasks) "what cannot come")))
                        tasks)
-            (let ((advice (one-line (in-user-words (lambda () (advice-on-stillness tasks))))))
+            (let ((advice (one-line (call-in-user-syntax (lambda () (advice-on-stillness tasks))))))
               (and (string/= "" advice) (cut advice 1000)))))))
 
 (defun note-if-stuck (job runner)
@@ -155,13 +163,13 @@ ever continue; else NIL. Call it while no plan reacts."
 
 ;;; Live.
 
-(defun tell-if-stuck (job runner)
-  "Find out whether the plan of JOB is stuck; report it, unless it was reported last. Return the
-answer to the last check."
+(defun report-if-stuck (job runner)
+  "Report if the last check has found the plan of JOB stuck, unless that was already reported. Post
+the next check to RUNNER. Return the result of the last check."
   (let ((stuck (plan-job-stuck job)))
     (unless (or (null stuck) (equal stuck (plan-job-told-stuck job)))
       (setf (plan-job-told-stuck job) stuck)
-      (tell-stuck job)
+      (report-stuck-plan job)
       (when (session-patient-p (plan-job-session job))
         (stop-plan runner (plan-job-task job))))
     (ars-magna.rpl:post runner (lambda () (note-if-stuck job runner)))
@@ -172,11 +180,11 @@ answer to the last check."
         until (or (plan-over-p job) (plan-job-forgotten-p job))
         do (cond ((wait-on-semaphore (plan-job-over job) 0.2))
                  ((and (live-p (plan-job-simulation job)) (eq runner (plan-runner-now)))
-                  (setf stuck (tell-if-stuck job runner)))
+                  (setf stuck (report-if-stuck job runner)))
                  (t (return)))
         finally (unless (or (plan-job-forgotten-p job)
                             (and stuck (session-patient-p (plan-job-session job))))
-                  (tell-end job)))
+                  (report-plan-end job)))
   (close-job job))
 
 (defun start-watching-plan (job)
@@ -192,40 +200,40 @@ answer to the last check."
 
 (defun await-plan-headless (job)
   (let ((runner (plan-runner-now)))
-    (await (lambda () (or (plan-over-p job) (note-if-stuck job runner))))
-    (let ((finished-p (cond ((plan-over-p job) (tell-end job) t)
+    (await-test (lambda () (or (plan-over-p job) (note-if-stuck job runner))))
+    (let ((finished-p (cond ((plan-over-p job) (report-plan-end job) t)
                             ((plan-job-stuck job)
-                             (tell-stuck job)
+                             (report-stuck-plan job)
                              (end-plan (plan-job-task job))
                              t))))
       (close-job job)
       (unless finished-p
         (reject-line "~(~A~) has not ended within ~D ticks; it continues."
-                     (plan-job-plan job) *patience*)))))
+                     (plan-job-plan job) *wait-limit*)))))
 
 (defmethod await-job ((job plan-job))
   (cond ((live-p (plan-job-simulation job))
          (loop until (or (wait-a-while (plan-job-told job) 0.2)
-                         (held-up-p (plan-job-simulation job))))
+                         (paused-for-good-p (plan-job-simulation job))))
          (show-messages (plan-job-session job)))
         (t (await-plan-headless job))))
 
 ;;; A run that was rewound has other running plans.
 
-(defun take-up-plan (session task)
-  "Make SESSION wait for TASK, a running plan, as if its PLAN had just started that."
+(defun adopt-plan (session task)
+  "Make SESSION wait for TASK, a running plan, as if SESSION had just started the plan."
   (let ((job (make-plan-job (task-name task) session *simulation*)))
     (setf (plan-job-task job) task)
     (with-lock (*plan-jobs-lock*) (push job *plan-jobs*))
     (push job (session-jobs session))
     (when (live-p *simulation*) (start-watching-plan job))))
 
-(defun take-up-plans (session)
-  "Make SESSION wait for the plans that have replaced its own, whose run was rewound."
+(defun adopt-plans (session)
+  "Make SESSION wait for the plans of the new run that have replaced its plans after a rewind."
   (flet ((forgotten-p (job) (and (plan-job-p job) (plan-job-forgotten-p job))))
     (mapc #'close-job (remove-if-not #'forgotten-p (session-jobs session)))
     (setf (session-jobs session) (remove-if #'forgotten-p (session-jobs session))))
   (dolist (task (plans))
     (when (and (member (task-name task) (session-plans session))
                (not (find task *plan-jobs* :key #'plan-job-task)))
-      (take-up-plan session task))))
+      (adopt-plan session task))))

@@ -3,22 +3,22 @@
 (in-package :ars-magna.cli)
 
 (export '(run-session prompt run-session-apart interrupt-session end-session enter-line
-          at-work-on abandon-session asked-of-others-p))
+          running-line-p abandon-session answerable-by-others-p))
 
 (defun waits-for-time-p (session jobs inbox)
-  "True if time stands still, and something was requested since SESSION had JOBS and the simulation
-INBOX."
+  "True if time stands still and a line has requested something. Before the line, JOBS were the jobs
+of SESSION, and INBOX the waiting requests of the simulation."
   (and *simulation*
        (if (live-p *simulation*) (paused-p *simulation*) (not (headless-p *simulation*)))
        (null (session-trial session))
-       (not (and (eq jobs (session-jobs session)) (eq inbox (requests-waiting))))
-       (requests-waiting)
+       (not (and (eq jobs (session-jobs session)) (eq inbox (waiting-requests))))
+       (waiting-requests)
        t))
 
-(defun do-telling-of-time (session text)
-  "Run TEXT, a line of SESSION. If what it requests waits because time stands still, say so to a
-user at a terminal or window."
-  (let ((jobs (session-jobs session)) (inbox (requests-waiting))
+(defun run-with-time-notice (session text)
+  "Run TEXT, a line of SESSION. Tell a user at a terminal or window if requests of the line wait
+because time stands still."
+  (let ((jobs (session-jobs session)) (inbox (waiting-requests))
         (break-request (first (session-breaks session))))
     (if break-request
         (debug-line session break-request text)
@@ -27,22 +27,22 @@ user at a terminal or window."
       (write-fitted (session-console session)
                     "Time stands still. RESUME continues, STEP 10 passes 10 ticks.~%"))))
 
-(defun begin-line-of (session text)
+(defun record-line-begun (session text)
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (lines-typed (session-input session)) (session-errors session)))
 
-(defun begin-next (session text trouble)
-  "Begin the line TEXT of SESSION; TEXT is an outline if TROUBLE, a condition, says that the line
-is too long. Return it without comments between #| and |#, of any length."
-  (begin-line-of session (if trouble (line-beginning trouble) text))
-  (multiple-value-bind (rest trouble) (without-blocks session text trouble)
+(defun begin-without-comments (session text trouble)
+  "Begin the line TEXT of SESSION, and return TEXT without comments between #| and |#. If the line
+is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-TOO-LONG."
+  (record-line-begun session (if trouble (line-beginning trouble) text))
+  (multiple-value-bind (rest trouble) (without-block-comments session text trouble)
     (check-outline session rest trouble)
-    (unless (eq rest text) (begin-line-of session rest))
+    (unless (eq rest text) (record-line-begun session rest))
     rest))
 
 (defun read-next (session)
   "Return the next line of SESSION, or NIL at the end. For a line that is too long, return an
-outline, and the condition that says so."
+outline and the condition LINE-TOO-LONG."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
@@ -54,63 +54,65 @@ outline, and the condition that says so."
   (setf (session-robot-name session) *prompt-robot*)
   (follow-simulation session))
 
-(defun next-line (session)
+(defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
-  (tell-whereabouts session)
+  (call-whereabouts-hooks session)
   (find-run-and-robot session)
-  (when (session-account session) (account-for-last session))
+  (when (session-account session) (report-last-line session))
   (multiple-value-bind (text trouble) (unless (stopped-p session) (read-next session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
            (unless (session-breaks session) (find-run-and-robot session))
-           (do-telling-of-time session (begin-next session text trouble)))
+           (run-with-time-notice session (begin-without-comments session text trouble)))
           (t (setf (session-over-p session) t
                    (reader-ended-p (session-reader session))
                    (not (session-terminal-p session)))))))
 
-(defun next-line-inside (session)
-  "Call NEXT-LINE while another line still runs, which this does not affect."
-  (let ((*asker* nil) (*told-of* nil)) (next-line session)))
+(defun run-nested-line (session)
+  "Call RUN-NEXT-LINE while another line still runs. Requests of the nested line are not counted for
+the other line."
+  (let ((*asker* nil) (*told-of* nil)) (run-next-line session)))
 
 (defun stopped-p (session)
-  "True if SESSION stops at an error, and there was one when all its requests had ended."
+  "Wait until the requests of SESSION have ended. Return true if SESSION stops at errors and has had
+an error."
   (when (reader-stop-p (session-reader session))
-    (catch-up session)
+    (await-session-commands session)
     (show-messages session)
     (plusp (session-errors session))))
 
-(defun account-for-last (session)
-  "Wait until everything requested by the last line of SESSION is done, and report that; or that it
-waits, since time stands still."
-  (catch-up session)
+(defun report-last-line (session)
+  "Wait until all requests of the last line of SESSION are done, and report the end of the line. If
+time stands still, report that the line waits."
+  (await-session-commands session)
   (show-messages session)
   (note-line-ended (session-account session) (session-errors session)
-                   (end-of-jobs session)))
+                   (pending-outcome-function session)))
 
 (defun run-lines (session)
   "Run the files and lines of SESSION until it is over, or continues with another robot."
   (loop while (reader-files (session-reader session))
         do (let ((file (pop (reader-files (session-reader session)))))
-             (call-guarded session (lambda () (load-lisp (file-called file))))
+             (call-guarded session (lambda () (load-lisp (find-lisp-file file))))
              (setf (session-lisp-p session) t)))
   (loop until (or (session-over-p session) (session-next-robot session))
-        do (call-guarded session (lambda () (next-line session)))
+        do (call-guarded session (lambda () (run-next-line session)))
            (call-guarded session (lambda () (show-messages session))))
-  (when (session-account session) (call-guarded session (lambda () (account-for-last session))))
+  (when (session-account session) (call-guarded session (lambda () (report-last-line session))))
   (unless (or (session-terminal-p session) (session-next-robot session))
     (report-unfinished session)))
 
 (defun report-unfinished (session)
-  "Report if SESSION, without a user, has requested something that waits since time stands still."
+  "Report an error if requests of SESSION, which has no user, wait because time stands still."
   (when (and (unfinished-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
-    (complain session (format nil "Time stands still, so not all requests have ended. RESUME ~
-                                   continues."))
+    (report-session-error
+     session (format nil "Time stands still, so not all requests have ended. RESUME continues."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))
 
 (defun call-with-streams (session function)
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
-         (*program-reads* (lambda () (report-asking (session-account session))))
+         (*program-reads* (lambda () (report-program-input (session-account session))))
          (*completer* (lambda (text point) (completions-in session text point)))
          (*waits-while-paused-p* (session-terminal-p session))
          (*default-robot-function* #'session-robot)
@@ -119,7 +121,7 @@ waits, since time stands still."
     (funcall function)))
 
 (defun run-session (session)
-  "Read and run lines until QUIT or the end of input. Return SESSION."
+  "Read and run lines of SESSION until QUIT or the end of input. Return SESSION."
   (flet ((run ()
            (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session))
                                              (or (reader-package (session-reader session))
@@ -133,17 +135,18 @@ waits, since time stands still."
 ;; A stream of WITH-OUTPUT-TO-STRING lies on this thread's stack: written to by the simulator's
 ;; thread after its extent, it would spoil whatever is there then.
 (defun release-streams (session output)
-  "Stop writing for SESSION, which is over, to OUTPUT, which its user may close now. Other sessions
-show its pending messages."
+  "Stop writing to OUTPUT, which a user may close now that SESSION is over. Other sessions show the
+pending messages of SESSION."
   (with-lock (*showing-lock*) (setf (session-abandoned-p session) t))
   (unless (eq output (session-console session)) (discard-output (session-console session))))
 
 (defun prompt (&rest options &key input (output *standard-output*) batch patient echo lines color)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
-QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT,
-or headless, each command completes before the next is read; BATCH is that without a prompt; with
-ECHO, lines are shown as they are read; the list LINES is done first. COLOR is :AUTO (on a terminal,
-unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A, E)."
+QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT, or
+headless, each command completes before the next line is read. BATCH is PATIENT without a prompt.
+With ECHO, lines are shown as they are read. The lines in the list LINES run first. COLOR is :AUTO
+(on a terminal, unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A,
+E)."
   (declare (ignore input batch patient echo lines color))
   (let ((session (apply #'make-session options)))
     (in-any-case
@@ -156,8 +159,8 @@ unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual
 ;;; Each has its own thread, robot and current simulation.
 
 (defun run-session-apart (session simulation robot-name)
-  "Read lines of SESSION and run them for the robot ROBOT-NAME of SIMULATION, in this thread, until
-QUIT or the end of its input, beside other sessions. Return SESSION."
+  "Read and run lines of SESSION in this thread, beside other sessions, until QUIT or the end of
+input. The lines command the robot ROBOT-NAME of SIMULATION. Return SESSION."
   (let ((*session* nil)
         (*prompt-robot* robot-name)
         (*simulation* simulation)
@@ -172,8 +175,8 @@ QUIT or the end of its input, beside other sessions. Return SESSION."
 ;;; What other threads do to a session.
 
 (defun interrupt-own-line ()
-  "End the running line of this thread's session, if there is one. A break in a session whose user
-is lost is not ended: others are asked, as soon as the session is over."
+  "End the running line of this thread's session, if there is one. Do not end a break in a session
+whose user is lost: users of other sessions are asked when the session is over."
   (when (and *session* (not (and *asking-p* (session-abandoned-p *session*))))
     (handle-interrupt)))
 
@@ -185,15 +188,15 @@ is lost is not ended: others are asked, as soon as the session is over."
   (values))
 
 (defun abandon-session (session)
-  "Note that SESSION ends because its user is lost, as when a window is lost, and not by QUIT:
-other sessions get its questions and its run's messages. Return nothing."
+  "Record that SESSION ends because its user is lost, for example with a window, and not by QUIT.
+Other sessions then get the questions of SESSION and the messages of its run. Return nothing."
   (setf (session-abandoned-p session) t)
   (stop-listening session)
   (values))
 
-(defun asked-of-others-p (session)
-  "True if others can answer a break in the thread of SESSION, which is lost."
-  (and (break-state-own (session-break-state session)) (sessions-to-answer-for session) t))
+(defun answerable-by-others-p (session)
+  "True if users of other sessions can answer a break of SESSION, whose user is lost."
+  (and (break-state-own (session-break-state session)) (substitute-sessions session) t))
 
 (defun end-session (session)
   "End SESSION, from another thread. A running line is interrupted; a line being typed, or typed
@@ -206,8 +209,8 @@ ahead, is not run."
   "Enter TEXT as a line of SESSION; the line being typed stays."
   (send-key (session-input session) (list :entry text)))
 
-(defun at-work-on (session)
-  "True if a line runs in SESSION: none is being typed."
+(defun running-line-p (session)
+  "True if SESSION is running a line and not waiting for input."
   (and (session-thread session)
        (not (session-over-p session))
        (not (being-typed-p (session-input session)))))

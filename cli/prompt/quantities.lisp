@@ -28,23 +28,24 @@
     (:pace   "a speed by the clock" (nil "m/s" "km/h" "cells/s" "rad/s" "deg/s")))
   "Lists (dimension words (factor name...)...): each unit's value in the simulator's units.")
 
-(defparameter *other-ways*
-  '((:time   :length "GO 5 m drives so far.")
-    (:time   :clock  "Time is counted in ticks; RATE says how many pass in a second.")
-    (:speed  :pace   "Time is counted in ticks; RATE says how many pass in a second.")
-    (:length :time   "GO-FORWARD 5 drives for so many ticks.")
-    (:angle  :length "GO 5 m drives so far."))
-  "Lists (wanted said sentence): advice for a quantity of the wrong dimension.")
+(defparameter *dimension-advice*
+  '((:time   :length "GO 5 m drives 5 metres.")
+    (:time   :clock  "Time is counted in ticks; RATE says how many ticks pass in a second.")
+    (:speed  :pace   "Time is counted in ticks; RATE says how many ticks pass in a second.")
+    (:length :time   "GO-FORWARD 5 drives for 5 ticks.")
+    (:angle  :length "GO 5 m drives 5 metres."))
+  "Lists (expected-dimension typed-dimension sentence): advice for a quantity of the wrong
+dimension.")
 
 (defun dimension-of (type)
   (second (find type *quantities* :key #'first :test #'same-name-p)))
 
 (defun quantity-examples (type)
-  "Return how to type an argument of TYPE, such as \"pi/2 or 90 deg\"; NIL if it is no quantity."
+  "Return how to type an argument of TYPE, such as \"pi/2 or 90 deg\"; NIL if TYPE is no quantity."
   (third (find type *quantities* :key #'first :test #'same-name-p)))
 
 (defun find-unit (name)
-  "Return a list (dimension factor) for the unit called NAME, or NIL."
+  "Return a list (dimension factor) for the unit named NAME, or NIL."
   (loop for (dimension nil . units) in *units*
         do (loop for (factor . names) in units
                  when (find name names :test #'string-equal)
@@ -52,40 +53,42 @@
 
 ;;; A unit joined to the number is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
 
-(defun plain-number-in (text)
+(defun parse-plain-number (text)
   "Return the number that TEXT, of digits, signs, points and slashes, stands for, or NIL."
   (let ((*read-eval* nil))
     (let ((value (ignore-errors (read-from-string text))))
       (and (realp value) value))))
 
 (defun leading-number (text)
-  "Return the number that TEXT begins with, 1 or -1 if it has only a sign or none, and where it
-ends."
+  "Return the number at the beginning of TEXT, and the position of its end. If TEXT begins without
+digits, the number is 1, or -1 after a minus sign."
   (let ((end (or (position-if-not (lambda (char) (find char "0123456789.+-/")) text)
                  (length text))))
     (values (cond ((zerop end) 1)
                   ((find (subseq text 0 end) '("+" "-") :test #'string=)
                    (if (char= #\- (char text 0)) -1 1))
-                  (t (plain-number-in (subseq text 0 end))))
+                  (t (parse-plain-number (subseq text 0 end))))
             end)))
 
-(defun pi-and-rest (text)
-  "If TEXT begins with PI, or PI/ and a number, return its value, and what follows."
+(defun parse-pi (text)
+  "If TEXT begins with PI, or PI/ and a number, return the value of that and the rest of TEXT.
+Otherwise return 1 and TEXT."
   (if (starts-with-subseq "PI" text)
       (let* ((over-p (starts-with-subseq "PI/" text))
              (start (if over-p 3 2))
              (end (or (and over-p (position-if-not #'digit-char-p text :start start))
                       (if over-p (length text) start)))
-             (divisor (if over-p (plain-number-in (subseq text start end)) 1)))
+             (divisor (if over-p (parse-plain-number (subseq text start end)) 1)))
         (and divisor (/= 0 divisor) (values (/ pi divisor) (subseq text end))))
       (values 1 text)))
 
 (defun joined-quantity (name)
-  "Return the number and the unit, a list or NIL, in NAME, a symbol's; or NIL."
+  "Return the number and the unit, a list or NIL, in NAME, the name of a symbol such as 90DEG.
+Return NIL if NAME is no quantity."
   (multiple-value-bind (number end) (leading-number name)
     (when (and number (< end (length name)))
       (multiple-value-bind (factor rest)
-          (pi-and-rest (string-left-trim "*" (string-upcase (subseq name end))))
+          (parse-pi (string-left-trim "*" (string-upcase (subseq name end))))
         (let ((unit (and rest (string/= rest "") (find-unit rest))))
           (when (and factor (or unit (equal rest "")) (or (plusp end) (string= rest "")))
             (values (* number factor) unit)))))))
@@ -93,7 +96,8 @@ ends."
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, that follows POSITION in TEXT after blanks, and where it ends; or NIL."
+  "Return the unit, a list, that follows POSITION in TEXT after blanks, and the position of its end.
+Return NIL if no unit follows."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))
@@ -103,27 +107,27 @@ ends."
   (loop for (nil . names) in (cddr (assoc dimension *units*))
         append names))
 
-(defun words-for (dimension)
-  "Return what a quantity of DIMENSION is called, such as \"an angle\"."
+(defun dimension-text (dimension)
+  "Return the words for a quantity of DIMENSION, such as \"an angle\"."
   (second (assoc dimension *units*)))
 
-(defun in-own-units (number unit dimension said reject)
-  "Return NUMBER UNITs in the simulator's units of DIMENSION. If they have another dimension, call
-REJECT, a function, with a message on what was SAID, in words."
+(defun convert-to-own-units (number unit dimension said reject)
+  "Convert NUMBER from UNIT to the simulator's unit of DIMENSION. If UNIT has another dimension,
+call the function REJECT with a message. SAID is the text that was typed."
   (destructuring-bind (&optional (other dimension) (factor 1)) unit
     (unless (eq dimension other)
-      (funcall reject (format nil "~A is ~A, and what is wanted is ~A.~@[ ~A~]"
-                              said (words-for other) (words-for dimension)
+      (funcall reject (format nil "~A is ~A, but the argument is ~A.~@[ ~A~]"
+                              said (dimension-text other) (dimension-text dimension)
                               (third (find-if (lambda (way)
                                                 (and (eq dimension (first way))
                                                      (eq other (second way))))
-                                              *other-ways*)))))
+                                              *dimension-advice*)))))
     (* number factor)))
 
 (defun read-quantity (datum text start end type reject)
-  "Return the quantity that begins with DATUM, read in TEXT from START to END, as an argument of
-TYPE, and where it ends. Return DATUM if it is no quantity, or TYPE has none. REJECT is called with
-a message if the unit is wrong."
+  "Return the quantity that begins with DATUM, as an argument of TYPE, and the position of its end.
+DATUM was read in TEXT from START to END. Return DATUM if DATUM or TYPE is no quantity. If the unit
+is wrong, call the function REJECT with a message."
   (let ((dimension (dimension-of type)))
     (multiple-value-bind (number unit)
         (cond ((null dimension) nil)
@@ -133,6 +137,6 @@ a message if the unit is wrong."
           (values datum end)
           (multiple-value-bind (next-unit next-end) (if unit nil (unit-after text end))
             (let ((end (or next-end end)))
-              (values (in-own-units number (or unit next-unit) dimension
-                                    (subseq text start end) reject)
+              (values (convert-to-own-units number (or unit next-unit) dimension
+                                            (subseq text start end) reject)
                       end)))))))

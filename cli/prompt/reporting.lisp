@@ -7,11 +7,12 @@
 ;;; account, NIL stands for it and nothing is reported.
 
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
-  "Where a session is in FILE, the name of a script or NIL. The running line, TEXT, has the number
-LINE, or 0 if an option has caused it; ERRORS is the number of errors before it. CONSOLE is where
-objects are written, or NIL. WAITING are earlier lines whose work waits for time to pass, the newest
-first. PLANS are pairs of an asker and the line that has begun that plan. TROUBLE-LINE is the number
-of the faulty line in a running form, or NIL if that is not known."
+  "A record of which line a session is running. FILE is the name of a script or NIL. The running
+line has the text TEXT and the number LINE, which is 0 for an option. ERRORS is the number of errors
+before that line. CONSOLE is the console that gets objects, or NIL. WAITING are earlier lines whose
+work waits for time to pass, the newest first. PLANS holds pairs of a plan's asker and the number of
+the line that has begun the plan. TROUBLE-LINE is the number of the faulty line in a running form,
+or NIL if the number is not known."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (line 0 :type fixnum)
@@ -21,46 +22,48 @@ of the faulty line in a running form, or NIL if that is not known."
   (plans '() :type list)
   (trouble-line nil :type (or null fixnum)))
 
-(defun reports-p (account)
+(defun reports-objects-p (account)
   (and account (account-console account) t))
 
 (defun current-tick ()
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
-  "Write an object of TYPE, a string, with the plist PROPERTIES, and return T, if ACCOUNT reports."
-  (when (reports-p account)
+  "If ACCOUNT reports objects, write an object of TYPE, a string, with the plist PROPERTIES, and
+return T."
+  (when (reports-objects-p account)
     (with-console (stream (account-console account))
       (write-object (list* :type type properties) stream))
     t))
 
-(defun line-under-way (account)
-  "Return the number of the running line; NIL before the first, and for an option."
+(defun last-line-number (account)
+  "Return the number of the running line of ACCOUNT; NIL before the first line, and for an option."
   (and (plusp (account-line account)) (account-line account)))
 
-(defun report-message (account kind text &optional (line (line-under-way account)))
+(defun report-message (account kind text &optional (line (last-line-number account)))
   "Report a message of KIND with TEXT, caused by LINE."
   (report-object account "message" :kind kind :text text :tick (current-tick) :line line))
 
 (defun report-values (account texts)
-  (when (reports-p account)
+  (when (reports-objects-p account)
     (dolist (text texts t) (report-object account "value" :text text))))
 
-(defun line-done-now (account)
-  "Return the number of the running line, or NIL: ACCOUNT may be NIL, or between lines."
-  (and account (account-text account) (line-under-way account)))
+(defun running-line-number (account)
+  "Return the number of the running line of ACCOUNT; NIL if ACCOUNT is NIL or no line is running."
+  (and account (account-text account) (last-line-number account)))
 
-(defun line-of-trouble (account)
-  "Return the number of the invalid line, of the form or line that is being run; or NIL: ACCOUNT may
-be NIL, or between lines."
-  (let ((line (line-done-now account)))
+(defun faulty-line-number (account)
+  "Return the number of the invalid line in the form or line that is being run; NIL if ACCOUNT is
+NIL or no line is running."
+  (let ((line (running-line-number account)))
     (and line (or (account-trouble-line account) line))))
 
 (defun note-trouble-line (account line)
   (when account (setf (account-trouble-line account) line)))
 
-(defun placed-text (account text &optional (line (line-done-now account)))
-  "Return TEXT, on an error in LINE, after the place of that line if it is of a script."
+(defun text-with-location (account text &optional (line (running-line-number account)))
+  "Return TEXT, which is about an error in LINE. If LINE is in a script, begin with the name of the
+script and the line number."
   (if (and account (account-file account) line)
       (format nil "~A, line ~D: ~A" (account-file account) line text)
       text))
@@ -68,8 +71,8 @@ be NIL, or between lines."
 ;;; Lines.
 
 (defun note-line-begun (account text line errors)
-  "Note that the line with the number LINE begins, after ERRORS errors. TEXT is what it says, or
-NIL if it does nothing."
+  "Record that the line with the number LINE begins, after ERRORS errors. TEXT is the text of the
+line, or NIL if the line does nothing."
   (when account
     (setf (account-line account) line
           (account-text account) text
@@ -77,7 +80,7 @@ NIL if it does nothing."
           (account-errors account) errors)))
 
 (defun report-line (account type line text &rest properties)
-  "Report, as an object of TYPE, on the line TEXT with the number LINE, or NIL."
+  "Write an object of TYPE about the line TEXT. LINE is the number of the line, or NIL."
   (apply #'report-object account type :line line :text text
          (append properties (list :tick (current-tick)))))
 
@@ -97,13 +100,13 @@ NIL if it does nothing."
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
 (defun note-line-ended (account errors end)
-  "Note, and report, that all requests of the running line are done, after ERRORS errors so far. If
-END is not NIL, they wait for time to pass: END returns NIL until they are done, and then :OK or
-:FAILED."
+  "Record and report that all requests of the running line are done, after ERRORS errors so far. If
+requests still wait for time to pass, END is a function: it returns NIL until the requests are done,
+and then :OK or :FAILED. Otherwise END is NIL."
   (when account (report-waiting-lines account))
   (when (and account (account-text account))
     (let ((text (string-trim " " (shiftf (account-text account) nil)))
-          (line (line-under-way account))
+          (line (last-line-number account))
           (good-p (= errors (account-errors account))))
       (cond (end (push (list line text good-p end) (account-waiting account))
                  (report-line account "waiting" line text))
@@ -114,8 +117,8 @@ END is not NIL, they wait for time to pass: END returns NIL until they are done,
                              (find (cdr plan) (account-waiting account) :key #'first))
                            (account-plans account))))))
 
-(defun report-asking (account)
-  (when account (report-object account "asking" :line (line-under-way account))))
+(defun report-program-input (account)
+  (when account (report-object account "asking" :line (last-line-number account))))
 
 ;;;; Who asks
 
@@ -123,60 +126,62 @@ END is not NIL, they wait for time to pass: END returns NIL until they are done,
 ;;; lines are counted, each has its own asker text: equal to that of others, but another
 ;;; object.
 
-(define-constant +asker+ "the prompt" :test #'string=
-  :documentation "Who asks for what lines ask for.")
+(define-constant +prompt-asker+ "the prompt" :test #'string=
+  :documentation "The text by which messages name lines of the prompt as the asker of a request.")
 
 ;; Equal to that, but another object: an error of the line's requests is the line's.
-(defparameter *line-asker* (copy-seq +asker+)
-  "The asker of lines that are not Lisp, if lines are not counted.")
+(defparameter *line-asker* (copy-seq +prompt-asker+)
+  "The asker of requests that lines other than Lisp make, in sessions that do not count lines.")
 
-(defvar *askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each asker of a counted line: a list of its account, its number, and true if not Lisp.")
+(defvar *lines-of-askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
+  "A table from the asker of each counted line to a list: account, line number, and true unless the
+line is Lisp.")
 
-(defun asker-for (account &key typed-p (text +asker+))
-  "Return the asker for the running line of ACCOUNT, or NIL: a text equal to TEXT. TYPED-P is true
-for a line that is not Lisp."
-  (cond ((and account (line-under-way account))
+(defun asker-for (account &key typed-p (text +prompt-asker+))
+  "Return the asker, a string equal to TEXT, for requests of the running line of ACCOUNT, which may
+be NIL. TYPED-P is true for a line that is not Lisp."
+  (cond ((and account (last-line-number account))
          (let ((asker (copy-seq text)))
-           (setf (gethash asker *askers*) (list account (account-line account) typed-p))
+           (setf (gethash asker *lines-of-askers*) (list account (account-line account) typed-p))
            asker))
         (typed-p *line-asker*)
         (t text)))
 
 (defun line-asker-p (asker)
-  "True if ASKER, of a message, belongs to lines that are not Lisp."
-  (or (eq *line-asker* asker) (third (gethash asker *askers*))))
+  "True if ASKER, the asker of a message, belongs to lines that are not Lisp."
+  (or (eq *line-asker* asker) (third (gethash asker *lines-of-askers*))))
 
-(defun of-line-p (message)
+(defun about-line-request-p (message)
   "True if MESSAGE is about a request of a counted line itself, not of a plan."
   (let ((asker (message-asker message)))
-    (and (equal asker +asker+) (gethash asker *askers*) t)))
+    (and (equal asker +prompt-asker+) (gethash asker *lines-of-askers*) t)))
 
 (defun lisp-asker-p (asker)
-  "True if ASKER, of a request, belongs to Lisp in lines."
-  (and (equal asker +asker+) (not (line-asker-p asker))))
+  "True if ASKER, the asker of a request, belongs to Lisp in lines."
+  (and (equal asker +prompt-asker+) (not (line-asker-p asker))))
 
-(defun of-lisp-in-line-p (asker account)
-  "True if ASKER, of a request, belongs to Lisp in the running line of ACCOUNT."
-  (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
+(defun asked-by-lisp-of-line-p (asker account)
+  "True if ASKER, the asker of a request, belongs to Lisp in the running line of ACCOUNT."
+  (destructuring-bind (&optional whose line typed-p) (gethash asker *lines-of-askers*)
     (and (eq whose account) (eql line (account-line account)) (not typed-p))))
 
 (defun note-plan-of-line (account plan)
-  (when account (push (cons (asker-note plan) (line-under-way account)) (account-plans account))))
+  (when account (push (cons (asker-note plan) (last-line-number account)) (account-plans account))))
 
 (defun line-of-message (account message)
-  "Return the number of the line that caused MESSAGE, or of the running one; ACCOUNT may be NIL."
+  "Return the number of the line that caused MESSAGE, or else of the running line; NIL if ACCOUNT is
+NIL."
   (when account
     (let* ((asker (message-asker message))
            (plan (assoc asker (account-plans account) :test #'equal)))
-      (destructuring-bind (&optional whose line typed-p) (gethash asker *askers*)
+      (destructuring-bind (&optional whose line typed-p) (gethash asker *lines-of-askers*)
         (declare (ignore typed-p))
         (cond ((eq whose account) line)
               (plan (rest plan))
-              (t (line-under-way account)))))))
+              (t (last-line-number account)))))))
 
 (defun report-messages (account messages)
-  (when (reports-p account)
+  (when (reports-objects-p account)
     (dolist (message messages t)
       (report-message account (message-kind message) (message-text message)
                       (line-of-message account message)))))

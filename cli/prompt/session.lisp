@@ -8,7 +8,7 @@
 (defstruct (break-request (:constructor make-break-request (condition restarts thread sessions))
                           (:copier nil))
   "A program that has broken and waits in THREAD until the user of one of SESSIONS says how to
-continue. CALL is the function that it is to call next."
+continue. CALL is the function that THREAD is to call next."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
@@ -19,45 +19,46 @@ continue. CALL is the function that it is to call next."
   (posted (make-semaphore "call posted") :read-only t)
   (done (make-semaphore "call done") :read-only t))
 
-(defun restarts-within (condition)
-  "Return the restarts for CONDITION up to the one that ends the line: of each name the innermost."
+(defun restarts-of-line (condition)
+  "Return the restarts for CONDITION, from the innermost to the restart that ends the line. Of
+restarts with the same name, include only the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
          (last (position 'end-line all :key #'restart-name)))
     (remove-duplicates (subseq all 0 (and last (1+ last))) :test #'string=
                        :key #'restart-name :from-end t)))
 
-(defun rank (restart condition)
-  "Return a number for RESTART: the lower, the more likely it is what the user wants."
+(defun restart-rank (restart condition)
+  "Return a number for RESTART: the lower the number, the more likely the user wants RESTART."
   (let ((first-names (if (typep condition 'serious-condition)
                          '("ABORT" "RETRY" "STOP-SIMULATOR")
                          '("ANSWER" "CONTINUE"))))
     (or (position (restart-name restart) first-names :test #'string=) (length first-names))))
 
-(defparameter *asking-restarts*
+(defparameter *restarts-with-value*
   '("USE-VALUE" "STORE-VALUE" "RETURN-VALUE" "CALL-FORM" "REPLACE-FUNCTION" "SPECIFY-PACKAGE"
     "USE-PACKAGE" "RENAME" "ANSWER")
-  "The names of restarts that ask for their values.")
+  "The names of restarts that ask the user for a value.")
 
-(defun restart-asks-p (restart)
-  (member (restart-name restart) *asking-restarts* :test #'string=))
+(defun restart-needs-value-p (restart)
+  (member (restart-name restart) *restarts-with-value* :test #'string=))
 
 (defun restarts-to-offer (condition)
   "Return the restarts for CONDITION that a user can choose, the most likely first."
-  (stable-sort (restarts-within condition)
-               #'< :key (lambda (restart) (rank restart condition))))
+  (stable-sort (restarts-of-line condition)
+               #'< :key (lambda (restart) (restart-rank restart condition))))
 
 (defun broken-here-p (break-request)
   (eq (break-request-thread break-request) (current-thread)))
 
-(defun break-words (condition)
+(defun break-condition-text (condition)
   "Return the text of CONDITION: on one line, except the stack of a plan that has stopped."
   (if (plan-break-p condition)
       (visible (condition-text condition))
       (complaint-text (condition-text condition))))
 
 (defstruct (break-state (:copier nil))
-  "The breaks that wait for the user of THREAD: OWN has broken in that thread, which reads lines for
-it, or is NIL; OTHERS in other threads, the oldest first."
+  "The breaks that wait for the user of the prompt in THREAD. OWN is the break in THREAD itself, or
+NIL. OTHERS are the breaks in other threads, the oldest first."
   (thread nil)
   (own nil :type (or null break-request))
   (others '() :type list))
@@ -65,7 +66,7 @@ it, or is NIL; OTHERS in other threads, the oldest first."
 ;;;; Sessions
 
 (defstruct (reader (:copier nil))
-  "Where a session's lines come from."
+  "The source of a session's lines."
   (input *standard-input* :type stream :read-only t)
   ;; Files to load, and lines to do, before any is read.
   (files '() :type list)
@@ -91,7 +92,7 @@ it, or is NIL; OTHERS in other threads, the oldest first."
 (defun note-robot (robot options)
   (declare (ignore options))
   (setf *prompt-robot* (robot-name robot))
-  (call-by-name (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
+  (import-robot-names (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
 
 (defstruct (session (:include listener) (:constructor %make-session) (:copier nil))
   "A running prompt: it runs the lines of READER, and shows their messages."
@@ -102,7 +103,7 @@ it, or is NIL; OTHERS in other threads, the oldest first."
   ;; A function to call before each line is read, outside of trials and forks, or NIL: it makes sure
   ;; that the right robot is commanded, as a window does for its own.
   (place nil :type (or null function) :read-only t)
-  ;; The run that it was in when it last read a line; see TELL-WHEREABOUTS.
+  ;; The run that it was in when it last read a line; see CALL-WHEREABOUTS-HOOKS.
   (whereabouts nil)
   ;; The trial that it is in, or NIL, and how many nested forks it is in.
   (trial nil)
@@ -126,12 +127,12 @@ it, or is NIL; OTHERS in other threads, the oldest first."
 
 (setf (documentation 'session-errors 'function)
       "Return the number of errors so far: invalid lines, failed plans, and error messages, except
-those of a plan that continues."
+error messages of a plan that continues."
       (documentation 'session-quiet-p 'function)
       "True if messages from commands of plans and programs are hidden. Can be set.")
 
 (defun session-input (session)
-  "Return the stream that lines are read from."
+  "Return the stream from which SESSION reads lines."
   (reader-input (session-reader session)))
 
 (defun session-batch-p (session) (reader-batch-p (session-reader session)))
@@ -139,12 +140,13 @@ those of a plan that continues."
 (defun make-session (&key (input *standard-input*) (output *standard-output*) batch
                        (patient batch) echo files lines account stop (color :auto)
                        place package)
-  "Return a session that loads FILES, runs the list LINES, then reads others from INPUT, and writes
-to OUTPUT. With BATCH, it shows no prompt; if PATIENT, as a batch is, each command completes before
-the next is read; with ECHO, it shows what it reads. ACCOUNT, if any, is an account of its lines.
-With STOP, it ends at the first error in them. PLACE, if any, is called before each line. Lines are
-read in PACKAGE, by default ARS-USER. COLOR is :AUTO, :ALWAYS or :NEVER; :AUTO writes in colours on
-a terminal, unless the environment has NO_COLOR."
+  "Return a session that loads FILES, runs the lines in the list LINES, then reads lines from INPUT,
+and writes to OUTPUT. With BATCH, the session shows no prompt. If PATIENT, by default in a batch,
+each command completes before the next line is read. With ECHO, lines are shown as they are read.
+ACCOUNT, if any, records the running line. With STOP, the session ends at the first error in a line.
+PLACE, if any, is a function to call before each line. Lines are read in PACKAGE, by default
+ARS-USER. COLOR is :AUTO, :ALWAYS or :NEVER; :AUTO writes in colours on a terminal, unless the
+environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :console console :terminal-p (typed-by-hand-p input)
@@ -160,14 +162,15 @@ a terminal, unless the environment has NO_COLOR."
   "Return the breaks in other threads that wait for SESSION, the oldest first."
   (break-state-others (session-break-state session)))
 
-(defun breaks-awaiting (session)
-  "Return the breaks that wait for SESSION, the one that is asked about first."
+(defun breaks-for-session (session)
+  "Return the breaks that wait for SESSION. The first break is the one that the user is asked
+about."
   (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
     (cond ((null own) others)
           ((break-request-told-p own) (cons own others))
           (t (append others (list own))))))
 
-(defun check-run ()
+(defun check-run-not-over ()
   (when (and *simulation* (simulation-over *simulation*))
     (let ((name (simulation-name *simulation*)))
       (reject-line "The run in ~(~A~) is over: ~A. ~:[WORLD shows where you can go~;~
@@ -176,13 +179,14 @@ a terminal, unless the environment has NO_COLOR."
                    (and (find-map name nil) name)))))
 
 (defun robot-commanded ()
-  "Return the robot of the current simulation that has the name of the one that the prompt
-commands, or NIL. A simulation that Lisp at the prompt runs itself may have none."
+  "Return the robot of the current simulation with the name *PROMPT-ROBOT*, or NIL. A simulation
+that Lisp at the prompt runs may have no such robot."
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
 
 (defun session-robot ()
-  "Return the robot that the prompt commands. Signals BAD-LINE if there is none or its run is over."
-  (check-run)
+  "Return the robot that the prompt commands. Signals BAD-LINE if there is no robot, or if the run
+is over."
+  (check-run-not-over)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (and robots (robot-commanded))
         (first robots)
@@ -191,11 +195,11 @@ commands, or NIL. A simulation that Lisp at the prompt runs itself may have none
 (defun size-of-window (session)
   (funcall (or (console-window (session-console session)) #'window-size)))
 
-(defun watched-p (session)
+(defun can-poll-input-p (session)
   "True if SESSION has a user at a terminal or window, and can check for typed input."
   (and (session-terminal-p session)
        (typep (source-of (session-input session)) '(or descriptor-stream queued-octets))))
 
 (defun display-wanted-p (session)
-  "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY says so."
+  "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY reports it."
   (and (session-terminal-p session) *display-opener* t))

@@ -14,33 +14,34 @@
 (defun defined-p (symbol)
   (or (boundp symbol) (fboundp symbol)))
 
-(defun other-robot-p (symbol)
+(defun robot-of-other-world-p (symbol)
   (and (not (eq (symbol-package symbol) (user-package)))
        (boundp symbol)
        (robot-p (symbol-value symbol))))
 
-(defun call-by-its-name (name)
-  "Import NAME, a robot's variable, into ARS-USER, unless its name means something else there."
+(defun import-robot-name (name)
+  "Import NAME, a robot's variable, into ARS-USER, unless ARS-USER defines the name otherwise."
   (multiple-value-bind (known status) (find-symbol (symbol-name name) (user-package))
     (unless (eq known name)
       ;; A symbol that has only been read, or is a robot's of another world, is replaced.
       (when (and (member status '(:internal :external))
-                 (or (not (defined-p known)) (other-robot-p known)))
+                 (or (not (defined-p known)) (robot-of-other-world-p known)))
         (unintern known (user-package))
         (setf status nil))
       (unless status (import (list name) (user-package))))))
 
-(defun call-by-name (names)
-  (mapc #'call-by-its-name names))
+(defun import-robot-names (names)
+  (mapc #'import-robot-name names))
 
-(defun with-own-name (form)
-  "Return FORM, with a name of ARS-USER's own if it would redefine another world's robot."
+(defun replace-robot-symbol (form)
+  "Return FORM. If FORM is a DEFROBOT that would redefine a robot of another world, replace the
+robot's name by a new symbol of ARS-USER."
   (if (and (consp form)
            (eq 'defrobot (first form))
            (consp (rest form))
            (symbolp (second form))
            (eq (second form) (find-symbol (symbol-name (second form)) (user-package)))
-           (other-robot-p (second form)))
+           (robot-of-other-world-p (second form)))
       (destructuring-bind (operator name &rest clauses) form
         (unintern name (user-package))
         (list* operator (intern (symbol-name name) (user-package)) clauses))
@@ -52,7 +53,8 @@
 ;;; Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun package-of-caller ()
-  "Return the package for a prompt opened here: the current one if it uses the simulator's."
+  "Return the package for a prompt opened here: the current package if it uses the simulator's,
+otherwise ARS-USER."
   (if (eq 'simulator (find-symbol (string 'simulator) *package*))
       *package*
       (user-package)))
@@ -69,14 +71,15 @@
 ;;; loaded.
 
 (defun load-lisp (path)
-  "Load the Lisp file at PATH as users write it: in ARS-USER and Nisp's syntax, unless it says
-otherwise. Signals BAD-LINE if it is something else."
+  "Load the Lisp file at PATH in the package ARS-USER and Nisp's syntax, unless the file says
+otherwise. Signals BAD-LINE if the file is not Lisp."
   (check-lisp-file path)
   (call-with-syntax 'single-float
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 
 (defun blueprints-defined-by (function)
-  "Call FUNCTION. Return, in order, the blueprints that it defined and that are still defined."
+  "Call FUNCTION. Return, in order, the blueprints that FUNCTION defined and that are still
+defined."
   (let* ((defined '())
          (*definition-listener* (lambda (object) (push object defined))))
     (funcall function)
@@ -84,8 +87,8 @@ otherwise. Signals BAD-LINE if it is something else."
       (remove-if-not (lambda (object) (member object blueprints)) (reverse defined)))))
 
 (defun load-world (path)
-  "Load the Lisp file at PATH. Return the names of the robots that it defines, in its order. Signals
-BAD-LINE if there are none."
+  "Load the Lisp file at PATH. Return the names of the robots that the file defines, in order.
+Signals BAD-LINE if the file defines no robots."
   (or (mapcar #'blueprint-name (blueprints-defined-by (lambda () (load-lisp path))))
       (reject-line "~A defines no robot; a world's file has a DEFROBOT."
                    (native-name path))))
@@ -96,24 +99,24 @@ BAD-LINE if there are none."
 (defun current-robot-names ()
   (and *simulation* (mapcar #'robot-name (simulation-robots *simulation*))))
 
-(defun world-of (robot-name)
+(defun map-of-robot (robot-name)
   (find-map (blueprint-map (find-blueprint robot-name))))
 
-(defun robots-of (map)
-  "Return the names of the robots that are defined in MAP, or in the map so named."
+(defun robot-names-in-map (map)
+  "Return the names of the robots that are defined in MAP, a map or its name."
   (loop for body in (all-blueprints)
         when (eq (find-map map) (find-map (blueprint-map body) nil))
           collect (blueprint-name body)))
 
 (defun all-worlds ()
-  (remove-if-not #'robots-of (all-maps)))
+  (remove-if-not #'robot-names-in-map (all-maps)))
 
-(defun world-robots-called (name)
+(defun robot-names-in-world (name)
   "Return the names of the robots in the world NAME: a map, or else a Lisp file that defines a
-world. Signals BAD-LINE."
+world. Signals BAD-LINE if there is no such world."
   (let ((map (find name (all-worlds) :key #'map-name :test #'same-name-p))
-        (file (existing-file name)))
-    (cond (map (robots-of map))
+        (file (existing-lisp-file name)))
+    (cond (map (robot-names-in-map map))
           (file (load-world file))
           ((find-map name nil)
            (reject-line "No robot is defined in ~(~A~). Define one: (defrobot NAME ~
@@ -122,10 +125,10 @@ world. Signals BAD-LINE."
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
                           name (mapcar #'map-name (all-worlds)))))))
 
-(defun robots-of-same-world (robot-name)
-  (cons robot-name (remove robot-name (robots-of (world-of robot-name)))))
+(defun robot-names-in-same-world (robot-name)
+  (cons robot-name (remove robot-name (robot-names-in-map (map-of-robot robot-name)))))
 
 (defun write-worlds ()
   (dolist (map (all-worlds))
     (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
-            (robots-of map))))
+            (robot-names-in-map map))))

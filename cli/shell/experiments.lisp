@@ -50,7 +50,7 @@ Signals BAD-LINE if there is neither."
   (let* ((path (path-called word))
          (known (experiment-among word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))
-                   (and (not known) (existing-file word)))))
+                   (and (not known) (existing-lisp-file word)))))
     (cond (file (load-experiments file))
           (known (list known))
           (t (reject-file-or-experiment word)))))

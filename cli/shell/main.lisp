@@ -40,7 +40,7 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
 (defun first-robot (options)
   (let* ((robot (option-value :robot options))
          (world (option-value :world options (and (null robot) *default-world*)))
-         (robots (and world (world-robots-called world))))
+         (robots (and world (robot-names-in-world world))))
     (cond ((null robot) (first robots))
           ((null world) (robot-called robot))
           ((find robot robots :test #'same-name-p))
@@ -50,7 +50,7 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
   "Load the Lisp files NAMES before the prompt starts. Signals USAGE-ERROR if a file cannot be
 loaded."
   (dolist (name names)
-    (handler-case (load-lisp (file-called name))
+    (handler-case (load-lisp (find-lisp-file name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
 (defun robot-asked-for (session options)
@@ -69,11 +69,11 @@ of the option --load now, because they may define it. Signals USAGE-ERROR if the
 WORLD has chosen to continue with, or NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
-  (call-by-name (robots-of-same-world robot-name))
+  (import-robot-names (robot-names-in-same-world robot-name))
   (call-with-simulation (lambda ()
                           (note-lines-typed *simulation*)
                           (run-session session))
-                        (robots-of-same-world robot-name)
+                        (robot-names-in-same-world robot-name)
                         :seed seed :journal t :keep *forks-to-keep*)
   (session-next-robot session))
 
@@ -128,7 +128,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
 
 (defun run-in-world (session robot-name options)
   ;; Messages about the world's definitions; a headless run has a separate queue of messages.
-  (tell-messages session (setf *first-messages* (take-all-messages)))
+  (print-messages session (setf *definition-messages* (take-all-messages)))
   (let ((*forks-to-keep* t))
     (if (and (session-batch-p session) (null (option-value :rate options)))
         (run-batch session robot-name (option-value :seed options 0))
@@ -160,7 +160,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
     (report-object (session-account session) "begin"
                    :program (format nil "ARS MAGNA ~A" *version*)
                    :robot (string-downcase robot-name)
-                   :world (string-downcase (map-name (world-of robot-name)))
+                   :world (string-downcase (map-name (map-of-robot robot-name)))
                    :seed (option-value :seed options 0)
                    :rate (option-value :rate options))
     (call-typing (lambda () (run-in-world session robot-name options))
@@ -176,7 +176,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
 (defun run-options (options)
   (cond ((option-value :list options)
          (load-before (option-values :load options))
-         (when (option-value :world options) (world-robots-called (option-value :world options)))
+         (when (option-value :world options) (robot-names-in-world (option-value :world options)))
          (write-worlds)
          0)
         (t (run-prompt options))))
@@ -197,7 +197,7 @@ command."
 
 (defun run-script-with (script arguments)
   "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
-  (let ((text (and (script-path script) (foreign-text (script-path script)))))
+  (let ((text (and (script-path script) (foreign-file-text (script-path script)))))
     (when text (reject-usage "~A" text)))
   (let ((options (list* (list :script script) (parse-options arguments))))
     (prog1 (run-options options)

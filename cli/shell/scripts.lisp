@@ -60,14 +60,14 @@ signalled. Code blocks if the same call is seen four times, a third of *HOG-PATI
         do (multiple-value-bind (whose count) (call-under-way session calls)
              (unless (eql count seen) (setf seen count looks 0))
              (when (and whose count (= 4 (incf looks)))
-               (report-with-place
+               (report-with-line-number
                 session
                 (format nil "~A has not returned for ~D s. Control-C ends ~
                              the batch, and so does the option --time-limit SECONDS."
                         whose *hog-patience*))))))
 
 (defun say-stopped (session whose reason)
-  (report-with-place session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
+  (report-with-line-number session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
 (defun end-at-limit (session calls thread seconds ended)
   "End SESSION, which THREAD runs, after SECONDS, unless the semaphore ENDED is signalled before. If

@@ -9,7 +9,7 @@
                 #:bar-label #:bar-name #:whole-form-text
                 #:bar-outcome #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
-                #:plan-trace #:plan-runner-tick #:runner-to-see
+                #:plan-trace #:plan-runner-tick #:runner-to-show
                 #:image-of-tasks #:task-image #:task-image-serial #:task-image-depth
                 #:task-image-look #:task-image-state #:task-image-name #:task-image-form
                 #:task-image-calls

@@ -156,5 +156,5 @@ Signals WRONG-ARGUMENT, and MISUSE where no plans have run."
   (let ((kind (picture-kind 'save-plan-tree file))
         (image (call-with-plans-in-use
                 (lambda (in-use)
-                  (image-of-tasks (or runner in-use (runner-to-see)) :most most)))))
+                  (image-of-tasks (or runner in-use (runner-to-show)) :most most)))))
     (save-svg (tree-svg image) file kind)))

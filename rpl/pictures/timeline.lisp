@@ -256,5 +256,5 @@ room for some 70 ticks."
   (check-argument save-plan-timeline most (whole-p most 1 1000000) "an integer from 1 to 1000000")
   (let ((kind (picture-kind 'save-plan-timeline file))
         (bars (call-with-plans-in-use
-               (lambda (in-use) (trace-bars (or runner in-use (runner-to-see)))))))
+               (lambda (in-use) (trace-bars (or runner in-use (runner-to-show)))))))
     (save-svg (timeline-svg bars most in-color title scale) file kind)))

@@ -13,15 +13,16 @@
 
 (addition with-rollout)
 (define-user-macro with-rollout ((rollout &key print) &body body)
-  "Repeat ROLLOUT, of a projection, from its start, and run BODY at its end, inside that run, as in
-WITH-FORK, with its robots, things and messages. What plans write before that is dropped unless
-PRINT is true. Return the values of BODY. Signals WRONG-ARGUMENT."
+  "Repeat ROLLOUT from its start. At its end, run BODY inside the repeated run, as in WITH-FORK,
+with the robots, things and messages of that run. Drop what plans write before BODY, unless PRINT is
+true. Return the values of BODY. Signals WRONG-ARGUMENT."
   `(call-with-rollout (lambda () ,@body) ,rollout :print ,print))
 
 ;;;; As a bundle of ways over the map
 
 (defun start-of (projection)
-  "Return a snapshot of the world in which a rollout of PROJECTION began, or one like it."
+  "Return a snapshot of the world in which the rollouts of PROJECTION began. For rollouts in a
+believed world, return a snapshot of that world after a rollout."
   (let* ((rollout (first (projection-rollouts projection)))
          (scene (rollout-scene rollout)))
     (if (scene-moment scene)
@@ -31,10 +32,10 @@ PRINT is true. Return the values of BODY. Signals WRONG-ARGUMENT."
                           (declare (ignore again))
                           (take-snapshot *world*))))))
 
-(defun subtitle-of (projection)
+(defun picture-subtitle (projection)
   (multiple-value-bind (low high) (projection-interval projection)
-    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of all, with ~
-                 a marker at the end of each."
+    (format nil "~D of ~D rollouts succeeded within ~D ticks: ~,2F to ~,2F. The ways of robots in ~
+                 all rollouts, with a marker at the end of each way."
             (projection-successes projection) (length (projection-rollouts projection))
             (projection-horizon projection) low high)))
 
@@ -42,10 +43,10 @@ PRINT is true. Return the values of BODY. Signals WRONG-ARGUMENT."
 (define-with-keywords save-projection-picture
     (projection file &rest options &key part title layers in-color scale)
   "Save in FILE, replacing it, a map with the ways that robots went in the rollouts of PROJECTION.
-Colours show how each rollout ended, and markers where. PART (left top right bottom), in cells,
-selects a part of the map, by default all. TITLE replaces the plan in the title. FILE and the other
-arguments are those of SAVE-PICTURE. Return the file's truename. Signals WRONG-ARGUMENT, and MISUSE
-without the program that PNG needs."
+Colours show how each rollout ended, and markers show where the robot then was. PART (left top right
+bottom), in cells, selects a part of the map, by default all. TITLE replaces the plan in the title.
+FILE and the other arguments are those of SAVE-PICTURE. Return the file's truename. Signals
+WRONG-ARGUMENT; and MISUSE if the program that PNG needs is missing."
   (declare (ignore part title layers in-color scale))
   (check-argument save-projection-picture projection
                   (and (projection-p projection) (projection-rollouts projection) t)
@@ -55,4 +56,4 @@ without the program that PNG needs."
          (lambda ()
            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
                    (projection-rollouts projection)))
-         (projection-text projection) (subtitle-of projection) options))
+         (projection-text projection) (picture-subtitle projection) options))

@@ -1,8 +1,8 @@
 ;;;; package.lisp -- plans that are tried in forks first.
 
 (ars-magna.host:define-package :ars-magna.rpl-projecting
-  (:documentation "Projecting plans: what may become of them, in forks of their run or in a world
-that a robot believes in, and choosing by that.")
+  (:documentation "Projects plans: runs them in forks of their run, or in a world that a robot
+believes in, to estimate how they may end, and to choose the best.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.rpl.language :ars-magna.rpl-robot)
   (:import-from :ars-magna.statistics #:wilson-interval)

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl-projecting)
 
-(defun plan-of (plan arguments)
-  "Return PLAN, a plan with the list ARGUMENTS or a list of both, as a list of both. Signals
-UNKNOWN-NAME and WRONG-ARGUMENT."
+(defun plan-with-arguments (plan arguments)
+  "Return a list of a plan and its arguments. PLAN is a plan for the list ARGUMENTS, or already such
+a list. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (flet ((reject (name value expected) (reject-argument 'project name value expected)))
     (unless (proper-list-p arguments) (reject :arguments arguments "a list"))
     (when (and (consp plan) arguments)
@@ -19,22 +19,23 @@ UNKNOWN-NAME and WRONG-ARGUMENT."
       call)))
 
 (defun make-question (task interface plan arguments options)
-  "Return the question of TASK, NIL outside of plans, what may become of PLAN: a task, a plan with
-the list ARGUMENTS, or a list of both, of INTERFACE. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
+  "Return a question, asked by TASK or NIL outside of plans, how PLAN may end. PLAN is a task of
+INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
+UNKNOWN-NAME and WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (when (and (task-p plan) arguments)
-      (reject-argument 'project :arguments arguments "none, since a task has begun with its own"))
+      (reject-argument 'project :arguments arguments "none, since a task has its arguments"))
     (if (task-p plan)
         (%make-question :operator 'project :task task :interface interface
-                        :subject (checked-subject plan interface (getf options :world))
+                        :subject (check-projected-task plan interface (getf options :world))
                         :options options)
-        (destructuring-bind (plan . arguments) (plan-of plan arguments)
+        (destructuring-bind (plan . arguments) (plan-with-arguments plan arguments)
           (%make-question :operator 'project :task task :interface interface
                           :plan plan :arguments arguments :options options)))))
 
-(defun checked-subject (task interface world)
-  "Return TASK. Signals WRONG-ARGUMENT unless it is of the plans of INTERFACE, and there is no WORLD
-believed in, which does not know it."
+(defun check-projected-task (task interface world)
+  "Return TASK. Signals WRONG-ARGUMENT unless TASK belongs to the plans of INTERFACE. Also signals
+WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed worlds."
   (when world
     (reject-argument 'project 'plan task
                      "a plan that has a name: with :world there are no tasks of this run"))
@@ -42,7 +43,7 @@ believed in, which does not know it."
                (task-runner task)
                (eq interface (runner-client (task-runner task)))
                (member interface (simulation-participants (interface-simulation interface))))
-    (reject-argument 'project 'plan task "a task of the plans of the robot that is driven here"))
+    (reject-argument 'project 'plan task "a task of the plans that drive the current robot"))
   task)
 
 ;;; In plans.
@@ -55,7 +56,7 @@ believed in, which does not know it."
                      RUN-PLAN."))))
 
 (defun pose-question (question task)
-  "Let TASK wait for the answer to QUESTION. Return what a step returns."
+  "Let TASK wait for the answer to QUESTION. Return the value for a step whose task waits."
   (park task question)
   (add-wish question)
   +parked+)
@@ -68,25 +69,26 @@ believed in, which does not know it."
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
-of the run with its own seed, in which PLAN runs until it has ended or HORIZON ticks have
+of the run with its own seed. In the fork, PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
-  PLAN is a plan procedure or its name, which gets the list ARGUMENTS; a list of both; or a task,
-whose remaining part is projected.
-  SEED, an integer, determines the seeds; by default the run's seed and the tick do.
-  COST, a function without arguments, is called in each fork at its end and returns a number, or
-positive infinity, which is worse than any.
-  WORLD, a function, makes other worlds for rollouts than forks, such as the one the robot believes
-in. It is called with a function and a seed, and must call that function inside of (with-simulation
-(robot :seed seed) ...). Robots, fluents and parameters are those of that world. Objects of the true
-run in global variables can be read, but not changed or commanded. PLAN must have a name, and
-ARGUMENTS no objects of a run.
-  PRINT, if true, shows what plans write in rollouts.
-In a plan, this waits until all plans rest, and goes on in the same tick; PLAN begins as if called
-there. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins as by BEGIN-PLAN.
-The run itself is not affected: its dice are not rolled, and messages and traces of rollouts are
-dropped. In rollouts, PROJECT returns a projection without rollouts. Errors in rollouts are failures
-of these; errors in COST or WORLD are reported by one message. Fails with CANNOT-FORK if the run
-cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
+  PLAN is a plan procedure or its name, which gets the list ARGUMENTS; a list of a plan and its
+arguments; or a task, whose remaining part is projected.
+  SEED, an integer, determines the seeds of rollouts. By default they depend on the run's seed and
+the tick.
+  COST, a function without arguments, is called in each fork at its end. COST returns a number, or
+positive infinity for the worst.
+  WORLD, a function, makes worlds for rollouts that are no forks, such as a world that the robot
+believes in. WORLD is called with a function and a seed, and must call that function inside of
+(with-simulation (robot :seed seed) ...). Rollouts then use the robots, fluents and parameters of
+that world. Objects of the true run in global variables can be read, but not changed or commanded.
+PLAN must have a name, and ARGUMENTS must contain no objects of a run.
+  PRINT, if true, shows what plans write in rollouts. In a plan, PROJECT waits until all plans rest,
+and goes on in the same tick; PLAN begins as if PROJECT called it. Elsewhere, as in a continuation,
+in a test or at the prompt, PLAN begins as by BEGIN-PLAN. The run itself is not affected: its dice
+are not rolled, and messages and traces of rollouts are dropped. In rollouts, PROJECT returns a
+projection without rollouts. An error in a rollout is a failure of that rollout; errors in COST or
+WORLD are reported by one message. Fails with CANNOT-FORK if the run cannot be forked. (After
+McDermott's projection of reactive plans, 1992.)"
   (:arguments plan arguments trials horizon seed cost world print)
   (:parts (request function
                    (progn
@@ -123,7 +125,8 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
 ;;; From outside.
 
 (defun interface-for-projection (plan)
-  "Return the interface whose plans are to be projected with PLAN. Signals MISUSE at a plan's step."
+  "Return the interface whose plans are to be projected with PLAN. Signals MISUSE inside of a plan's
+step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
                        (runner-client (task-runner plan))
@@ -133,8 +136,9 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
                    outside of any lambda."))
     interface))
 
-(defun moment-with (question)
-  "Return a fork of the run of QUESTION, asked from outside, which contains its twin."
+(defun fork-with-question (question)
+  "Return a fork of the run of QUESTION, which is asked outside of plans. The fork contains a copy
+of QUESTION."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-asker* (question-operator question)))
@@ -143,20 +147,21 @@ cannot be forked (ours; McDermott's projection of reactive plans, 1992)."
 
 (addition project-plan)
 (defun project-plan (plan &key arguments trials horizon seed cost world print)
-  "Return a projection of PLAN: PROJECT for Lisp code outside of plans. Signals UNKNOWN-NAME,
-WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
+  "Return a projection of PLAN. This is PROJECT for Lisp code outside of plans. Signals
+UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
   (let* ((interface (if world nil (interface-for-projection plan)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
                                         :world world :print print))))
     (when world (check-known-in-belief question))
     (cond (*rolling-out* (projection-without-rollouts question))
-          (t (first (project-branches question (if world nil (moment-with question))))))))
+          (t (first (project-branches question (if world nil (fork-with-question question))))))))
 
 ;;;; Doing what goes best
 
 (defun question-of-branches (task forms options)
-  "Return the question of TASK which of FORMS is the best, by OPTIONS; NIL if there is only one."
+  "Return the question of TASK which of FORMS is the best, with OPTIONS. Return NIL if there is only
+one form."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)
@@ -165,18 +170,18 @@ WRONG-ARGUMENT, CANNOT-FORK; and MISUSE at a plan's own step."
 (define-construct try-best ((&key trials horizon until cost seed tell print) &body branches)
   "Run the best of BRANCHES, in a plan, and return its values. Each branch is tried first in TRIALS
 forks of the run, by default 20, until the whole plan has ended or HORIZON ticks have passed, by
-default 600. The best is the branch with which the plan succeeds most often; of equals the one that
-takes the fewest ticks on average where it succeeds; of equals the first. Trials of the same number
-have the same random events in all branches.
+default 600. The best is the branch with which the plan succeeds most often. Of equally good
+branches, it is the branch whose successes take the fewest ticks on average, or else the first.
+Trials of the same number have the same random events in all branches.
   UNTIL :branch ends a rollout when the branch has ended.
-  COST, a function without arguments, is called in each fork at its end. It returns a number, of
-which less is better, or positive infinity, the worst; it decides instead of ticks.
-  SEED, an integer, determines the seeds of rollouts; by default the run's seed and the tick do.
+  COST, a function without arguments, is called in each fork at its end. COST returns a number, the
+less the better, or positive infinity for the worst. The number replaces ticks in the choice.
+  SEED, an integer, determines the seeds of rollouts. By default they depend on the run's seed and
+the tick.
   TELL, a function, is called with the list of projections and the index of the chosen branch.
-  PRINT, if true, shows what plans write in rollouts.
-In a rollout a branch is chosen at random: there are no rollouts in rollouts. The task goes on in
-the same tick; nothing else of its run depends on how it has chosen. Fails with CANNOT-FORK if the
-run cannot be forked (ours)."
+  PRINT, if true, shows what plans write in rollouts. In a rollout a branch is chosen at random:
+there are no rollouts in rollouts. The task goes on in the same tick; rollouts have no other effect
+on the run. Fails with CANNOT-FORK if the run cannot be forked."
   (:arguments trials horizon until cost seed tell print)
   (:parts (request function
                    (value-lambda `(list :trials ,trials :horizon ,horizon :until ,until :cost ,cost

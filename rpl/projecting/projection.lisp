@@ -5,8 +5,9 @@
 (addition projection-p)
 
 (defstruct (scene (:constructor make-scene (question moment branch)) (:copier nil))
-  "Where rollouts begin: in forks of MOMENT, a fork itself, in which the twin of QUESTION waits for
-its answer, by taking its BRANCH, a number; or, without a MOMENT, in a world believed in."
+  "The start of rollouts that try BRANCH, a number, of QUESTION. MOMENT is a fork in which a copy of
+QUESTION waits for its answer; rollouts are forks of MOMENT. Without a MOMENT, rollouts begin in a
+believed world."
   (question nil :read-only t)
   (moment nil :read-only t)
   (branch 0 :type fixnum :read-only t))
@@ -24,23 +25,25 @@ without waiting" :addition)
   (result nil t "a value or a failure")
   (ticks 0 real "how many ticks the rollout took" :addition)
   (cost nil (or null real)
-        "the number that the function :cost returned at the end, or NIL without one" :addition)
+        "the number that the function :COST returned at the end, or NIL without such a
+function" :addition)
   (steps 0 integer "how many steps of plans count")
   (ways '() list "where robots went")
   (broken nil (or null keyword)
-          "the option, :COST or :WORLD, of whose function the failure is an error, or NIL"))
+          "the option, :COST or :WORLD, whose function signalled the error that ended the rollout,
+or NIL"))
 
 (define-shared scene rollout)
 
 (addition rollout-succeeded-p)
 (defun rollout-succeeded-p (rollout)
-  "True if what ROLLOUT tried succeeded within its horizon."
+  "True if the plan in ROLLOUT succeeded within its horizon."
   (eq :succeeded (rollout-state rollout)))
 
 (addition rollout-value)
 (defun rollout-value (rollout)
-  "Return the value of the plan in ROLLOUT if it succeeded, or NIL. It may be an object of a run
-that is over."
+  "Return the value of the plan in ROLLOUT if it succeeded, or NIL. The value may be an object of a
+run that is over."
   (and (rollout-succeeded-p rollout) (rollout-result rollout)))
 
 (addition rollout-failure)
@@ -49,12 +52,12 @@ that is over."
   (and (eq :failed (rollout-state rollout))
        (rollout-result rollout)))
 
-(defun error-of (rollout)
+(defun rollout-error (rollout)
   (let ((failure (rollout-failure rollout)))
     (and (typep failure 'lisp-failure) (lisp-failure-condition failure))))
 
-(defun reason-of (rollout)
-  "Return in a word why ROLLOUT did not succeed: the class of its failure, or its state."
+(defun rollout-reason (rollout)
+  "Return why ROLLOUT did not succeed: the class of its failure, or else its state, a keyword."
   (let ((failure (rollout-failure rollout)))
     (cond ((null failure) (rollout-state rollout))
           ((failure-class failure))
@@ -70,17 +73,17 @@ that is over."
   (print-unreadable-object (rollout stream :type t)
     (format stream "~D, ~(~A~)~@[: ~A~] after ~A tick~:P, seed ~D" (rollout-trial rollout)
             (rollout-state rollout)
-            (and (rollout-failure rollout) (safe-text (reason-of rollout)))
+            (and (rollout-failure rollout) (safe-text (rollout-reason rollout)))
             (rollout-ticks rollout) (rollout-seed rollout))))
 
 ;;;; Projections
 
 (define-record (projection (:constructor make-projection (text tick horizon rollouts)))
-  "What may become of a plan, or a branch of one, as PROJECT returns it."
+  "The result of PROJECT: an estimate of how a plan, or a branch of a plan, may end."
   (text "" string "a text that says what was projected" :addition)
-  (tick 0 real "the tick from which it was projected" :addition)
+  (tick 0 real "the tick at which the projected plan would begin" :addition)
   (horizon 0 real "how many ticks each rollout was given" :addition)
-  (rollouts '() list "the list of its rollouts, in order of their trials" :addition))
+  (rollouts '() list "the list of the projection's rollouts, in order of their trials" :addition))
 
 (define-shared projection)
 
@@ -89,48 +92,52 @@ that is over."
   "Return how many rollouts of PROJECTION succeeded."
   (count-if #'rollout-succeeded-p (projection-rollouts projection)))
 
-(defun trials-of (projection)
+(defun rollout-count (projection)
   (length (projection-rollouts projection)))
 
 (addition projection-probability)
 (defun projection-probability (projection)
-  "Return the share of the rollouts of PROJECTION that succeeded, a double-float from 0 to 1; 1/2 if
-there are none, as of a PROJECT inside of a rollout."
+  "Return the fraction of the rollouts of PROJECTION that succeeded, a double-float from 0 to 1.
+Return 0.5 if there are no rollouts, as for a PROJECT inside of a rollout."
   (if (projection-rollouts projection)
-      (coerce (/ (projection-successes projection) (trials-of projection)) 'double-float)
+      (coerce (/ (projection-successes projection) (rollout-count projection)) 'double-float)
       .5d0))
 
 (addition projection-interval)
 (defun projection-interval (projection &key (confidence .95d0))
   "Return the bounds, low and high, of the success probability of PROJECTION, by WILSON-INTERVAL.
 Signals WRONG-ARGUMENT unless CONFIDENCE is between 0 and 1."
-  (wilson-interval (projection-successes projection) (trials-of projection)
+  (wilson-interval (projection-successes projection) (rollout-count projection)
                    :confidence confidence))
 
 (addition projection-failures)
 (defun projection-failures (projection)
-  "Return conses (reason . count), the most frequent first: why rollouts of PROJECTION did not
-succeed. A reason is the class of a failure or its condition type, or else the rollout's state."
+  "Return a list of conses (reason . count), the most frequent reason first, for the rollouts of
+PROJECTION that did not succeed. A reason is the class of a failure or its condition type, or else
+the rollout's state."
   (let ((counts '()))
     (dolist (rollout (projection-rollouts projection))
       (unless (rollout-succeeded-p rollout)
-        (let* ((reason (reason-of rollout)) (known (assoc reason counts)))
+        (let* ((reason (rollout-reason rollout)) (known (assoc reason counts)))
           (if known (incf (cdr known)) (push (cons reason 1) counts)))))
     (stable-sort (nreverse counts) #'> :key #'cdr)))
 
-(defun average (numbers)
-  "Return the mean of the list NUMBERS, exactly, or NIL of none. If one is infinite so is the mean."
+(defun mean-or-infinity (numbers)
+  "Return the exact mean of the list NUMBERS, or NIL for an empty list. If a number is infinite,
+return infinity."
   (cond ((find-if #'positive-infinity-p numbers))
         (numbers (/ (reduce #'+ (mapcar #'rational numbers)) (length numbers)))))
 
 (addition projection-mean-ticks)
 (defun projection-mean-ticks (projection)
-  "Return the mean ticks of the rollouts of PROJECTION that succeeded, a rational; NIL if none did."
-  (average (mapcar #'rollout-ticks
-                   (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
+  "Return the mean number of ticks of the rollouts of PROJECTION that succeeded, a rational; NIL if
+none succeeded."
+  (mean-or-infinity
+   (mapcar #'rollout-ticks
+           (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
 
 (defun first-error-text (projection)
-  (let ((condition (some #'error-of (projection-rollouts projection))))
+  (let ((condition (some #'rollout-error (projection-rollouts projection))))
     (and condition (cut (brief-text condition) 120))))
 
 (defun reasons-text (projection)
@@ -147,32 +154,33 @@ succeed. A reason is the class of a failure or its condition type, or else the r
       (format stream "~A: ~D of ~D, ~,2F to ~,2F~@[, ~,1F ticks~]~@[; not: ~A~]~
                       ~@[; first error: ~A~]"
               (cut (projection-text projection) 60)
-              (projection-successes projection) (trials-of projection) low high
+              (projection-successes projection) (rollout-count projection) low high
               (projection-mean-ticks projection) (reasons-text projection)
               (first-error-text projection)))))
 
 ;;; Which of several is the best.
 
-(defun price-of (projection)
-  "Return what success costs on average in PROJECTION, in what :COST counts or else in ticks; if
-nothing succeeded, what the rollouts cost that were counted. NIL if that is unknown."
+(defun mean-cost (projection)
+  "Return the mean cost, by the function :COST, of the rollouts of PROJECTION that succeeded. If
+none succeeded, return the mean cost of all rollouts with a known cost. Without costs, return the
+mean ticks of success, or NIL."
   (let* ((rollouts (projection-rollouts projection))
          (good (remove-if-not #'rollout-succeeded-p rollouts)))
     (cond ((some #'rollout-cost rollouts)
-           (average (remove nil (mapcar #'rollout-cost (or good rollouts)))))
+           (mean-or-infinity (remove nil (mapcar #'rollout-cost (or good rollouts)))))
           (t (projection-mean-ticks projection)))))
 
-(defun better-p (projection other)
-  "True if PROJECTION succeeds more often than OTHER, or as often and at a lower price."
+(defun better-projection-p (projection other)
+  "True if PROJECTION succeeds more often than OTHER, or as often and at a lower mean cost."
   (let ((successes (projection-successes projection)) (others (projection-successes other))
-        (price (price-of projection)) (other-price (price-of other)))
+        (price (mean-cost projection)) (other-price (mean-cost other)))
     (cond ((/= successes others) (> successes others))
           ((and price other-price) (< price other-price)))))
 
-(defun best-of (projections)
-  "Return the index of the best of PROJECTIONS, the first of those that are as good."
+(defun index-of-best (projections)
+  "Return the index of the best of PROJECTIONS. Of equally good projections, the first is the best."
   (let ((best 0))
     (loop for projection in projections
           for index from 0
-          do (when (better-p projection (nth best projections)) (setf best index)))
+          do (when (better-projection-p projection (nth best projections)) (setf best index)))
     best))

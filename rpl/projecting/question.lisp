@@ -6,9 +6,9 @@
 ;;; tells which task waits for the answer, and with which arguments. Twins have the same TOKEN.
 
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
-  "What may become of BRANCHES, texts, in what is left of the plan, of PLAN with ARGUMENTS, or of
-the task SUBJECT. OPERATOR is the operator that asks. In a rollout, ENDED and RESULT say how what
-the asking task does has ended."
+  "A question that rollouts answer: how good BRANCHES, texts, are for the rest of the plan; or how
+PLAN with ARGUMENTS, or the task SUBJECT, may end. OPERATOR is the operator that asks. In a rollout,
+ENDED and RESULT say how the branch or plan that the asking task tries has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)
   (operator nil :type symbol :read-only t)
   (branches '() :type list :read-only t)
@@ -20,10 +20,11 @@ the asking task does has ended."
   (result nil))
 
 (defvar *rolling-out* nil
-  "True where a rollout runs: there TRY-BEST chooses by chance, and PROJECT makes no rollouts.")
+  "True while this thread runs a rollout. In a rollout, TRY-BEST chooses at random, and PROJECT
+makes no rollouts.")
 
-(defvar *asked* nil
-  "The question of a plan that rollouts are run for, or NIL.")
+(defvar *current-question* nil
+  "The question of a plan for which this thread runs rollouts, or NIL.")
 
 (defun option (question key)
   (getf (question-options question) key))
@@ -36,7 +37,7 @@ the asking task does has ended."
               (cut (question-text question) 60))))
 
 (defun question-text (question &optional (branch 0))
-  "Return a text, not shortened, for what QUESTION is about, or for its BRANCH."
+  "Return the full text of the plan, the task or the branch number BRANCH that QUESTION is about."
   (cond ((question-branches question) (nth branch (question-branches question)))
         ((question-subject question) (task-label (question-subject question) #'whole-form-text))
         (t (let ((plan (question-plan question)))
@@ -45,13 +46,15 @@ the asking task does has ended."
                     (question-arguments question)))))))
 
 (defun note-ended (question state result)
-  "Note that what the task of QUESTION does has ended in STATE with RESULT, for a rollout to see."
+  "Record, in a rollout, that the branch or plan that QUESTION tries has ended in STATE with
+RESULT."
   (when question
     (setf (question-ended question) state
           (question-result question) result)))
 
 (defun note-signal (question signal)
-  "Note that what the task of QUESTION does is left by SIGNAL. A RETURN-FROM is a success."
+  "Record, in a rollout, that SIGNAL has ended the branch or plan that QUESTION tries. A RETURN-FROM
+counts as a success."
   (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
         ((escape-p signal) (note-ended question :succeeded nil))
         ((eq signal :evaporate) (note-ended question :evaporated nil))))
@@ -59,12 +62,12 @@ the asking task does has ended."
 ;;; Options.
 
 (defparameter *default-trials* 20
-  "How many rollouts there are by default.")
+  "The default number of rollouts in a projection.")
 (defparameter *default-horizon* 600
-  "How many ticks a rollout is given by default.")
+  "The default number of ticks after which a rollout is abandoned.")
 
 (defun check-option (operator name value)
-  "Signal WRONG-ARGUMENT unless VALUE is one of the option NAME of OPERATOR."
+  "Signal WRONG-ARGUMENT unless VALUE is valid for the option NAME of OPERATOR."
   (flet ((check (good-p expected)
            (unless good-p (reject-argument operator name value expected))))
     (ecase name
@@ -76,8 +79,8 @@ the asking task does has ended."
       (:print))))
 
 (defun checked-options (operator options)
-  "Return the plist OPTIONS of OPERATOR, without those that are NIL, and with :trials and :horizon.
-Values may be fluents. Signals WRONG-ARGUMENT."
+  "Return the plist OPTIONS of OPERATOR, without options that are NIL, and with defaults for :TRIALS
+and :HORIZON. Values may be fluents. Signals WRONG-ARGUMENT."
   (let ((given (loop for (name value) on options by #'cddr
                      for known = (fluent-value value)
                      when known
@@ -87,14 +90,15 @@ Values may be fluents. Signals WRONG-ARGUMENT."
 ;;; Seeds. The same trial of all branches has the same one.
 
 (defun mix-numbers (&rest numbers)
-  "Return an integer below 2^62 that depends on NUMBERS, integers."
+  "Return a hash code of NUMBERS, integers: an integer from 0 to 2^62 - 1."
   (let ((digest (make-digest)))
     (digest-add digest numbers)
     (ldb (byte 62 0) (digest-value digest))))
 
 (defun seed-of-trial (question trial)
-  "Return the seed of TRIAL, a number, of QUESTION: by its option :seed, or else by the seed of its
-run, the tick, and how many questions plans have asked before in that."
+  "Return the seed of rollout number TRIAL of QUESTION. The seed is derived from the option :SEED
+or, without the option, from the run's seed, the tick, and the number of earlier questions in that
+tick."
   (let* ((interface (wish-interface question))
          (simulation (if interface (interface-simulation interface) *simulation*))
          (seed (option question :seed)))
@@ -108,14 +112,15 @@ run, the tick, and how many questions plans have asked before in that."
 ;;;; Answers
 
 (defun charge-for-rollouts (projections question)
-  "Let the plans that ask QUESTION, where their steps have a budget, pay for those of PROJECTIONS."
+  "Charge the steps in rollouts of PROJECTIONS to the plans that ask QUESTION, if steps of plans
+have a budget."
   (count-steps (loop for projection in projections
                      sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps))
                (interface-runner (wish-interface question))
                (wish-task question)))
 
 (defun project-branch (question moment branch)
-  "Return the projection of BRANCH of QUESTION by rollouts from MOMENT, see SCENE."
+  "Return the projection of BRANCH, a number, of QUESTION, by rollouts from MOMENT: see SCENE."
   (let ((scene (make-scene question moment branch)))
     (make-projection (question-text question branch)
                      (if moment (simulation-tick moment) 0)
@@ -124,18 +129,20 @@ run, the tick, and how many questions plans have asked before in that."
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
 (defun report-function-errors (question projections)
-  "Say once in how many rollouts of PROJECTIONS functions of QUESTION failed, and why first."
+  "Report in one message in how many rollouts of PROJECTIONS the functions given to QUESTION failed,
+and the first error."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
                            projections))
          (broken (remove-if-not #'rollout-broken rollouts)))
     (when broken
-      (report-user-error (error-of (first broken))
-                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first time"
+      (report-user-error (rollout-error (first broken))
+                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first error"
                                  (rollout-broken (first broken)) (question-operator question)
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)
-  "Return a list of projections, one for each branch of QUESTION, or of the one that there is."
+  "Return a list of projections, one for each branch of QUESTION; a question about a plan has one
+projection."
   (let ((projections (loop for branch below (max 1 (length (question-branches question)))
                            collect (project-branch question moment branch))))
     (report-function-errors question projections)
@@ -144,7 +151,7 @@ run, the tick, and how many questions plans have asked before in that."
 ;;; Questions of plans.
 
 (defun answer-by-chance (question)
-  "Answer QUESTION, in a rollout: by any branch, or a projection without rollouts."
+  "Answer QUESTION inside of a rollout: by a random branch, or by a projection without rollouts."
   (grant-wish question
               (if (question-branches question)
                   (roll-index (length (question-branches question))
@@ -152,17 +159,18 @@ run, the tick, and how many questions plans have asked before in that."
                   (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)
-  "Answer QUESTION, of a plan, by rollouts. Return :LATER if the answer is not needed any more."
+  "Answer QUESTION, which a plan asks, by rollouts. Return :LATER if the answer is not needed any
+more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
                       (let ((*fork-asker* (question-operator question)))
                         (drop-records (fork-at-rest interface)))))
          (projections (catch 'abandoned
-                        (let ((*asked* question)) (project-branches question moment)))))
+                        (let ((*current-question* question)) (project-branches question moment)))))
     (cond ((null projections) :later)
           (t (charge-for-rollouts projections question)
              (if (question-branches question)
-                 (let ((best (best-of projections)))
+                 (let ((best (index-of-best projections)))
                    (when (option question :tell)
                      (call-user-code (option question :tell) "the function :TELL of a TRY-BEST"
                                      projections best))

@@ -2,76 +2,82 @@
 
 (in-package :ars-magna.rpl-projecting)
 
-(defun end-of (task question interface)
-  "Return how TASK, or else the asking task of QUESTION, has ended; NIL if it has not."
+(defun final-state-of-question (task question interface)
+  "Return how TASK has ended. Without a TASK, return how the branch or plan that QUESTION tries has
+ended, or else the asking plan. Return NIL if nothing has ended yet."
   (cond (task (final-state-of-task interface task))
         ((question-ended question))
         (t (final-state-of-task interface (task-top (wish-task question))))))
 
-(defun cost-p (object)
-  "True of real numbers, and of positive infinity, the worst; not of a NaN."
+(defun valid-cost-p (object)
+  "True if OBJECT is a valid cost: a real number or positive infinity, but not a NaN."
   (typecase object
     (float (or (finite-p object) (positive-infinity-p object)))
     (real t)))
 
-(defun cost-of (question)
-  "Return what the function :COST of QUESTION returns, or NIL without one. Signals WRONG-ARGUMENT."
+(defun question-cost (question)
+  "Return the value of the function :COST of QUESTION, or NIL without such a function. Signals
+WRONG-ARGUMENT."
   (let ((function (option question :cost)))
     (when function
       (let ((cost (funcall function)))
-        (unless (cost-p cost)
+        (unless (valid-cost-p cost)
           (reject-argument (question-operator question) :cost cost
                            "a function that returns a number, or positive infinity for the worst"))
         cost))))
 
-(defun broken-off (condition &optional option)
-  "Return the values of a rollout that CONDITION, an error of the function OPTION or of others, has
-broken off: how it has ended, its result, no cost, and OPTION."
+(defun failed-rollout-values (condition &optional option)
+  "Return four values for a rollout that the error CONDITION has ended: :FAILED, a failure with
+CONDITION, NIL for the cost, and OPTION. OPTION is the option whose function has signalled
+CONDITION, or NIL."
   (values :failed (make-condition 'lisp-failure :condition condition) nil option))
 
-(defun with-cost (question how result)
-  (handler-case (values how result (cost-of question))
-    (error (condition) (broken-off condition :cost))))
+(defun add-cost (question how result)
+  (handler-case (values how result (question-cost question))
+    (error (condition) (failed-rollout-values condition :cost))))
 
-(defun go-to-end (question interface begin over)
-  "Call BEGIN, which returns the task whose end counts or NIL, and let ticks of the current
-simulation pass until what QUESTION is about has ended, or OVER, called after each, says how.
-Return how it has ended, its result, its cost, and the option whose function broke it off, if any."
+(defun run-question-to-end (question interface begin over)
+  "Call BEGIN, which starts the plan or branch of QUESTION and returns the task to watch or NIL. Let
+ticks of the current simulation pass until the plan or branch has ended, or the function OVER,
+called after each tick, returns a state. Return four values: the state, the result, the cost, and
+the option whose function signalled an error, or NIL."
   (handler-case
       (let* ((last (+ (simulation-tick) (option question :horizon)))
              (task (funcall begin))
              (how (pass-until interface
                               (lambda ()
                                 ;; The plan that asked may not wait for that any more.
-                                (when (and *asked* (obsolete-wish-p *asked*))
+                                (when (and *current-question* (obsolete-wish-p *current-question*))
                                   (throw 'abandoned nil))
-                                (or (funcall over) (end-of task question interface)))
+                                (or (funcall over)
+                                    (final-state-of-question task question interface)))
                               last)))
-        (with-cost question how (if task (task-result task) (question-result question))))
-    (error (condition) (broken-off condition))))
+        (add-cost question how (if task (task-result task) (question-result question))))
+    (error (condition) (failed-rollout-values condition))))
 
 ;;; A plan that never waits would take a million steps in each tick, to no use.
 
 (defun runaway-test (runner)
-  "Return a function that returns :RUNAWAY if the plans of RUNNER have taken as many steps as a
-reaction may, or more, since it was called last, or made."
+  "Return a function that returns :RUNAWAY if the plans of RUNNER have taken at least
+*RUNAWAY-LIMIT* steps since the last call of the function."
   (let ((steps (counted-steps runner)))
     (lambda ()
       (let ((before (shiftf steps (counted-steps runner))))
         (when (<= *runaway-limit* (- steps before)) :runaway)))))
 
 (defun run-rollout (scene trial seed question interface begin)
-  "Run and return the rollout number TRIAL, with SEED, of SCENE, in this run: see GO-TO-END."
+  "Run the rollout number TRIAL of SCENE, with SEED, in the current run. Return the rollout. BEGIN
+starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
   (let* ((start (simulation-tick))
          (runner (interface-runner interface))
          (steps (counted-steps runner))
          (runaway (runaway-test runner))
          (trails '()))
     (multiple-value-bind (how result cost broken)
-        (go-to-end question interface begin
-                   (lambda ()
-                     (setf trails (note-places (current-simulation) trails))
-                     (funcall runaway)))
+        (run-question-to-end question interface begin
+                             (lambda ()
+                               (setf trails (note-places (current-simulation) trails))
+                               (funcall runaway)))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (counted-steps runner) steps)
                     (ways-along trails trial (outcome-word how))
@@ -84,7 +90,8 @@ reaction may, or more, since it was called last, or made."
 ;;; read, but not changed or commanded. Fluents have a realm for each rollout.
 
 (defun object-of-run (object)
-  "Return OBJECT, or an object in it if it is a list or vector, that belongs to a run; or NIL."
+  "Return OBJECT if OBJECT belongs to a run. If OBJECT is a list or vector, return an element that
+belongs to a run. Otherwise return NIL."
   (let ((seen (make-hash-table :test 'eq)))
     (labels ((look (object)
                (typecase object
@@ -101,7 +108,8 @@ reaction may, or more, since it was called last, or made."
       (look object))))
 
 (defun check-known-in-belief (question)
-  "Signal WRONG-ARGUMENT if QUESTION is about an object that a world believed in cannot know."
+  "Signal WRONG-ARGUMENT if QUESTION is about an object of this run, which does not exist in
+believed worlds."
   (let ((object (or (question-subject question)
                     (object-of-run (list (question-plan question)
                                          (question-arguments question))))))
@@ -109,13 +117,13 @@ reaction may, or more, since it was called last, or made."
       (reject-argument (question-operator question)
                        (if (question-subject question) 'plan :arguments)
                        object
-                       (format nil "what a plan can know in another world: :world goes with plans ~
-                                    that have names, and arguments such as numbers, names and ~
-                                    lists of them")))))
+                       (format nil "with :world, a plan that has a name, and arguments that belong ~
+                                    to no run, such as numbers, symbols and lists of these")))))
 
 (defun call-without-run (function)
-  "Call FUNCTION where there is no current simulation, no robot of one is bound, other runs than
-those that FUNCTION makes cannot be changed, and fluents of outside are as in a fork."
+  "Call FUNCTION without a current simulation, and with the variables of the robots unbound.
+FUNCTION can change only runs that it makes itself. Existing fluents can be changed without effect
+outside, as in a fork."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (progv (mapcar #'robot-name robots) '()
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
@@ -133,13 +141,13 @@ those that FUNCTION makes cannot be changed, and fluents of outside are as in a 
                     interface (question-plan question) (question-arguments question)
                     #'identity)))))
 
-(defun no-rollout (scene trial seed condition)
-  (multiple-value-bind (how result cost broken) (broken-off condition :world)
+(defun make-failed-rollout (scene trial seed condition)
+  (multiple-value-bind (how result cost broken) (failed-rollout-values condition :world)
     (make-rollout scene trial seed how result 0 cost 0 '() broken)))
 
 (defun roll-out-in-belief (scene trial seed then)
-  "Return the values of THEN, a function that is called with the rollout number TRIAL, with SEED, of
-SCENE, where that has ended in the world that the question believes in."
+  "Run the rollout number TRIAL of SCENE, with SEED, in a believed world. At its end, call the
+function THEN with the rollout in that world, and return the values of THEN."
   (let ((values '()) (called-p nil))
     (flet ((run ()
              (setf called-p t
@@ -151,16 +159,16 @@ SCENE, where that has ended in the world that the question believes in."
             (unless called-p
               (reject-use "project: the function :world has not called the function given to it.")))
         (error (condition)
-          (setf values (list (funcall then (no-rollout scene trial seed condition))))))
+          (setf values (list (funcall then (make-failed-rollout scene trial seed condition))))))
       (values-list values))))
 
 ;;; A run is forked once for a question: that fork, the moment, never goes on. Each rollout is a
 ;;; fork of it with its own seed; so all begin alike, also if the run goes on meanwhile, and
 ;;; any of them can be looked at again.
 
-(defun call-undisturbed (function print)
-  "Call FUNCTION, which runs a rollout, as if no plan were at work around it, without a debugger.
-What it writes is dropped unless PRINT is true."
+(defun call-for-rollout (function print)
+  "Call FUNCTION, which runs a rollout, outside of reactions of plans and without a debugger. Drop
+the output of FUNCTION unless PRINT is true."
   (let ((*rolling-out* t)
         (*standard-output* (if print *standard-output* (make-broadcast-stream)))
         (*error-output* (if print *error-output* (make-broadcast-stream)))
@@ -168,12 +176,12 @@ What it writes is dropped unless PRINT is true."
         (*break-on-plan-failures* nil)
         (*step-plans* nil)
         (*trace-plans* nil))
-    (call-apart function)))
+    (call-outside-reactions function)))
 
 ;;; The moment.
 
 (defun drop-records (moment)
-  "Make MOMENT, a fork, keep no journal and no trace, and report no errors. Return it."
+  "Make MOMENT, a fork, keep no journal and no trace, and report no errors. Return MOMENT."
   (setf (simulation-journal moment) nil
         (message-queue-error-policy (simulation-messages moment)) :collect)
   (dolist (participant (simulation-participants moment))
@@ -183,8 +191,8 @@ What it writes is dropped unless PRINT is true."
 ;;; The rollout.
 
 (defun begin-rollout (question branch)
-  "Begin what QUESTION, of a fork, asks about: its BRANCH, if it has any. Return the task whose end
-counts, or NIL: see NOTE-ENDED."
+  "Begin the plan, or the branch number BRANCH, of QUESTION in a fork. Return the task whose end is
+the end of the rollout, or NIL if NOTE-ENDED records the end."
   (let ((interface (wish-interface question)) (task (wish-task question)))
     (call-with-plans (lambda ()
                        (cond ((null task) (forget-wish question))
@@ -211,7 +219,7 @@ counts, or NIL: see NOTE-ENDED."
           fork
           (lambda ()
             (let* ((original (scene-question scene))
-                   (interface (interface-of (interface-robot (wish-interface original)) fork))
+                   (interface (interface-of-robot (interface-robot (wish-interface original)) fork))
                    (question (find (question-token original)
                                    (remove-if-not #'question-p (interface-wishes interface))
                                    :key #'question-token)))
@@ -221,17 +229,17 @@ counts, or NIL: see NOTE-ENDED."
       (release-fork fork))))
 
 (defun roll-out (scene trial seed &key (then #'identity) print)
-  "Return the rollout number TRIAL, with SEED, of SCENE; or what THEN returns, which is called with
-it where it has ended. Nothing happens in any other run. What plans write there is lost unless PRINT
-is true, or the option :PRINT of the question."
+  "Run the rollout number TRIAL of SCENE, with SEED. At its end, call the function THEN with the
+rollout, inside of its run, and return the values of THEN. No other run changes. Drop the output of
+plans unless PRINT, or the option :PRINT of the question, is true."
   (let* ((question (scene-question scene))
          (output *standard-output*) (errors *error-output*)
          (then (lambda (rollout)
                  (let ((*standard-output* output) (*error-output* errors))
                    (funcall then rollout)))))
-    (call-undisturbed (lambda ()
-                     (let ((*fork-asker* (question-operator question)))
-                       (if (scene-moment scene)
-                           (roll-out-in-fork scene trial seed then)
-                           (roll-out-in-belief scene trial seed then))))
-                   (or print (option question :print)))))
+    (call-for-rollout (lambda ()
+                        (let ((*fork-asker* (question-operator question)))
+                          (if (scene-moment scene)
+                              (roll-out-in-fork scene trial seed then)
+                              (roll-out-in-belief scene trial seed then))))
+                      (or print (option question :print)))))

@@ -12,8 +12,8 @@
   "How often plans may take one part of the robot from each other before time has to pass.")
 
 (defconstant +takeover-warning-ticks+ 5
-  "After how many ticks plans that go on so are named again: messages of takeovers may have pushed
-the first warning out of the queue.")
+  "After this many ticks, plans that still take a part from each other are named again. Messages of
+takeovers may have pushed the first warning out of the queue.")
 
 (defun takeover-count (interface resource)
   (let ((tick (simulation-tick (interface-simulation interface))))
@@ -29,30 +29,31 @@ the first warning out of the queue.")
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return in words that the tasks OLDER and NEWER, perhaps the same, take RESOURCE over for ever.
-The text does not depend on their order."
+  "Return text that says that the tasks OLDER and NEWER, perhaps the same task, take RESOURCE from
+each other for ever. The text does not depend on their order."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
       (format nil "~A takes ~A from itself for ever: each time its command is interrupted it ~
-                   issues another"
+                   issues another command"
               (taker-text newer) resource)
-      (format nil "~A and ~A take ~A from each other for ever: each time the command of one is ~
-                   interrupted it issues another"
+      (format nil "~A and ~A take ~A from each other for ever: each time the command of a task is ~
+                   interrupted the task issues another"
               (taker-text older) (taker-text newer) resource)))
 
 (defun warn-of-takeovers (interface text)
-  "Queue the warning TEXT, unless that was done just before."
+  "Queue the warning TEXT, unless it was queued within the last +TAKEOVER-WARNING-TICKS+ ticks."
   (let ((tick (simulation-tick (interface-simulation interface)))
         (said (assoc text (interface-warned interface) :test #'string=)))
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
       (setf (interface-warned interface)
             (acons text tick (remove said (interface-warned interface))))
-      (warn-notably text ". They go on with the ticks. Let one at a time have it: see "
-                   "RPL-ROBOT-VALVE."))))
+      (warn-notably text ". They continue in each tick. Let one at a time own the robot's valve: "
+                   "see RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
-  "Note that NEWER took RESOURCE over from OLDER (NIL: no task); after too many let time pass."
+  "Count that the task NEWER, or NIL, has taken RESOURCE over from the task OLDER, or NIL. After too
+many takeovers, let time pass."
   (let ((count (takeover-count interface resource))
         (runner (interface-runner interface))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
@@ -65,7 +66,8 @@ The text does not depend on their order."
       (exhaust-reaction runner))))
 
 (defun waits-for-tick-p (interface)
-  "True if plans have taken over a part so often in this tick that they must wait for the next."
+  "True if plans have taken over a part so often in this tick that they must wait for the next
+tick."
   (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
        (loop for (nil . count) in (interface-takeovers interface)
                thereis (< *most-takeovers* count))))
@@ -73,12 +75,13 @@ The text does not depend on their order."
 ;;;; Commands without end
 
 (defparameter *plan-command-limit* 500
-  "How many commands a plan may issue to its robot before time passes for it. Issuing one more fails
+  "How many commands a plan may issue to its robot before time passes. A plan that issues more fails
 with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
 (defun commands-in-tick (runner task)
-  "Return a cons of TASK, a top-level task of RUNNER, and how many commands it has issued in this
-tick, and in ticks just before that takeovers have cut short."
+  "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
+issued in this tick. Commands in the ticks before count too if takeovers have cut these ticks
+short."
   (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
     (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
       (setf note (setf (runner-note runner 'commands) (list tick))))
@@ -87,28 +90,29 @@ tick, and in ticks just before that takeovers have cut short."
         (first (push (cons task 0) (rest note))))))
 
 (defun fluent-form-text (fluent)
-  "Return how plans write FLUENT, one of the robot's or of a part's."
+  "Return text that shows how plans write FLUENT, a fluent of the robot or of a part."
   (let* ((name (fluent-text fluent)) (space (position #\Space name)))
     (if space
         (format nil "(vref ~A)" name)
         name)))
 
-(defun end-wait-text (outcome resource)
-  "Return how a plan waits for the end of a command on RESOURCE, which OUTCOME tells of; or NIL."
+(defun wait-for-end-text (outcome resource)
+  "Return the text of a form that waits for the end of a command on RESOURCE. The function OUTCOME
+returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
   (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
     (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
 
 (defun count-command (task command outcome resource)
-  "Note that TASK gives COMMAND on RESOURCE, whose end OUTCOME makes settings of. Fail if its plan
-has given as many as it may in this tick."
+  "Count that TASK issues COMMAND on RESOURCE. Fail if the plan of TASK has issued more than
+*PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in WAIT-FOR-END-TEXT."
   (let ((count (commands-in-tick (task-runner task) (task-top task))))
     (when (< *plan-command-limit* (incf (cdr count)))
       (fail :class :too-many-commands :limit *plan-command-limit*
-            :remedy (format nil "A loop gives rpl-~(~A~) without waiting, and no time passes. Put ~
+            :remedy (format nil "A loop issues rpl-~(~A~) without waiting, and no time passes. Put ~
                                  a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
-                                 parts of a plan take the robot from one another, let each own ~
-                                 it: (with-valve ((rpl-robot-valve)) ...)"
-                            (command-name command) (end-wait-text outcome resource))))))
+                                 parts of a plan take the robot from one another, let each own it: ~
+                                 (with-valve ((rpl-robot-valve)) ...)"
+                            (command-name command) (wait-for-end-text outcome resource))))))
 
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
@@ -120,20 +124,21 @@ has given as many as it may in this tick."
          (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
 
 (defun reacting-to-events-p (task whole)
-  "True if TASK, a part of WHOLE (NIL: of nothing), runs what is done when something happens."
+  "True if TASK runs a reaction to an event, as in WHENEVER. TASK is a part of WHOLE, or WHOLE is
+NIL; reactions outside of WHOLE do not count."
   (loop for each in (lineage task)
         until (eq each whole)
         thereis (loop for frame in (frame-chain (task-frame each))
                       thereis (operator-called-p (node-form (frame-node frame))
                                                  "WHENEVER" "AT-LOCATION"))))
 
-(defun watches-p (task)
-  "True if TASK waits in a loop, or for any event: to wait is its purpose."
+(defun waits-on-purpose-p (task)
+  "True if TASK waits inside of a LOOP or WHENEVER, so that waiting is its purpose."
   (find-if (lambda (form) (operator-called-p form "LOOP" "WHENEVER"))
            (plan-backtrace task (task-frame task))))
 
-(defun clash-p (older newer)
-  "True if the task OLDER, whose command NEWER has interrupted, most likely did not expect that."
+(defun unexpected-interruption-p (older newer)
+  "True if the task NEWER has interrupted a command of the task OLDER, most likely by mistake."
   (and older newer
        (not (eq older newer))
        (not (task-over-p older))
@@ -151,64 +156,66 @@ has given as many as it may in this tick."
             (and (task-parent task) (task-label task))
             (task-label (task-top task)))))
 
-(defun unobtrusive-p (action)
+(defun harmless-action-p (action)
   "True if ACTION takes no time, stops the robot, or cleans up."
   (or (action-cleanup-p action)
       (command-instant-p (action-command action))
       (trait-p :stops (action-command action))))
 
 (defun warn-of-clash (interface older newer)
-  "Say once if the action NEWER of INTERFACE has interrupted OLDER, of a task beside its own."
+  "Warn once if the action NEWER of INTERFACE has interrupted OLDER, an action of a parallel task."
   (when (and newer
-             (clash-p (action-task older) (action-task newer))
-             (not (unobtrusive-p newer))
+             (unexpected-interruption-p (action-task older) (action-task newer))
+             (not (harmless-action-p newer))
              ;; A task that gives way to a higher priority expects it.
              (notany (lambda (loser) (part-of-p (action-task older) loser))
                      (valve-losers (interface-valve interface))))
     (let ((interrupted (action-text older)) (by (action-text newer)))
       (warn-once-in-run
        interface (list :clash interrupted by)
-       "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a ~
-        time. Give them one after the other, or let each task have the robot while it ~
-        needs it: (with-valve ((rpl-robot-valve)) ...)."
+       "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a time. ~
+        Issue the commands one after the other, or let each task own the robot's valve while it ~
+        needs the robot: (with-valve ((rpl-robot-valve)) ...)."
        interrupted by (action-resource older)))))
 
 ;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
-(defun step-before (task)
-  "Return the form of the innermost list of steps in TASK that it did before the one it is at."
+(defun previous-step (task)
+  "Return the form before the current form of TASK in the innermost SEQ that TASK is in."
   (dolist (frame (frame-chain (task-frame task)))
     (let ((form (node-form (frame-node frame))))
       (when (operator-called-p form "SEQ")
         (let ((at (current-form (frame-node frame) frame)))
           (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
-(defun haste (older newer)
-  "Return how many ticks, 0 or 1, the action OLDER was given by its task, which cuts it short by the
-action NEWER, most likely by mistake; NIL if that may be meant, as where it reacts to an event."
+(defun ticks-before-replacement (older newer)
+  "If a task has cut its action OLDER short by its action NEWER, most likely by mistake, return how
+many ticks OLDER had: 0 or 1. Return NIL if the task may mean that, for example in a reaction to an
+event."
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))
-         (not (unobtrusive-p older))
-         (not (unobtrusive-p newer))
+         (not (harmless-action-p older))
+         (not (harmless-action-p newer))
          (not (reacting-to-events-p task nil))
          (or (= 0 ticks)
              (and (= 1 ticks)
                   ;; One may drive on for a tick, too.
                   (not (trait-p :drives (action-command older)))
-                  (operator-called-p (step-before task) "WAIT-TIME")
-                  (not (watches-p task))))
+                  (operator-called-p (previous-step task) "WAIT-TIME")
+                  (not (waits-on-purpose-p task))))
          ticks)))
 
-(defun warn-of-haste (interface older newer)
-  "Say once if the action NEWER of INTERFACE has cut OLDER short before it began, or just after."
-  (let ((ticks (and newer (haste older newer))))
+(defun warn-of-hasty-command (interface older newer)
+  "Warn once if the action NEWER of INTERFACE has cut OLDER short before OLDER began, or just
+after."
+  (let ((ticks (and newer (ticks-before-replacement older newer))))
     (when ticks
       (warn-once-in-run
        interface (list :hurry-in-plan (action-name older) (action-name newer))
-       "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, as rpl-~(~A~) was given~;~
-        does nothing: rpl-~(~A~) was given before a tick has passed~], and ~A carries ~
-        out one command at a time.~@[ Wait for the end of the first before it: ~A.~]"
+       "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, because rpl-~(~A~) was issued~;does ~
+        nothing: rpl-~(~A~) was issued before a tick had passed~], and ~A carries out one command ~
+        at a time.~@[ Wait for the end of the first command before the second: ~A.~]"
        (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
        (action-name newer) (action-resource older)
-       (end-wait-text (action-outcome older) (action-resource older))))))
+       (wait-for-end-text (action-outcome older) (action-resource older))))))

@@ -64,28 +64,29 @@
 
 ;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
 
-(defun depth-inside (hand)
+(defun container-depth (hand)
   (loop for outer = (part-location hand) then (outer-location outer)
         while outer count t))
 
-(defun note-entry (hand destination)
+(defun record-hand-entry (hand destination)
   (setf (hand-way-in hand)
-        (cons destination (last (hand-way-in hand) (1- (depth-inside hand)))))
+        (cons destination (last (hand-way-in hand) (1- (container-depth hand)))))
   destination)
 
-(defun note-exit (hand)
-  "Return what HAND, which came out of something, had gone into before that; NIL for nothing."
+(defun record-hand-exit (hand)
+  "Record that HAND has left the container that it was in. Return the container that HAND is still
+in, or NIL."
   (first (setf (hand-way-in hand)
-               (last (hand-way-in hand) (depth-inside hand)))))
+               (last (hand-way-in hand) (container-depth hand)))))
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
-  (:when (null err) (:set hand-inside* (note-entry resource destination)))
+  (:when (null err) (:set hand-inside* (record-hand-entry resource destination)))
   (:error hand-error*)
   (:pulse hand-moved*))
 
 ;; As reading 180 says.
 (define-outcome (hand-remove) ()
-  (:when (null err) (:set hand-inside* (note-exit resource)))
+  (:when (null err) (:set hand-inside* (record-hand-exit resource)))
   (:error hand-error*)
   (:pulse hand-moved*))
 

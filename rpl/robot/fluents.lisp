@@ -13,7 +13,8 @@ part is a symbol, NIL for the robot itself.")
 (pushnew '*fluent-variables* *kept-variables*)
 
 (defun fluent-kind (kind)
-  "Return the name of the kind of part called KIND, or NIL for ROBOT. Signals if there is none."
+  "Return the name of the kind of part named KIND, or NIL for ROBOT. Signals an error if there is no
+such kind."
   (unless (same-name-p kind 'robot)
     (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
@@ -23,16 +24,17 @@ part is a symbol, NIL for the robot itself.")
            :key #'first))
 
 (defmacro define-fluents (kind &body definitions)
-  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA: (name documentation),
-followed by :ADDITION if the manual does not have the name. The documentation of those that are
-pulsed, and never set, begins so. Return their names."
+  "Define fluent variables for KIND, ROBOT or a kind of part such as CAMERA. Each of DEFINITIONS is
+(name documentation), followed by :ADDITION if the manual does not have the name. If a fluent is
+pulsed, and never set, its documentation begins with the word Pulsed. Return the names."
   `(progn
      (fluent-kind ',kind)
      ,@(loop for (name text mark) in definitions
              collect `(,(if mark 'addition 'public) ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
                                                  (unless (same-name-p kind 'robot)
-                                                   (format nil " A vector, by ~(~A~)." kind))
+                                                   (format nil " A vector with a fluent for each ~
+                                                                ~(~A~)." kind))
                                                  (and *marking-p* (not mark))))
              collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable
@@ -43,7 +45,7 @@ pulsed, and never set, begins so. Return their names."
 
 (define-fluents robot
   (robot-stopped* "Pulsed when the robot stops moving, whether or not it succeeded.")
-  (robot-movement-error* "The error code of the last movement command to end; NIL: success.")
+  (robot-movement-error* "The error code of the last movement command to end; NIL after success.")
   (robot-angle-diff* "The estimated change in angle over the last turn, in radians.")
   (robot-arrived-at* "The designator that the robot last moved to.")
   (robot-place-input* "Pulsed when the robot's place type is sensed.")
@@ -53,15 +55,15 @@ pulsed, and never set, begins so. Return their names."
   (camera-input* "Pulsed when new sensory information is available.")
   (camera-views* "The latest view, a list of numbers.")
   (camera-designators* "The designators found by the last search; () if it failed.")
-  (camera-error* "The error code of the last sensing command; NIL: success.")
+  (camera-error* "The error code of the last sensing command; NIL after success.")
   (camera-tracking* "Pulsed when the camera starts tracking a designator.")
-  (camera-tracking-error* "The code with which the last track failed or ended.")
+  (camera-tracking-error* "The error code with which the last track failed or ended.")
   (camera-moved* "Pulsed when the camera completes a move.")
-  (camera-movement-error* "The error code of the last camera movement; NIL: success."))
+  (camera-movement-error* "The error code of the last camera movement; NIL after success."))
 
 (define-fluents hand
   (hand-moved* "Pulsed when the hand completes a movement.")
-  (hand-error* "The error code of the last hand command; NIL: success.")
+  (hand-error* "The error code of the last hand command; NIL after success.")
   (hand-lost* "Pulsed when the hand is seen to lose its grasp.")
   (hand-inside* "The designator or bin that the hand is inside of, or NIL.")
   ;; As reading 24 says.
@@ -70,7 +72,7 @@ pulsed, and never set, begins so. Return their names."
 
 (define-fluents storage-bin
   (storage-bin-moved* "Pulsed when the bin has opened or closed, or failed to.")
-  (storage-bin-error* "The error code of the last bin command; NIL: success.")
+  (storage-bin-error* "The error code of the last bin command; NIL after success.")
   (storage-bin-jammer* "The camera or hand that kept the bin from closing, or NIL."))
 
 (defun all-fluent-variables ()
@@ -78,7 +80,7 @@ pulsed, and never set, begins so. Return their names."
   (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
 
 (defun make-fluents (robot)
-  "Give all fluent variables fresh fluents that suit ROBOT (reading 183)."
+  "Give all fluent variables new fluents, one for ROBOT or for each of its parts (reading 183)."
   (let ((kinds (mapcar #'type-of (robot-parts robot))))
     (loop for (variable kind name) in *fluent-variables*
           do (setf (symbol-value variable)
@@ -89,7 +91,8 @@ pulsed, and never set, begins so. Return their names."
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
 (defun find-part (kind index operator)
-  "Return the part of KIND of the plans' robot that INDEX is: its number, itself, or a fluent."
+  "Return the part of KIND, of the plans' robot, that INDEX stands for: the part's number, the part
+itself, or a fluent with either value."
   (let* ((index (fluent-value index))
          (parts (parts-of-kind (rpl-robot) kind)))
     (cond ((find index parts) index)
@@ -123,19 +126,19 @@ pulsed, and never set, begins so. Return their names."
   (rpl-robot-num-hands robot num-hands "Return how many hands the robot has.")
   (rpl-robot-num-bins robot num-bins "Return how many storage bins the robot has.")
   (rpl-camera-field-of-view camera camera-field-of-view
-   "Return how wide the camera sees, in radians.")
+   "Return the width of the camera's field of view, in radians.")
   (rpl-camera-resolution camera camera-resolution
    "Return how many pixels the camera's views have.")
   (rpl-camera-angle camera camera-angle
    "Return the camera's angle relative to the robot, in radians.")
   (rpl-camera-last-view camera camera-last-view
-   "Return the last view of the camera, a list of numbers; () before the first.")
+   "Return the last view of the camera, a list of numbers; () before the first view.")
   (rpl-hand-strength hand hand-strength
    "Return the largest weight that the hand can lift.")
   (rpl-storage-bin-capacity storage-bin storage-bin-capacity
-   "Return the size of all that fits into the bin.")
+   "Return the capacity of the bin: the total size of the things that fit into it.")
   (rpl-storage-bin-real-capacity storage-bin remaining-capacity
-   "Return the size of what still fits into the bin.")
+   "Return the free capacity of the bin: the total size of the things that still fit into it.")
   (rpl-storage-bin-closed? storage-bin storage-bin-closed-p
    "True if the bin is closed."))
 
@@ -150,24 +153,25 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 
 (public rpl-new-odometer)
 (defun rpl-new-odometer (name)
-  "Return a new odometer of the plans' robot, called NAME (manual, figure D.8)."
+  "Return a new odometer of the plans' robot, with the name NAME (manual, figure D.8)."
   (make-odometer (rpl-robot) (fluent-value name)))
 
 ;;; Resources.
 
 (addition rpl-robot-part)
 (defun rpl-robot-part (kind index)
-  "Return the part of the plans' robot of KIND, a symbol, with INDEX, perhaps a fluent. Signals
-WRONG-ARGUMENT, and MISUSE without a robot."
+  "Return the part of the plans' robot with the kind KIND, a symbol, and the number INDEX, perhaps a
+fluent. Signals WRONG-ARGUMENT; and MISUSE without a robot."
   (find-part kind index 'rpl-robot-part))
 
 ;;; A grab sets the fluents of what it ends at once, as the plan that grabs has nothing to wait for.
 
 (public rpl-grab-robot)
 (defun rpl-grab-robot ()
-  "Stop whatever the robot itself is doing. Fluents say so at once: error code :INTERRUPT and the
-pulse; the robot stands from the next tick on (manual C)."
-  (grab (the-interface) (rpl-robot))
+  "Stop the current command of the robot itself. Its fluents change at once: the error fluent
+becomes :INTERRUPT, and the fluent for the end is pulsed. The robot stands still from the next tick
+on (manual C)."
+  (grab (required-interface) (rpl-robot))
   (values))
 
 (macrolet ((define-grabs (&rest definitions)
@@ -175,10 +179,10 @@ pulse; the robot stands from the next tick on (manual C)."
                 ,@(loop for (name kind text) in definitions
                         collect `(public ,name)
                         collect `(defun ,name (index)
-                                   ,(format nil "Stop whatever goes on on ~A INDEX. Fluents say ~
-                                                 so at once; see RPL-GRAB-ROBOT. Signals ~
+                                   ,(format nil "Stop the current commands of ~A INDEX. Fluents ~
+                                                 change at once, as in RPL-GRAB-ROBOT. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)
-                                   (grab (the-interface) (find-part ',kind index ',name))
+                                   (grab (required-interface) (find-part ',kind index ',name))
                                    (values))))))
   (define-grabs
     (rpl-grab-camera camera "the camera")

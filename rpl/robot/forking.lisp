@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(interface-of))
+(export '(interface-of-robot))
 
 ;;; After a rewind a new run replaces the old one. It has the old tasks up to that tick, with the
 ;;; same numbers. Later tasks of the two runs differ, though they may have the same numbers. So an
@@ -10,62 +10,64 @@
 ;;; first; tasks with greater numbers belong to that era. A rewind begins an era; so does
 ;;; RPL-INIT-ROBOT, after which numbers start again.
 
-(defun era-of (number interface)
+(defun era-of-task-number (number interface)
   (car (find number (interface-eras interface) :key #'cdr :test #'>)))
 
-(defun interface-of (robot simulation)
-  "Return what runs the plans of the robot that is called like ROBOT in SIMULATION, or NIL."
+(defun interface-of-robot (robot simulation)
+  "Return the interface in SIMULATION to plans of the robot with the name of ROBOT, or NIL."
   (find-if (lambda (participant)
              (and (interface-p participant)
                   (eq (robot-name robot) (robot-name (interface-robot participant)))))
            (simulation-participants simulation)))
 
 (defun same-era-p (task interface)
-  "True if a task with the number of TASK, of another run, is or was the same in INTERFACE."
+  "True if the task of INTERFACE with the number of TASK, a task of another run, is the counterpart
+of TASK."
   (let ((number (task-serial task)))
-    (eq (era-of number (runner-client (task-runner task)))
-        (era-of number interface))))
+    (eq (era-of-task-number number (runner-client (task-runner task)))
+        (era-of-task-number number interface))))
 
 (defmethod counterpart-in-current-run ((task task))
   (let* ((client (and (task-runner task) (runner-client (task-runner task))))
-         (interface (and client (interface-of (interface-robot client) *simulation*))))
+         (interface (and client (interface-of-robot (interface-robot client) *simulation*))))
     (and interface
          (same-era-p task interface)
          (task-numbered (task-serial task) (interface-runner interface)))))
 
 (defun counterpart-of-task (task simulation)
   "Return the counterpart of TASK in SIMULATION, a fork of its run or the successor of a rewound
-run; TASK itself if it is over there. Signals MISUSE if the run was rewound to before its start, or
-plans were begun again since."
+run; TASK itself if the counterpart is over. Signals MISUSE if the run was rewound to before the
+start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
   (let* ((client (runner-client (task-runner task)))
-         (interface (interface-of (interface-robot client) simulation)))
+         (interface (interface-of-robot (interface-robot client) simulation)))
     (cond ((and interface (same-era-p task interface))
            (or (task-numbered (task-serial task) (interface-runner interface)) task))
           ((eq (interface-simulation client) (latest (interface-simulation client))) task)
-          (t (reject-use "The task ~D, ~A, is of a run that was rewound, and not in the one that ~
-                          goes on: it began after the tick to which that was rewound, or ~
-                          RPL-INIT-ROBOT has begun plans anew since. (plans) lists those that are ~
+          (t (reject-use "The task ~D, ~A, belongs to a run that was rewound, and is not in the ~
+                          run that goes on: it began after the tick to which the run was rewound, ~
+                          or RPL-INIT-ROBOT has begun plans anew since. (plans) lists the plans ~
                           under way."
                          (task-serial task) (task-label task))))))
 
 ;;; Where a run is rewound.
 
 (defun eras-until (number eras)
-  "Return the first of ERAS, and the others of which there are tasks up to NUMBER."
+  "Return the oldest of ERAS, and the others in which tasks with numbers up to NUMBER began."
   (append (remove-if (lambda (era) (>= (cdr era) number)) (butlast eras))
           (last eras)))
 
-(defun same-beginning-p (interface other)
-  "True if one RPL-INIT-ROBOT has begun INTERFACE and OTHER, of two runs."
+(defun same-init-call-p (interface other)
+  "True if the same call of RPL-INIT-ROBOT has begun INTERFACE and OTHER, interfaces of two runs."
   (eq (car (first (last (interface-eras interface))))
       (car (first (last (interface-eras other))))))
 
 (defun begin-era (old new)
-  "Begin an era in NEW, which replaces OLD: its later tasks differ from those of OLD."
+  "Begin an era in the run NEW, which replaces the run OLD: later tasks of NEW differ from tasks of
+OLD."
   (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
-    (let ((before (interface-of (interface-robot interface) old))
+    (let ((before (interface-of-robot (interface-robot interface) old))
           (number (runner-serial (interface-runner interface))))
-      (when (and before (same-beginning-p interface before))
+      (when (and before (same-init-call-p interface before))
         (setf (interface-eras interface) (interface-eras before)))
       (setf (interface-eras interface)
             (cons (cons (gensym "ERA") number)
@@ -82,13 +84,14 @@ plans were begun again since."
     (when interface
       (with-plans (interface) (react-fully interface)))))
 
-(defun note-of-plans (interface function &rest arguments)
-  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats what is done here."
+(defun record-plan-action (interface function &rest arguments)
+  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats the current
+action."
   (apply #'note-doing (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
-  "Repeat a call from outside: of the function WORD with ARGUMENTS and the task numbered SERIAL or,
-if that is NIL, the runner of plans."
+  "Repeat a call from outside of plans: of the function WORD with ARGUMENTS and the task with the
+number SERIAL or, if SERIAL is NIL, the runner of plans."
   (let* ((interface (usable-interface))
          (runner (and interface (interface-runner interface)))
          (subject (if (and runner serial) (task-numbered serial runner) runner)))
@@ -96,11 +99,12 @@ if that is NIL, the runner of plans."
 
 (defmethod note-outside-call ((interface interface) word arguments subject)
   (when (interface-valid-p interface)
-    (note-of-plans interface #'repeat-call word arguments
-                   (and (task-p subject) (task-serial subject)))))
+    (record-plan-action interface #'repeat-call word arguments
+                        (and (task-p subject) (task-serial subject)))))
 
 (defun name-of-fluent (fluent)
-  "Return the variable of FLUENT and, if that holds a vector, the index, as a list; or FLUENT."
+  "Return a list (variable index) for FLUENT; the index is NIL unless the variable holds a vector.
+Return FLUENT itself if no variable holds FLUENT."
   (loop for (variable) in *fluent-variables*
         for value = (symbol-value variable)
         for index = (and (vectorp value) (position fluent value :test #'eq))
@@ -109,7 +113,7 @@ if that is NIL, the runner of plans."
         finally (return fluent)))
 
 (defun repeat-change (function name value)
-  "Call FUNCTION with the fluent that NAME, see NAME-OF-FLUENT, means here, and VALUE."
+  "Call FUNCTION with VALUE and the fluent of this run that NAME stands for: see NAME-OF-FLUENT."
   (funcall function
            (if (consp name)
                (destructuring-bind (variable index) name
@@ -117,42 +121,43 @@ if that is NIL, the runner of plans."
                (twin-here name))
            value))
 
-(defun note-change (function fluent value)
-  "Remember for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
+(defun record-fluent-change (function fluent value)
+  "Record for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
   (when (and *simulation* (simulation-past *simulation*))
     (note-doing *simulation* #'repeat-change function (name-of-fluent fluent) value)))
 
 (defmethod note-outside-change ((interface interface) function fluent value)
-  (note-change function fluent value))
+  (record-fluent-change function fluent value))
 
 (defmethod note-outside-change ((interface null) function fluent value)
-  (note-change function fluent value))
+  (record-fluent-change function fluent value))
 
 ;;; References to a run that is over are dropped.
 
-(defun realm-of (simulation)
+(defun realm-of-simulation (simulation)
   (cdr (assoc '*realm* (environment-of simulation))))
 
-(defun leave-fluents (old new)
-  "Remove references to OLD from the fluents of NEW, which replaces OLD."
+(defun drop-fluents-of-old-run (old new)
+  "Remove references to the run OLD from the fluents of the run NEW, which replaces OLD."
   ;; The realm may be that of a live run around OLD, too.
   (when (or (eq old (global-value '*simulation*))
-            (not (eq (realm-of old) (global-value '*realm*))))
-    (leave-realm (realm-of old) (realm-of new))))
+            (not (eq (realm-of-simulation old) (global-value '*realm*))))
+    (leave-realm (realm-of-simulation old) (realm-of-simulation new))))
 
-(attend *rewind-hooks* leave-fluents)
+(attend *rewind-hooks* drop-fluents-of-old-run)
 
-(defun give-fluents-back (old new)
-  "Set the fluents of OLD, a rewound run, to their values in NEW, its continuation, which is over."
-  (let ((from (realm-of new)) (realm (realm-of old)))
+(defun copy-fluents-back (old new)
+  "Set the fluents of OLD, a rewound run, to their values in NEW, the run that has replaced OLD and
+is over."
+  (let ((from (realm-of-simulation new)) (realm (realm-of-simulation old)))
     (unless (or (null realm) (eq from realm)) (copy-back-values from realm))))
 
-(attend *rewound-end-hooks* give-fluents-back)
+(attend *rewound-end-hooks* copy-fluents-back)
 
 ;; A live run that was rewound has let top-level code work in a fork of where that worked before.
-(defun leave-rewound (robot options)
-  "Let top-level code, now that the simulator of ROBOT has started a new run, work again in the
-realm of runs that are no forks. Fluents have the values there that they had last."
+(defun return-to-root-realm (robot options)
+  "Let top-level code work in the root realm of fluents again, because the simulator of ROBOT has
+started a new run. Fluents keep their last values."
   (declare (ignore robot options))
   (let ((from (global-value '*realm*)))
     (unless (eq from +root+)
@@ -160,7 +165,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
       (setf (global-value '*realm*) +root+)
       (when (eq from *realm*) (setf *realm* +root+)))))
 
-(attend *simulator-hooks* leave-rewound)
+(attend *simulator-hooks* return-to-root-realm)
 
 ;;; Plans are copied while they rest, between two reactions: then all that they are about to do is
 ;;; in their tasks, and in what was posted to them.
@@ -193,7 +198,8 @@ realm of runs that are no forks. Fluents have the values there that they had las
                   when the plans have come to rest.")))
 
 (defun call-holding-at-rest (interface function)
-  "Call FUNCTION, holding the plans of INTERFACE. Return its value; :BUSY if others have them."
+  "Call FUNCTION while this thread holds the plans of INTERFACE, and return its value. Return :BUSY
+if another thread holds the plans."
   (multiple-value-bind (value free-p)
       (call-if-free (interface-lock interface)
                     (lambda ()
@@ -206,7 +212,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
 
 (defmethod participant-at-rest ((interface interface) function)
   (cond ((interface-resting-p interface) (funcall function))
-        (t (check-not-hogged interface)
+        (t (check-not-blocked interface)
            (call-holding-at-rest interface function))))
 
 (defmethod call-as-participant-makes-way ((interface interface) function)
@@ -216,7 +222,7 @@ realm of runs that are no forks. Fluents have the values there that they had las
                       interface))
 
 (defmethod participant-place ((interface interface) value)
-  (multiple-value-bind (task name) (task-with value (interface-runner interface))
+  (multiple-value-bind (task name) (task-holding-value value (interface-runner interface))
     (and task (format nil "the variable ~(~A~) of the task ~D, ~A"
                       name (task-serial task) (task-label task)))))
 

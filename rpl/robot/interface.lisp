@@ -16,57 +16,56 @@
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
-  "When true, all that happens to tasks and fluents is kept in a trace, some 50 octets for each
-event, from RPL-INIT-ROBOT or the start of the next plan on. See PLAN-TRACE, WHY and
-SAVE-PLAN-TIMELINE.")
+  "When true, all events of tasks and fluents are kept in a trace, from RPL-INIT-ROBOT or the start
+of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SAVE-PLAN-TIMELINE.")
 
 (define-kind (interface :constructor (make-interface (robot simulation eras commanded)))
-    "The robot that plans drive, and what runs them."
+    "The connection between a robot and the runner of the plans that drive it."
   (:fixed
    (robot nil (or null robot) "the robot that plans drive" :export)
    (simulation nil t "the simulation that the robot is in" :export)
    (commanded nil (or null robot (eql :none))
-              "the robot that a prompt commanded when this was made, or NIL; :NONE if the prompt has
-been told since which robot it commands")
-   (valve (make-valve "robot") valve "the valve of the robot, for plans that want to have it"))
+              "the robot that a prompt commanded when the interface was made, or NIL; :NONE if the
+prompt was given another robot later")
+   (valve (make-valve "robot") valve "the valve of the robot, to be owned by a plan at a time"))
   (:state
-   (runner nil (or null plan-runner) "what runs the plans" :export)
+   (runner nil (or null plan-runner) "the plan runner that runs the plans" :export)
    (tick-wanted-p nil boolean "the plans are to go on with the next tick")
-   (ends-requested '() t "the plans that have been asked to end")
+   (ends-requested '() t "the plans whose end was requested")
    (actions '() list "the commands of plans that are under way, the oldest first")
-   (answers '() list "the answers to them that are not applied yet, the oldest first")
-   (takeovers '() list "how often plans have taken which resource in a tick")
-   (takeover-tick nil t "the tick in which that was")
-   (wishes '() list "what tasks want done while all plans rest, the oldest first" :export)
+   (answers '() list "the answers to commands that are not applied yet, the oldest first")
+   (takeovers '() list "lists of a resource and how often plans have taken it in a tick")
+   (takeover-tick nil t "the tick that the counts in TAKEOVERS are for")
+   (wishes '() list "the wishes of tasks, served while all plans rest, the oldest first" :export)
    (wishes-served 0 fixnum "how many wishes have been served in a tick")
-   (wish-tick nil t "the tick in which that was"))
+   (wish-tick nil t "the tick that the count in WISHES-SERVED is for"))
   (:memory
-   (eras '() list "which tasks are of which era, the newest first; see forking.lisp")
-   (warned '() list "what was said of takeovers, and at which tick")
-   (outside nil symbol "the command that the robot carries out and no plan has given, or NIL")
-   (last-command '() list "the plan, the function and the part of the command given last")
-   (pulses '() list "lists (fluent's-name plan tick): when a plan's command pulsed each one last")
-   (unread '() list "how commands ended of which plans have not looked at how; see NOTE-UNREAD")
+   (eras '() list "the eras of tasks, the newest first; see forking.lisp")
+   (warned '() list "conses of a warning of takeovers and its tick")
+   (outside nil symbol "the command in progress that no plan has issued, or NIL")
+   (last-command '() list "the plan, the function and the part of the last command")
+   (pulses '() list "lists (fluent's-name plan tick): the last pulses by commands")
+   (unread '() list "errors of commands that plans have not read; see RECORD-UNREAD-END")
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on, :READY for at once, or NIL"))
   (:link
-   (origin '() list "how messages name the plans, kept so that it is made once")
-   (ender nil (or null function) "what the robot calls when its run is over")
+   (origin '() list "the origin that messages name for the plans, made once")
+   (ender nil (or null function) "the function that the robot calls when its run ends")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
-   (told nil t "a pair of the last failure that the journal was told of, and that remark, or NIL")
+   (told nil t "a cons of the last failure noted in the journal and the remark, or NIL")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")
    (resting-p nil boolean "the thread that holds the plans keeps them at rest for a fork")
-   (lock (make-lock "plans") t "what is held to touch the plans")
-   (actions-lock (make-lock "commands of plans") t "what is held to touch actions or answers")
-   (holder nil t "the thread that holds the lock, so that plans may start and end others")
-   (calls nil (or null user-calls) "what users' code that thread calls")
-   (wanted 0 atomic-count "how many threads want the lock, or wait for all to rest")
-   (thread nil t "the thread of plans that are live, or NIL")
-   (wake-up (make-semaphore "plans") t "what wakes that thread")
-   (rests 0 atomic-count "how often all plans have come to rest there")
+   (lock (make-lock "plans") t "the lock for access to the plans")
+   (actions-lock (make-lock "commands of plans") t "the lock for access to actions and answers")
+   (holder nil t "the thread that holds the lock, or NIL")
+   (calls nil (or null user-calls) "a record of users' code that the plans' thread calls")
+   (wanted 0 atomic-count "how many threads want the lock, or wait until all plans rest")
+   (thread nil t "the thread of the plans in a live run, or NIL")
+   (wake-up (make-semaphore "plans") t "the semaphore that wakes the plans' thread")
+   (rests 0 atomic-count "how often all plans have come to rest in their thread")
    (hog nil (or null task)
-        "the task that was seen to be at Lisp code that does not return, or NIL")))
+        "the task found to run Lisp code that does not return, or NIL")))
 
 (defmethod print-object ((interface interface) stream)
   (print-unreadable-object (interface stream :type t)
@@ -82,17 +81,17 @@ been told since which robot it commands")
 (pushnew '*interface* *simulation-variables*)
 (pushnew '*realm* *simulation-variables*)
 
-(defvar *reacting* nil
-  "The interface whose plans react in this thread: they drive its robot and no other.")
+(defvar *reacting-interface* nil
+  "The interface whose plans react in this thread. The plans drive its robot and no other.")
 
 ;;; Access to the plans.
 
-(defvar *held* '()
+(defvar *held-interfaces* '()
   "The interfaces whose plans this thread holds.")
 
 (defun holding-p (interface)
-  "True if this thread is letting the plans of INTERFACE react, or looks at them."
-  (and (member interface *held* :test #'eq) t))
+  "True if this thread holds the plans of INTERFACE, to let them react or to look at them."
+  (and (member interface *held-interfaces* :test #'eq) t))
 
 (defun publish-next-tick (interface)
   "Tell other threads when the plans of INTERFACE, which this thread holds, next go on."
@@ -101,8 +100,9 @@ been told since which robot it commands")
           (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
-  "Call FUNCTION, holding the plans of INTERFACE, locked by this thread. It can be interrupted."
-  (let* ((held (cons interface *held*)) (*held* held))
+  "Call FUNCTION as the holder of the plans of INTERFACE, which this thread has locked. FUNCTION can
+be interrupted."
+  (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held))
     (declare (dynamic-extent held))
     (in-any-case
       (progn (setf (interface-holder interface) (current-thread))
@@ -111,30 +111,32 @@ been told since which robot it commands")
       (setf (interface-holder interface) nil))))
 
 (defun call-with-plans-if-free (function interface)
-  "Call FUNCTION as CALL-WITH-PLANS does, and return its value and true; NIL and false if another
-thread holds the plans of INTERFACE."
+  "Call FUNCTION as CALL-WITH-PLANS does, and return its value and true. If another thread holds the
+plans of INTERFACE, do not wait; return NIL and false."
   (if (holding-p interface)
       (values (funcall function) t)
       (call-if-free (interface-lock interface) (lambda () (call-holding function interface)))))
 
 (defun wake-tick (interface)
-  "Return the tick at which the next plan of INTERFACE that waits for time wakes; NIL if none waits
-for that, or some plan is ready. For any thread."
+  "Return the tick at which the next plan of INTERFACE wakes that waits for time. Return NIL if no
+plan waits for time, or if a plan is ready. Any thread may call this function."
   (let ((tick (interface-next-tick interface)))
     (and (realp tick) tick)))
 
 (defun ready-p (interface)
-  "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."
+  "True if plans of INTERFACE are ready, have posts to apply, or wait for time. Any thread may call
+this function."
   (and (or (interface-next-tick interface)
            (outside-request-p (interface-runner interface)))
        t))
 
 (defun in-debugger-p (interface)
-  "True if the thread of the plans of INTERFACE waits for an answer in a debugger. For any thread."
+  "True if the thread of the plans of INTERFACE waits for an answer in a debugger. Any thread may
+call this function."
   (let ((calls (interface-calls interface)))
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
 
-(defun hog-of (interface)
+(defun blocking-task (interface)
   ;; The watcher sees only at its next sample that it has gone on.
   (let ((task (interface-hog interface)))
     (and task (eq :running (task-state task)) (not (in-debugger-p interface)) task)))
@@ -142,16 +144,18 @@ for that, or some plan is ready. For any thread."
 ;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
 ;; shows it elsewhere.
 (defun check-not-in-debugger (interface)
-  "Signal MISUSE if the plans of INTERFACE, of another thread, have stopped in a debugger."
+  "Signal MISUSE if the plans of INTERFACE, which run in another thread, have stopped in a
+debugger."
   (when (and (in-debugger-p interface)
              (foreign-hook)
              (not (eq (current-thread) (interface-thread interface))))
-    (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose there how ~
-                 they go on; before that, (print-plans t t) shows them there, with their variables."
+    (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose in the ~
+                 debugger how the plans go on; typed there, (print-plans t t) shows the plans with ~
+                 their variables."
                 (interface-robot interface) (thread-name (interface-thread interface)))))
 
-(defun check-not-hogged (interface)
-  (let ((task (hog-of interface)))
+(defun check-not-blocked (interface)
+  (let ((task (blocking-task interface)))
     (when (and task (not (eq (current-thread) (interface-thread interface))))
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))
@@ -159,8 +163,9 @@ for that, or some plan is ready. For any thread."
 ;; A time limit may interrupt this at any moment: the count must come out even, or the plans' thread
 ;; would yield forever.
 (defun call-wanting-plans (function interface)
-  "Call FUNCTION, while this thread counts as one that wants the plans of INTERFACE, with a function
-that is to be called when it has them. Interrupts wait, but for the extent of ALLOWING-INTERRUPTS."
+  "Count this thread among the threads that want the plans of INTERFACE, and call FUNCTION with a
+function without arguments. FUNCTION must call that function when this thread has the plans.
+Interrupts are deferred, except inside of ALLOWING-INTERRUPTS."
   (let ((waiting-p t))
     (flet ((have ()
              (when (shiftf waiting-p nil) (atomic-decf (interface-wanted interface)))))
@@ -171,9 +176,10 @@ that is to be called when it has them. Interrupts wait, but for the extent of AL
           (have))))))
 
 (defun call-with-plans (function interface)
-  "Call FUNCTION while no other thread touches the plans of INTERFACE. Signals MISUSE if one of them
-is known to be at Lisp code that does not return. One that waits in a debugger can be answered."
-  (check-not-hogged interface)
+  "Call FUNCTION while no other thread touches the plans of INTERFACE. Signals MISUSE if a plan is
+known to run Lisp code that does not return, or waits in the debugger of an editor. At a plain REPL,
+a plan that waits in a debugger can be answered meanwhile."
+  (check-not-blocked interface)
   (check-not-in-debugger interface)
   (if (holding-p interface)
       (funcall function)
@@ -196,16 +202,17 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
   (when (interface-thread interface)
     (signal-semaphore (interface-wake-up interface))))
 
-(defun thread-of (interface)
-  "Return the thread of the plans of INTERFACE, :STARTING if it is yet to start, or NIL."
+(defun plans-thread (interface)
+  "Return the thread of the plans of INTERFACE, :STARTING while the thread is being started, or
+NIL."
   (let ((thread (interface-thread interface)))
     (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
       (swap-if (interface-thread interface) thread nil))
     (interface-thread interface)))
 
-(defun call-to-plans (interface)
+(defun wake-plans-or-owner (interface)
   (let ((simulation (interface-simulation interface)))
-    (if (thread-of interface)
+    (if (plans-thread interface)
         (wake-plans interface)
         (when (live-p simulation) (wake-owner (simulation-timeline simulation))))))
 
@@ -223,30 +230,32 @@ is known to be at Lisp code that does not return. One that waits in a debugger c
          t)))
 
 (defun warn-once-in-run (interface key control &rest arguments)
-  "Warn once by KEY in the run of INTERFACE, with the text formatted from CONTROL and ARGUMENTS."
+  "Warn with the text formatted from CONTROL and ARGUMENTS, once for each KEY in the run of
+INTERFACE."
   (warn-once key (simulation-world (interface-simulation interface))
              (apply #'format nil control arguments)))
 
-(defun usable-p (interface)
-  "True if there is an INTERFACE, valid and for the current world, if any."
+(defun usable-interface-p (interface)
+  "True if INTERFACE is not NIL, is valid, and belongs to the current world if there is a current
+world."
   (and interface
        (interface-valid-p interface)
        (or (null *world*)
            (eq *world* (robot-world (interface-robot interface))))))
 
 (defun interface-in-use-here ()
-  "Return the interface whose plans react here, or else the one in use; or NIL."
-  (or *reacting* *interface*))
+  "Return the interface whose plans react in this thread, or else the interface in use; or NIL."
+  (or *reacting-interface* *interface*))
 
 (defun usable-interface ()
   (let ((interface (interface-in-use-here)))
-    (and (usable-p interface) interface)))
+    (and (usable-interface-p interface) interface)))
 
-(defun the-interface ()
-  "Return the interface that can be used here. If plans react here whose robot is gone, the plan at
-work ends. Signals MISUSE if there is none."
+(defun required-interface ()
+  "Return the interface that can be used in this thread. If the robot of a plan that runs in this
+thread is gone, end that plan. Signals MISUSE if no interface can be used."
   (or (usable-interface)
-      (and *reacting* (not (interface-valid-p *reacting*)) (leave-plan))
+      (and *reacting-interface* (not (interface-valid-p *reacting-interface*)) (leave-plan))
       (let ((robots (and *simulation* (simulation-robots *simulation*)))
             (alone-p (and *runner* (null (runner-client *runner*)))))
         (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator ~
@@ -259,16 +268,16 @@ work ends. Signals MISUSE if there is none."
 (addition rpl-robot)
 (defun rpl-robot ()
   "Return the robot that plans drive. Signals MISUSE without one."
-  (interface-robot (the-interface)))
+  (interface-robot (required-interface)))
 
 (addition rpl-robot-valve)
 (defun rpl-robot-valve ()
-  "Return the valve of the robot that plans drive. It is voluntary: plans that may run beside
-others, and branches of a plan, own it while they drive, (with-valve ((rpl-robot-valve)) ...), as
-the shipped plans do. Signals MISUSE without a robot."
-  (interface-valve (the-interface)))
+  "Return the valve of the robot that plans drive. Plans that may run beside other plans, and
+branches of a plan, should own the valve while they drive, by (with-valve ((rpl-robot-valve)) ...),
+as the shipped plans do. Nothing enforces the use of the valve. Signals MISUSE without a robot."
+  (interface-valve (required-interface)))
 
 (addition rpl-runner)
 (defun rpl-runner ()
   "Return the plan runner of the robot that plans drive; see PLAN-TRACE, PRINT-TASKS."
-  (interface-runner (the-interface)))
+  (interface-runner (required-interface)))

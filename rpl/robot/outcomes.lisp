@@ -8,13 +8,13 @@
 ;;; bins are given by index, and any argument may be a fluent. How the end of a command sets fluents
 ;;; is defined by DEFINE-OUTCOME, in the table of commands.lisp.
 
-(defun fluent-of (variable part)
-  "Return the fluent in VARIABLE, which for a PART is a vector."
+(defun fluent-for-part (variable part)
+  "Return the fluent in VARIABLE; if VARIABLE holds a vector, return the fluent for PART."
   (let ((value (symbol-value variable)))
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
 (defun convert-argument (value type operator)
-  "Return what VALUE, perhaps a fluent or an index, is as an argument of TYPE (reading 181)."
+  "Return VALUE, perhaps a fluent or an index, converted to an argument of TYPE (reading 181)."
   (let ((value (fluent-value value)) (kind (find-kind-name type 'part)))
     (cond (kind (find-part kind value operator))
           ((and (same-name-p type 'destination) (integerp value))
@@ -22,7 +22,8 @@
           (t value))))
 
 (defun convert-resource (arguments type operator)
-  "Return the resource that ARGUMENTS begin with, and the rest; the robot is implied."
+  "Return the resource of a command and the other ARGUMENTS. The resource is the robot if TYPE is
+ROBOT, otherwise the first argument."
   (if (same-name-p type (quote robot))
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
@@ -51,10 +52,10 @@
 
 (defun command-in-plan (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
-and the results, makes settings of its end. Return nothing."
-  (let ((interface (the-interface)))
+and the results, returns the settings of fluents at the end of COMMAND. Return nothing."
+  (let ((interface (required-interface)))
     ;; A call from outside of plans is recorded. Its results reach forks too.
-    (note-of-plans interface #'apply operator (mapcar #'fluent-value arguments))
+    (record-plan-action interface #'apply operator (mapcar #'fluent-value arguments))
     (let ((*goes-on-in-forks-p* t))
       (issue-in-plan interface operator command outcome arguments)))
   (values))
@@ -69,8 +70,9 @@ and the results, makes settings of its end. Return nothing."
     (let ((action (find-if #'search-p (interface-actions interface))))
       (and action (action-resource action)))))
 
-(defun expected-text (interface type argument)
-  "Return in words what to give for ARGUMENT, which is not of TYPE, in a plan of INTERFACE."
+(defun expected-argument-text (interface type argument)
+  "Return text that says what a plan of INTERFACE must give instead of ARGUMENT, which is not of
+TYPE."
   (let ((camera (and (null argument)
                      (same-name-p type 'designator)
                      (search-under-way interface))))
@@ -84,8 +86,9 @@ and the results, makes settings of its end. Return nothing."
   (loop for spec in (command-parameters command)
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
-          do (error 'wrong-argument :operator operator :name (spec-name spec) :value argument
-                                    :expected (expected-text interface (spec-type spec) argument))))
+          do (error 'wrong-argument
+                    :operator operator :name (spec-name spec) :value argument
+                    :expected (expected-argument-text interface (spec-type spec) argument))))
 
 (defun plan-function-name (command-name)
   (symbolicate 'rpl- command-name))
@@ -98,11 +101,11 @@ and the results, makes settings of its end. Return nothing."
   (case (and (consp clause) (first clause))
     (:set (destructuring-bind (fluent value) (rest clause)
             (check-fluent fluent clause)
-            `(list (list :set (fluent-of ',fluent resource) ,value))))
+            `(list (list :set (fluent-for-part ',fluent resource) ,value))))
     (:error (check-fluent (second clause) clause)
-     `(list (list :error (fluent-of ',(second clause) resource) err)))
+     `(list (list :error (fluent-for-part ',(second clause) resource) err)))
     (:pulse (check-fluent (second clause) clause)
-     `(list (list :pulse (fluent-of ',(second clause) resource))))
+     `(list (list :pulse (fluent-for-part ',(second clause) resource))))
     (:when (destructuring-bind (test . clauses) (rest clause)
              `(when ,test (append ,@(mapcar #'clause-form clauses)))))
     (t (reject-clause "define-outcome" clause
@@ -110,22 +113,24 @@ and the results, makes settings of its end. Return nothing."
                                    (:when form clause...)")))))
 
 (defun clause-fluents (clauses &optional (kinds '(:set :error :pulse)))
-  "Return the variables of the fluents that CLAUSES of KINDS set, perhaps several times."
+  "Return the variables of the fluents that CLAUSES of KINDS set. A variable may occur several
+times."
   (loop for (kind . more) in clauses
         append (cond ((member kind kinds) (list (first more)))
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))
 
 (defun fluent-in-plan (variable part)
-  "Return how plans write the fluent in VARIABLE; of a vector, that of PART."
+  "Return the form by which plans refer to the fluent in VARIABLE. If VARIABLE holds a vector, the
+form refers to the fluent for PART."
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
 (defun fluent-form (kind clauses part)
-  "Return the form of the fluent in the first of CLAUSES, of a command on PART, that is of KIND,
-:pulse or :error; or NIL. PART is the name of the command's argument."
+  "Return the form for the fluent in the first of CLAUSES of KIND, :pulse or :error; NIL if there is
+none. PART is the name of the command's argument for the part."
   (let ((fluent (second (assoc kind clauses))))
     (and fluent (fluent-in-plan fluent part))))
 
-(defun doubt-count-in-plan (name command-name parameters forms)
+(defun warn-of-argument-count (name command-name parameters forms)
   (unless (= (length parameters) (length forms))
     (doubt-definition "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
                        plans the robot and the continuation are left out: ~A.~]"
@@ -133,11 +138,12 @@ and the results, makes settings of its end. Return nothing."
                       (< (length parameters) (length forms)) (plan-call-text command-name))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
-  "Define the plan functions of COMMANDS. When one ends, CLAUSES are carried out with ERR bound to
-its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets the
-fluent to ERR, (:pulse fluent), (:when form clause...). When a plan's newer command interrupts one,
-that happens at once, with :INTERRUPT and no results; what the robot answers to it later sets only
-the fluents of :SET, which say what the robot is or has. See reading 179."
+  "Define the plan functions of COMMANDS. When a command ends, CLAUSES are carried out with ERR
+bound to its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets
+the fluent to ERR, (:pulse fluent), (:when form clause...). When a newer command of a plan
+interrupts a command, CLAUSES are carried out at once, with :INTERRUPT and no results. A later
+answer to the interrupted command sets only the fluents of :SET, which describe the state of the
+robot. See reading 179."
   `(progn
      ,@(loop for command-name in commands
              for (resource specifications sentence) = (command-signature command-name)
@@ -169,14 +175,15 @@ the fluents of :SET, which say what the robot is or has. See reading 179."
                                            (append ,@(mapcar #'clause-form clauses)))
                                          (list ,@parameters)))
              collect `(define-compiler-macro ,name (&whole form &rest arguments)
-                        (doubt-count-in-plan ',name ',command-name ',parameters arguments)
+                        (warn-of-argument-count ',name ',command-name ',parameters arguments)
                         form))))
 
 ;;; A user's command has a function in plans only if its outcome is defined.
 
 (defun advice-on-command (name)
-  "Return in sentences what plans call the command that NAME, a symbol that begins with RPL-, is
-for, or what lets them call it; or NIL."
+  "Return sentences on how plans can issue the command that NAME, a symbol that begins with RPL-,
+seems to stand for: the name of the function, or how to define the function. Return NIL if NAME
+stands for no command."
   (let* ((text (symbol-name name))
          (command (and (starts-with-subseq "RPL-" text)
                        (find-command (subseq text (length "RPL-")) nil)))
@@ -184,7 +191,7 @@ for, or what lets them call it; or NIL."
          (same-p (and own (same-name-p name own))))
     (cond ((null command) nil)
           ((and (has-plan-function-p (command-name command)) (not same-p))
-           (format nil "plans call it ~(~A~)." own))
+           (format nil "plans use the function ~(~A~)." own))
           ((and same-p (not (has-plan-function-p (command-name command))))
            (let ((*print-case* :downcase))
              (format nil "no fluent tells plans of the end of the command ~A yet. Define ~

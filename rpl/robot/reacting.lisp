@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl-robot)
 
 (export '(wish serve-wish add-wish forget-wish grant-wish wishes-in-tick fork-at-rest
-          obsolete-wish-p call-apart))
+          obsolete-wish-p call-outside-reactions))
 
 ;;; A run cannot be forked inside a plan's step, since part of its state is on Lisp's stack. So a
 ;;; task that wants a fork leaves a wish, waits, and goes on in the same tick with the result.
@@ -11,25 +11,27 @@
 ;;; plans react again. A wish contains all that it is about, so that a fork has its twin.
 
 (define-record wish
-  "What TASK of INTERFACE waits for; without a task, what a caller outside wants of a fork."
+  "A request that is served while all plans of INTERFACE rest. TASK waits for the result; without a
+TASK, a caller outside of plans wants a fork."
   (task nil (or null task)
-        "the task that waits for the wish to be served, or NIL if none does" :export)
+        "the task that waits for the wish to be served, or NIL if no task waits" :export)
   (interface nil (or null interface) "the interface that has the wish" :export))
 
 (defgeneric serve-wish (wish)
-  (:documentation "Do what WISH is about and let its task go on by GRANT-WISH. Called while all
-plans of its interface rest. An error lets the task fail. Return :LATER if it was not served."))
+  (:documentation "Serve WISH and let its task go on by GRANT-WISH. Methods are called while all
+plans of the interface rest. If a method signals an error, the task fails. Return :LATER if WISH was
+not served."))
 
 (defconstant +most-wishes+ 100
-  "How many wishes are served in a tick, so that endless wishes do not stop time.")
+  "The largest number of wishes served in a tick, so that endless wishes do not stop time.")
 
 (defun add-wish (wish)
-  "Let WISH be served when the plans, which the caller holds, rest."
+  "Add WISH to its interface, to be served when the plans rest. The caller holds the plans."
   (let ((interface (wish-interface wish)))
     (setf (interface-wishes interface) (append (interface-wishes interface) (list wish)))))
 
 (defun forget-wish (wish)
-  "Remove WISH from its interface, as if it had never been there."
+  "Remove WISH from its interface without serving WISH."
   (removef (interface-wishes (wish-interface wish)) wish))
 
 (defmethod withdraw (task (wish wish))
@@ -63,8 +65,9 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
                (and task (not (blocked-p task)))))
            (interface-wishes interface)))
 
-(defun serve-next (interface)
-  "Serve a wish of INTERFACE if there is one whose time has come. True if its task goes on."
+(defun serve-next-wish (interface)
+  "Serve the oldest wish of INTERFACE whose task can go on, if any. Return true if the task goes
+on."
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))
@@ -75,11 +78,11 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
         (not (eq answer :later))))))
 
 (defun react-and-serve (interface)
-  "Let the plans of INTERFACE react and serve their wishes until neither goes on. Return :IDLE, or
-:BUDGET if what is left must wait for a tick."
+  "Let the plans of INTERFACE react and serve their wishes, in turn, until nothing is left to do in
+this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
   (loop
     (let ((outcome (react-to-all (interface-runner interface))))
-      (unless (serve-next interface)
+      (unless (serve-next-wish interface)
         (return (if (wish-to-serve interface) :budget outcome))))))
 
 ;;; For methods of SERVE-WISH.
@@ -92,23 +95,24 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
     (setf (interface-resting-p interface) nil)))
 
 (defun obsolete-wish-p (wish)
-  "True if no task waits for the result of WISH any more: its plan is to end, or all is over."
+  "True if no task needs the result of WISH any more, because its plan, the interface or the run
+ends."
   (let* ((interface (wish-interface wish)) (task (wish-task wish))
          (simulation (interface-simulation interface)))
     (or (interface-closing-p interface)
         (and (simulation-over simulation) t)
-        (and (thread-of interface) (not (live-p simulation)))
+        (and (plans-thread interface) (not (live-p simulation)))
         (and task (member (task-top task) (interface-ends-requested interface)) t))))
 
-(defun call-apart (function)
-  "Call FUNCTION as if no plan were at work around it."
-  (let ((*reacting* nil) (*held* '()) (*asker* nil))
+(defun call-outside-reactions (function)
+  "Call FUNCTION as if this thread were outside of all reactions of plans."
+  (let ((*reacting-interface* nil) (*held-interfaces* '()) (*asker* nil))
     (funcall function)))
 
 ;;; Headless, plans react at the end of each tick until all wait, so that they see every tick; live
 ;;; too, unless the thinking mode of the run gives them their own thread.
 
-(defun thread-wanted-p (interface)
+(defun plans-thread-wanted-p (interface)
   (let ((simulation (interface-simulation interface)))
     (and (timeline-real-p (simulation-timeline simulation))
          (live-p simulation))))
@@ -120,8 +124,9 @@ plans of its interface rest. An error lets the task fail. Return :LATER if it wa
                  (thinking-budget timeline))))
 
 (defun plans-dice (interface)
-  "Return the random state of plans of INTERFACE for CL:RANDOM: in a run that is or was live their
-own, which forks copy; else NIL, for that of all programs of the run."
+  "Return the random state that CL:RANDOM uses in plans of INTERFACE. If the run is or was live,
+plans have a separate random state, which forks copy. Otherwise return NIL: plans and other programs
+of the run share a random state."
   (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
     (when (simulation-plans-dice-p simulation)
       (or (runner-lisps-dice runner)
@@ -134,12 +139,12 @@ own, which forks copy; else NIL, for that of all programs of the run."
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
-have used their steps. Return :IDLE or :BUDGET. The caller holds the plans; inside of a reaction
-nothing happens."
-  (if (eq interface *reacting*)
+have used their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a reaction, do
+nothing."
+  (if (eq interface *reacting-interface*)
       :idle
       (let ((runner (interface-runner interface))
-            (*reacting* interface)
+            (*reacting-interface* interface)
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))
             (*goes-on-in-forks-p* t))
@@ -151,7 +156,7 @@ nothing happens."
                 (t outcome))))))
 
 (defun finish-closing (interface)
-  "Finish the plans of INTERFACE, which react no more, and detach it from its robot."
+  "Finish the plans of INTERFACE, which react no more, and mark INTERFACE as closed."
   (unless (interface-closed-p interface)
     (in-any-case
       (close-runner (interface-runner interface))
@@ -166,7 +171,7 @@ nothing happens."
 
 ;;; The runner.
 
-(defun busy-p (interface)
+(defun fluents-may-change-p (interface)
   "True if a command of a plan is in progress, or something else may still change fluents of plans."
   (let ((simulation (interface-simulation interface)))
     (or (find nil (interface-actions interface) :key #'action-over-p)
@@ -177,9 +182,9 @@ nothing happens."
 
 ;;; Remarks on plans in the journal. They are no part of the run.
 
-(defun remark-trouble (interface kind task failure)
-  "Add a remark to the journal of the run of INTERFACE: TASK, by KIND a :PLAN or a :PART of one, has
-failed by FAILURE or, if that is NIL, was ended. Return the remark."
+(defun add-failure-remark (interface kind task failure)
+  "Add a remark to the journal of the run of INTERFACE: TASK has failed with FAILURE or, if FAILURE
+is NIL, was ended. KIND says whether TASK is a :PLAN or a :PART of a plan. Return the remark."
   (remark (interface-simulation interface) kind
           (format nil "~@[in ~A: ~]~:[task~;plan~] ~A ~:[was ended~;failed: ~:*~A~]"
                   (and (task-parent task) (task-label (task-top task)))
@@ -188,18 +193,18 @@ failed by FAILURE or, if that is NIL, was ended. Return the remark."
 
 (defmethod note-plan-trouble ((interface interface) task failure)
   (when (simulation-journal (interface-simulation interface))
-    (let ((remark (remark-trouble interface :part task failure)))
+    (let ((remark (add-failure-remark interface :part task failure)))
       (when failure (setf (interface-told interface) (cons failure remark))))))
 
-(defun remark-end (interface task)
+(defun add-end-remark (interface task)
   "Add a remark to the journal of the run of INTERFACE: TASK, a plan, failed or was ended. Remove
-the one on the same failure of a part in this tick."
+the remark on the same failure of a part in this tick."
   (let ((failure (and (eq :failed (task-state task)) (task-result task)))
         (simulation (interface-simulation interface)))
     (destructuring-bind (&optional told . remark) (shiftf (interface-told interface) nil)
       (when (and remark (eq told failure) (eql (first remark) (simulation-tick simulation)))
         (unremark simulation remark)))
-    (remark-trouble interface :plan task failure)))
+    (add-failure-remark interface :plan task failure)))
 
 (defun note-end (interface task)
   (atomic-remove task (interface-ends-requested interface))
@@ -207,7 +212,7 @@ the one on the same failure of a part in this tick."
          (warn-of-unawaited interface task)
          (warn-of-unread interface task))
         (t (interrupt-actions interface task)
-           (remark-end interface task)))
+           (add-end-remark interface task)))
   (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))
 
 (defun make-runner (interface)
@@ -216,10 +221,10 @@ the one on the same failure of a part in this tick."
                       :dice (make-dice (simulation-seed simulation) :plans)
                       :tick (simulation-tick simulation)
                       :client interface
-                      :busy-p (lambda () (busy-p interface))
+                      :busy-p (lambda () (fluents-may-change-p interface))
                       ;; To notice plans that hog their thread.
                       :clock (lambda () (and (live-p simulation) (seconds-now)))
                       :slow *hog-seconds*
-                      :on-post (lambda () (call-to-plans interface))
-                      :attended-p (lambda () (thread-of interface))
+                      :on-post (lambda () (wake-plans-or-owner interface))
+                      :attended-p (lambda () (plans-thread interface))
                       :on-end (lambda (task) (note-end interface task)))))

@@ -2,35 +2,35 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*plan-failed* ensure-interface begin-plan-in-interface
+(export '(*on-plan-failure* ensure-interface begin-plan-in-interface
           note-robot-commanded pass-until final-state-of-task
           plan-ending-p))
 
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
-  "How many ticks RUN-PLAN lets pass, headless, before it gives a plan up.")
+  "How many ticks RUN-PLAN, in a headless run, lets pass before it gives a plan up.")
 
 (defun robot-to-drive ()
-  "Return the robot of the current simulation that plans drive by default: the only one, or the
-prompt's. Signals MISUSE if several robots are possible, or the run is over."
+  "Return the robot of the current simulation that plans drive by default: the only robot, or the
+robot that the prompt commands. Signals MISUSE if several robots are possible, or the run is over."
   (check-not-over (current-simulation))
   (let ((robots (simulation-robots (current-simulation))))
     (cond ((= 1 (length robots)) (first robots))
           ((find (commanded-robot) robots))
-          (t (reject-use "There are ~D robots here. Say which is to be driven, before the plan, ~
-                          not in it: (rpl-init-robot ~:[ROBOT~;~:*~(~A~)~])."
+          (t (reject-use "There are ~D robots here. Choose the robot to drive before the plan, not ~
+                          in the plan: (rpl-init-robot ~:[ROBOT~;~:*~(~A~)~])."
                          (length robots)
                          (and robots (robot-name (first robots))))))))
 
 (defun note-robot-commanded ()
-  "Note that the prompt of this thread commands another robot from now on: plans that begin later
-drive that one, even after an RPL-INIT-ROBOT."
+  "Record that the prompt of this thread commands another robot from now on. Plans that begin later
+drive that robot, even after an RPL-INIT-ROBOT."
   (let ((interface (usable-interface)))
     (when interface (setf (interface-commanded interface) :none))))
 
-(defun robot-commanded-since (interface)
-  "Return the robot that the prompt commands if it did not yet when INTERFACE was made, or has been
-told since to command it, and plans drive another; or NIL."
+(defun newly-commanded-robot (interface)
+  "Return the robot that the prompt commands, if the prompt has changed to that robot since
+INTERFACE was made, and plans still drive another robot. Otherwise return NIL."
   (let ((robot (and (interface-commanded interface) (commanded-robot))))
     (and robot
          (not (eq robot (interface-commanded interface)))
@@ -38,23 +38,23 @@ told since to command it, and plans drive another; or NIL."
          robot)))
 
 (defun ensure-interface ()
-  "Return the interface in use; make one for ROBOT-TO-DRIVE if there is none, and for the robot that
-the prompt has begun to command since."
+  "Return the interface in use. Make a new interface if there is none, or if the prompt has changed
+to another robot since. Signals MISUSE if plans still drive the robot of the old interface."
   (let* ((interface (usable-interface))
-         (robot (and interface (robot-commanded-since interface))))
+         (robot (and interface (newly-commanded-robot interface))))
     (when (and robot (tasks-of interface))
-      (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends what ~
-                   drives that."
+      (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends the ~
+                   plans of that robot."
                   (interface-robot interface)))
     (cond (robot (init-robot robot))
           (interface)
           (t (init-robot (robot-to-drive))))))
 
 (defun begin-plan-in-interface (interface plan arguments note)
-  "Start PLAN with the list ARGUMENTS by INTERFACE, and return its task. NOTE, a function, has been
-called with that before anything else can happen."
+  "Start PLAN with the list ARGUMENTS in INTERFACE, and return its task. Call the function NOTE with
+the task before anything else can happen."
   (check-not-secluded (interface-simulation interface))
-  (apply #'note-of-plans interface #'do-traced *trace-plans* #'begin-plan plan arguments)
+  (apply #'record-plan-action interface #'do-traced *trace-plans* #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
            ;; Live, plans may not have reacted for long.
            (note-tick (interface-runner interface)
@@ -63,23 +63,24 @@ called with that before anything else can happen."
              (funcall note task)
              task))
     (ensure-thread interface)
-    (call-to-plans interface)))
+    (wake-plans-or-owner interface)))
 
 (defun warn-if-no-ticks-pass (plan interface)
-  "Say once for the robot of INTERFACE if PLAN, begun on it, waits for a run to go on."
+  "Warn once for the robot of INTERFACE if no ticks pass now, so that PLAN waits."
   (let ((robot (interface-robot interface)))
     (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *caller-passes-ticks-p*))
       (warn-once-in-run
        interface (list :kept (robot-name robot) :plan)
-       "The plan ~A waits until ticks pass: none of ~A do by themselves now. (run-ticks ~
-        N) lets some pass, (simulator '~(~A~)) all that come."
+       "The plan ~A waits until ticks pass: no ticks of ~A pass by themselves now. (run-ticks N) ~
+        lets N ticks pass, (simulator '~(~A~)) lets time go on."
        (if (symbolp plan) (string-downcase plan) "that was begun")
        robot (robot-name robot)))))
 
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
-  "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. Headless
-it runs as ticks pass; live in its own thread. Signals UNKNOWN-NAME."
+  "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. In a
+headless run, the plan runs as ticks pass; in a live run, in the thread of the plans. Signals
+UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
     (prog1 (begin-plan-in-interface interface plan arguments #'identity)
       (warn-if-no-ticks-pass plan interface))))
@@ -91,10 +92,11 @@ it runs as ticks pass; live in its own thread. Signals UNKNOWN-NAME."
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
 
 (defun pass-until (interface over last)
-  "Pass ticks, headless, in which the plans of INTERFACE react, until OVER, a function, returns
-true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :LIMIT at tick LAST."
+  "Pass ticks in a headless run, in which the plans of INTERFACE react, until the function OVER
+returns true. Return the value of OVER; :STOPPED if INTERFACE has become invalid, :DEADLOCK if no
+plan will ever go on, or :LIMIT at tick LAST."
   (let ((simulation (interface-simulation interface)))
-    (note-of-plans interface #'repeat-reaction)
+    (record-plan-action interface #'repeat-reaction)
     (with-plans (interface) (react-fully interface))
     (loop
       (let ((how (funcall over))) (when how (return how)))
@@ -104,13 +106,14 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
       (run-ticks 1 simulation))))
 
 (defun final-state-of-task (interface task)
-  "Return the state of TASK if it is over; :STOPPED if it evaporated with all plans of INTERFACE."
+  "Return the state of TASK if it is over; :STOPPED if TASK evaporated with all plans of INTERFACE;
+NIL if TASK goes on."
   (cond ((not (task-over-p task)) nil)
         ((or (ended-by-itself-p task) (interface-valid-p interface)) (task-state task))
         (t :stopped)))
 
 (defun run-headless (interface task)
-  "Pass ticks until TASK is over. Return its state, or why it is not over."
+  "Pass ticks until TASK is over. Return the state of TASK, or :STOPPED, :DEADLOCK or :LIMIT."
   (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
                   "a number of ticks, up to 1e9")
   (pass-until interface
@@ -118,7 +121,8 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
               (+ (simulation-tick (interface-simulation interface)) *plan-limit*)))
 
 (defun await-over (interface task)
-  "Wait live until TASK ends. Return its state, or why not. Warn once if only calls can wake plans."
+  "Wait in a live run until TASK ends. Return the state of TASK, or :STOPPED. Warn once if only
+calls from outside can wake the plans."
   (let ((over (make-semaphore "plan over"))
         (simulation (interface-simulation interface))
         (told nil))
@@ -141,10 +145,10 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
               (wait-a-while over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
-(defun check-outside (interface)
-  "Signal MISUSE where waiting for a plan would keep that plan from going on."
+(defun check-may-wait (interface)
+  "Signal MISUSE if waiting for a plan in this thread would keep the plan itself from going on."
   (when (holding-p interface)
-    (reject-use "run-plan: a plan is at work here. Let it call the other plan instead."))
+    (reject-use "run-plan: a plan is at work here. Call the other plan as a step of that plan."))
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here."))
   (doubt-wait 'run-plan (interface-simulation interface)))
@@ -168,44 +172,46 @@ true. Return that; :STOPPED if no plan can go on, :DEADLOCK if none ever will, :
       (:limit (with-plans (interface) (report-limit interface task))))
     state))
 
-(defvar *plan-failed* (constantly nil)
-  "A function of the task of a plan that RUN-PLAN ran and that failed; a trial binds it.")
+(defvar *on-plan-failure* (constantly nil)
+  "A function that RUN-PLAN calls with the task of a plan that has failed. Trials bind this
+variable.")
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun warn-of-failure (interface task)
-  "Say once for each plan of a run that TASK, which RUN-PLAN ran for a program, failed."
+  "Warn that TASK, which RUN-PLAN ran for a program, has failed. Give the warning once for each plan
+of a run."
   (let ((simulation (interface-simulation interface)))
-    (funcall *plan-failed* task)
+    (funcall *on-plan-failure* task)
     (unless (or *asker*
                 (typep (task-result task) 'lisp-failure) ; an error is reported anyway
                 (message-queue-listener (simulation-messages simulation))
                 (not (eq :report (message-queue-error-policy (simulation-messages simulation)))))
       (warn-once-in-run
        interface (list :failed (task-label task))
-       "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN says so, :FAILED; ~
-        the first is the failure, which is true."
+       "The plan ~A failed: ~A~@[; ~A~]. The second value of RUN-PLAN is :FAILED; the first is the ~
+        failure, which counts as true."
        (task-label task)
        (failure-text (task-result task))
        (similar-clause-text (task-result task))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)
-  "Run PLAN, a plan procedure or its name, with ARGUMENTS. Return its value, or its failure, and
-how it ended. Test the second value: a failure is true, and the value of a successful plan may be
-NIL.
-  :succeeded, :failed, :evaporated: as the task.
-  :deadlock: headless; the plan waits for what can never happen. Live there is only a warning, since
-somebody may still make it happen.
-  :limit: headless; *PLAN-LIMIT* ticks have passed.
+  "Run PLAN, a plan procedure or its name, with ARGUMENTS. Return two values: the plan's value, or
+its failure; and how the plan ended. Test the second value: a failure counts as true, and the value
+of a successful plan may be NIL.
+  :succeeded, :failed, :evaporated: the state of the plan's task.
+  :deadlock: only in a headless run; the plan waits for what can never happen. In a live run there
+is only a warning, since you may still make it happen.
+  :limit: only in a headless run; *PLAN-LIMIT* ticks have passed.
   :stopped: the simulator was stopped or restarted, the robot was redefined, or another thread
-rewound the run.
-The robot is that of RPL-INIT-ROBOT; without that the only one of the current simulation, or at the
-prompt the one commanded there, even if that has changed since RPL-INIT-ROBOT. Failures, deadlocks
-and limits are reported. A plan that is not over when RUN-PLAN returns or is left, as by an abort,
-is ended; but a plan of a rewound run continues in the run that replaces it. Signals UNKNOWN-NAME,
-and MISUSE, also if the run is over before it begins."
+rewound the run. PLAN drives the robot of RPL-INIT-ROBOT or, without such a call, the only robot of
+the current simulation. At the prompt, PLAN drives the robot that the prompt commands, even if the
+prompt has changed to that robot since RPL-INIT-ROBOT. Failures, deadlocks and limits are reported.
+RUN-PLAN ends a plan that is not over when RUN-PLAN returns or is aborted. But a plan of a rewound
+run continues in the run that replaces the rewound run. Signals UNKNOWN-NAME, and MISUSE, also if
+the run is over before it begins."
   (let ((interface (ensure-interface)))
-    (check-outside interface)
+    (check-may-wait interface)
     (let ((task nil) (state nil))
       (in-any-case
         (progn (begin-plan-in-interface interface plan arguments
@@ -226,27 +232,30 @@ and MISUSE, also if the run is over before it begins."
       (note-plans-shown interface)
       (tasks-of interface))))
 
-(defun want-end (interface task)
-  "Ask TASK of INTERFACE, or all if it is NIL, to evaporate; its runner does it later."
+(defun request-plan-end (interface task)
+  "Request that TASK of INTERFACE evaporates, or all tasks if TASK is NIL. The plan runner ends the
+tasks later."
   (check-not-secluded (interface-simulation interface))
-  (note-of-plans interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
+  (record-plan-action interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of interface)))
     (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
   (stop-plan (interface-runner interface) task))
 
 (defun end-plans-of-interface (interface task)
-  "Evaporate TASK of INTERFACE, or all if it is NIL: now, or later in the thread of the plans."
-  (want-end interface task)
-  (unless (or (holding-p interface) (thread-of interface))
+  "Evaporate TASK of INTERFACE, or all tasks if TASK is NIL: now, or later in the thread of the
+plans."
+  (request-plan-end interface task)
+  (unless (or (holding-p interface) (plans-thread interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
 (defun repeat-end (subject)
-  "Repeat the end of SUBJECT, a task or, for all of its plans, a runner."
+  "End SUBJECT in a repeated run, as in the original run. SUBJECT is a task, or a plan runner for
+all of its plans."
   (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
-  "True if TASK, a plan, was ended from outside; it may still be running."
+  "True if TASK, a plan, is over or is to end. TASK may still be running."
   (let ((interface (usable-interface)))
     (or (task-over-p task)
         (task-ending-p task)
@@ -258,11 +267,11 @@ and MISUSE, also if the run is over before it begins."
     (cond ((or (null (task-runner task)) (task-over-p task)))
           ((null interface) (stop-plan (task-runner task) task))
           ((eq interface (interface-in-use-here)) (end-plans-of-interface interface task))
-          (t (want-end interface task)))))
+          (t (request-plan-end interface task)))))
 
-(defun elsewhere-p (interface)
-  "True if this thread works in a run that continues that of INTERFACE: a fork of it, or the one
-that has replaced it since a rewind."
+(defun in-later-run-p (interface)
+  "True if this thread works in another run that continues the run of INTERFACE: a fork, or the run
+that has replaced the run of INTERFACE in a rewind."
   (and *simulation*
        (not (eq *simulation* (interface-simulation interface)))
        (or (fork-p *simulation*)
@@ -270,7 +279,7 @@ that has replaced it since a rewind."
 
 (defmethod current-counterpart ((interface interface) task)
   (let ((latest (latest (interface-simulation interface))))
-    (cond ((elsewhere-p interface) (counterpart-of-task task *simulation*))
+    (cond ((in-later-run-p interface) (counterpart-of-task task *simulation*))
           ((not (eq latest (interface-simulation interface))) (counterpart-of-task task latest))
           (t task))))
 
@@ -282,29 +291,29 @@ that has replaced it since a rewind."
 (defun end-plan (task)
   "End the plan TASK, or all plans if it is :ALL. Their commands in progress are interrupted, except
 those of cleanups. Lisp code of a live plan that keeps the plans' thread is aborted. Any thread may
-end a TASK; one of another simulation ends when that goes on. A TASK that is over stays as it is.
-Returns nothing. Signals WRONG-ARGUMENT; and MISUSE if there is no robot for :ALL, or if the run of
-TASK was rewound to before its start."
+end a TASK; a task of another simulation ends when that simulation goes on. A TASK that is over
+stays as it is. Returns nothing. Signals WRONG-ARGUMENT; and MISUSE if there is no robot for :ALL,
+or if the run was rewound to a tick before TASK began."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (if (eq task :all)
-      (end-plans-of-interface (the-interface) nil)
+      (end-plans-of-interface (required-interface) nil)
       (end-task (task-in-current-run task)))
   (values))
 
 ;;; The name of a plan that is not quoted is a variable to Lisp.
 
-(defun doubt-plan-form (operator form environment)
-  "Warn if FORM, for the plan that OPERATOR is to run, is the name of a plan and no variable."
+(defun warn-of-unquoted-plan (operator form environment)
+  "Warn if FORM, the plan argument in a call of OPERATOR, is the name of a plan and no variable."
   (when (and form (symbolp form) (not (known-variable-p form environment)))
     (when (find-procedure form nil)
       (doubt-definition "~A: ~A is a plan and no variable. Quote its name: '~:*~A"
                         operator form))))
 
 (define-compiler-macro run-plan (&whole form &rest arguments &environment environment)
-  (doubt-plan-form 'run-plan (first arguments) environment)
+  (warn-of-unquoted-plan 'run-plan (first arguments) environment)
   form)
 
 (define-compiler-macro begin-plan (&whole form &rest arguments &environment environment)
-  (doubt-plan-form 'begin-plan (first arguments) environment)
+  (warn-of-unquoted-plan 'begin-plan (first arguments) environment)
   form)

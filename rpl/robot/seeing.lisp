@@ -30,7 +30,7 @@
 (attend *rewind-hooks* trace-rewound)
 
 (defun call-with-plans-in-use (function)
-  "Call FUNCTION with the runner of the plans in use, none of which goes on meanwhile, or with NIL."
+  "Call FUNCTION with the runner of the plans in use, or with NIL. No plan goes on meanwhile."
   (cond (*interface*
          (note-plans-shown *interface*)
          (with-plans (*interface*) (funcall function (interface-runner *interface*))))
@@ -44,13 +44,13 @@
 (defun print-plans (&optional (stream *standard-output*) all)
   "Print the running plans to STREAM, each as a tree of tasks: what each does and waits for. If ALL
 is true, also print stacks, variables and valves: see PRINT-TASKS."
-  (if (usable-p *interface*)
+  (if (usable-interface-p *interface*)
       (call-with-plans-in-use (lambda (runner) (print-tasks runner stream all)))
       (format stream "No plans.~%")))
 
 (addition step-plan)
 (defun step-plan (plan &rest arguments)
-  "Do as RUN-PLAN, but stop before each expression of PLAN: see STEP-TASK."
+  "Run PLAN as RUN-PLAN does, but stop before each expression: see STEP-TASK."
   (let ((*step-plans* t))
     (apply #'run-plan plan arguments)))
 
@@ -76,7 +76,7 @@ is true, also print stacks, variables and valves: see PRINT-TASKS."
   (asking (part) (failure-sentences part)))
 
 (defun robot-that-failed-last (simulation)
-  "Return the robot of SIMULATION of which a command failed last, or else its first one."
+  "Return the robot of SIMULATION whose command failed last, or else the default robot."
   (flet ((tick-of-failure (robot) (or (getf (last-failure robot) :tick) -1)))
     (loop with last = (resolve-robot nil 'why)
           for robot in (simulation-robots simulation)

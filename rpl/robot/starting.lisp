@@ -5,8 +5,8 @@
 (export '(*robot-to-drive*))
 
 (defun end-plans-in-this-thread (interface)
-  "End the plans of INTERFACE, which is to end, in this thread. An interrupt breaks off one of their
-cleanups at most."
+  "End the plans of INTERFACE, which is closing, in this thread. An interrupt breaks off one cleanup
+at most."
   (flet ((end ()
            (with-plans (interface) (react-fully interface))))
     (in-any-case (end)
@@ -14,8 +14,8 @@ cleanups at most."
                  (unless (interface-closed-p interface) (end)))))
 
 (defun close-interface (interface)
-  "Detach INTERFACE from its simulation, and end its plans: now or, if they react in another thread
-or around this call, as soon as they can."
+  "Detach INTERFACE from its simulation, and end its plans now. If the plans react in another
+thread, or a plan has called this function, the plans end as soon as they can."
   (unless (interface-closing-p interface)
     (deferring-interrupts
       (setf (interface-closing-p interface) t)
@@ -23,10 +23,10 @@ or around this call, as soon as they can."
         (remove-participant interface (interface-simulation interface))
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
         (cond ((holding-p interface) (stop-plan (interface-runner interface)))
-              ((thread-of interface) (wake-plans interface))
+              ((plans-thread interface) (wake-plans interface))
               (t (end-plans-in-this-thread interface)))))))
 
-(defun attach (interface)
+(defun attach-interface (interface)
   (let ((simulation (interface-simulation interface)))
     (setf (interface-runner interface) (make-runner interface)
           (interface-ender interface) (lambda () (close-interface interface)))
@@ -36,30 +36,30 @@ or around this call, as soon as they can."
 
 ;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *robot-to-drive* (constantly nil)
-  "A function that returns which of several robots plans drive by default, or NIL.")
+  "A function that returns the robot that plans drive by default if there are several, or NIL.")
 
 (defun commanded-robot ()
-  "Return the robot that the prompt commands in which this thread is, or NIL."
+  "Return the robot that the prompt of this thread commands, or NIL."
   (and *simulation* (funcall *robot-to-drive*)))
 
 (defun check-world-to-drive (robot)
   (let ((world (robot-world robot)))
     (unless (or (null *world*) (eq world *world*))
-      (reject-use "rpl-init-robot: ~A is not in the world that we are in, ~
-                   ~:[which is of another map~;but in another of the same map~]. Call it where ~
-                   that robot is: inside of (with-simulation (~A) ...), or after (simulator ~A)."
+      (reject-use "rpl-init-robot: ~A is not in the current world, ~:[which has another map~;but ~
+                   in another world of the same map~]. Call it where that robot is: inside of ~
+                   (with-simulation (~A) ...), or after (simulator ~A)."
                   robot (eq (world-map world) (world-map *world*)) robot robot))))
 
-(defun ended-by-p (interface simulation)
-  "True if plans of INTERFACE must end when others are to run in SIMULATION. One that a headless
-simulation inside of a live one has only inherited is left alone."
+(defun must-end-for-p (interface simulation)
+  "True if the plans of INTERFACE must end before other plans can run in SIMULATION. The plans of a
+live run go on while a headless simulation runs inside of the live run."
   (or (eq simulation (interface-simulation interface))
       (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
-(defun warn-of-ended (interface robot)
-  "Say once if plans of INTERFACE end, as plans are to drive ROBOT, another one of the same run, or
-as one of them says so itself."
+(defun warn-of-ended-plans (interface robot)
+  "Warn once that plans of INTERFACE end because plans are to drive ROBOT. Warn only if ROBOT is
+another robot of the same run, or if one of these plans has called RPL-INIT-ROBOT itself."
   (let* ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface))
          (same-p (eq robot before)))
     (when (and tasks
@@ -68,9 +68,9 @@ as one of them says so itself."
                (eq (interface-simulation interface) (robot-simulation robot)))
       (warn-once-in-run
        interface (list :ended-by (robot-name before) (robot-name robot))
-       "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, as plans drive one robot ~
-        at a time. Let them end first, as (run-plan ...) does, or drive one of the ~
-        robots by commands and continuations~;. Call it before the plan, not in it~]."
+       "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, because plans drive one robot at a ~
+        time. Let the plans end first, as (run-plan ...) does, or drive one of the robots by ~
+        commands and continuations~;. Call it before the plan, not in the plan~]."
        robot (length tasks) (mapcar #'task-label tasks) before same-p))))
 
 ;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
@@ -81,14 +81,15 @@ as one of them says so itself."
 
 ;; A repeated run gives the eras that it had, so that its tasks are recognized.
 (defun drive-in-eras (robot eras)
-  "Do what RPL-INIT-ROBOT does with ROBOT, whose tasks are to be of ERAS. Return the interface."
+  "Let plans drive ROBOT, as RPL-INIT-ROBOT does. ERAS are the eras of the tasks. Return the new
+interface."
   ;; Other threads may set the variable meanwhile.
   (let ((simulation (robot-simulation robot)) (before *interface*))
     (note-doing simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
-    (when (and before (ended-by-p before simulation)) (close-interface before))
+    (when (and before (must-end-for-p before simulation)) (close-interface before))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation eras (commanded-robot))))
-      (attach interface)
+      (attach-interface interface)
       (setf *interface* interface)
       (when (eq simulation *simulation*) (note-environment simulation))
       interface)))
@@ -99,22 +100,23 @@ as one of them says so itself."
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
-  "Let plans drive ROBOT, a robot or its name, or a fluent whose value is one, from now on. Create
-its fluents anew, one for each of its parts. Return the robot (manual C). Running plans end; of
-their cleanups only what takes no time is done. Call it before anything else of the interface;
-RUN-PLAN does so for the only robot of a simulation, and at the prompt for the robot commanded
-there. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than the current one."
+  "Let plans drive ROBOT from now on: a robot, the name of a robot, or a fluent with such a value.
+Create new fluents for the robot and each of its parts. Return the robot (manual C). Running plans
+end; of their cleanups only what takes no time is done. Call RPL-INIT-ROBOT before the other
+functions with RPL- in their names. RUN-PLAN calls it for the only robot of a simulation or, at the
+prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in
+another world than the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
          (before *interface*))
-    (when before (warn-of-ended before robot))
+    (when before (warn-of-ended-plans before robot))
     (init-robot robot)
     robot))
 
 ;;; When a simulator starts.
 
-(defun forget-interface (robot options)
-  "End the plans of a simulation that is gone, now that the simulator of ROBOT has started."
+(defun close-old-interface (robot options)
+  "End the plans of an earlier simulation, because the simulator of ROBOT has started."
   (declare (ignore options))
   (let ((interface *interface*))
     (when (and interface
@@ -122,17 +124,17 @@ there. Signals UNKNOWN-NAME, and MISUSE if the robot is in another world than th
       (unless (interface-valid-p interface) (close-interface interface))
       (when (eq interface *interface*) (setf *interface* nil)))))
 
-(attend *simulator-hooks* forget-interface)
+(attend *simulator-hooks* close-old-interface)
 
 ;;;; Taking part in the simulation
 
 (defun time-to-wake-p (interface)
-  "True if plans of INTERFACE, which wait, wait for this tick."
+  "True if waiting plans of INTERFACE are to wake in this tick."
   (or (interface-tick-wanted-p interface) (woken-by-tick-p interface)))
 
-(defun rest-fully (interface)
-  "Set the tick of the plans of INTERFACE, which no other thread touches, without a reaction, if
-none has to run in it. True if so, as in most ticks."
+(defun advance-without-reaction (interface)
+  "Set the tick of the plans of INTERFACE without a reaction, and return true, if no plan has to run
+in this tick, as in most ticks. No other thread may touch the plans meanwhile."
   (let* ((simulation (interface-simulation interface))
          (timeline (simulation-timeline simulation)))
     (not (or (interface-closing-p interface)
@@ -147,16 +149,16 @@ none has to run in it. True if so, as in most ticks."
 ;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
   (note-outside-command interface)
-  (cond ((thread-of interface)
-         (when (or (time-to-wake-p interface) (not (thread-wanted-p interface)))
+  (cond ((plans-thread interface)
+         (when (or (time-to-wake-p interface) (not (plans-thread-wanted-p interface)))
            (wake-plans interface)))
-        ((not (thread-wanted-p interface))
+        ((not (plans-thread-wanted-p interface))
          (begin-moment (simulation-timeline simulation))
          (if (live-p simulation)
              (with-plans (interface)
-               (unless (rest-fully interface) (react-fully interface)))
+               (unless (advance-without-reaction interface) (react-fully interface)))
              ;; Headless there is no other thread, and most ticks need no lock.
-             (unless (and (null (interface-holder interface)) (rest-fully interface))
+             (unless (and (null (interface-holder interface)) (advance-without-reaction interface))
                (with-plans (interface) (react-fully interface)))))
         ((tasks-of interface) (ensure-thread interface))
         ;; Without plans what was posted is only applied.
@@ -166,10 +168,10 @@ none has to run in it. True if so, as in most ticks."
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
-  (cond ((thread-of interface) (wake-tick interface))
+  (cond ((plans-thread interface) (wake-tick interface))
         ((ready-p interface))
         ((wish-to-serve interface) t)
-        ((live-p simulation) (and (thread-wanted-p interface) (tasks-of interface) t))))
+        ((live-p simulation) (and (plans-thread-wanted-p interface) (tasks-of interface) t))))
 
 ;; A thread that applies posts holds the plans, and publishes what is left before it releases them.
 (defmethod participant-at-work-p ((interface interface))
@@ -183,7 +185,7 @@ none has to run in it. True if so, as in most ticks."
 ;; The current step of a live plan cannot be waited for: then only whether it is at work counts.
 (defmethod participant-digest ((interface interface) digest)
   (flet ((add () (digest-runner (interface-runner interface) digest)))
-    (if (thread-of interface)
+    (if (plans-thread interface)
         (unless (nth-value 1 (call-with-plans-if-free #'add interface))
           (digest-add digest :at-work))
         (with-plans (interface) (add)))))

@@ -38,28 +38,31 @@
       (not (live-p (interface-simulation interface)))
       (member (task-top task) (interface-ends-requested interface))))
 
-(defun warn-of-plan (task)
-  (warn-at-once (format nil "The plan ~A has kept the plans' thread for ~,1F s and goes on, at ~A ~
-                             in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
+(defun warn-of-blocking-plan (task)
+  (warn-at-once (format nil "The plan ~A has kept the plans' thread busy for ~,1F s and goes on, ~
+                             at ~A in ~{~A~^ > ~}; (end-plan :all) or (stop-simulator) ends it"
                         (task-label (task-top task)) (hog-seconds)
                         (form-text (task-form task)) (task-path task))))
 
 (defun abort-step (interface steps)
-  "Abort the Lisp code that the plans of INTERFACE are at in this thread, if it still is the same."
+  "Abort the Lisp code of a plan of INTERFACE in this thread, if the plans are still at step number
+STEPS."
   (when (and (eql steps (runner-steps (interface-runner interface)))
              (holding-p interface))
     (abort)))
 
-(defun end-hog (interface thread sample stuck-p)
-  "End the plan that SAMPLE is of: its Lisp code if it is STUCK-P in that, else between two steps."
+(defun end-blocking-plan (interface thread sample stuck-p)
+  "End the plan from which SAMPLE was taken. If STUCK-P, abort the Lisp code that the plan is
+running; otherwise end the plan between two steps."
   (let ((steps (sample-steps sample)))
     (if stuck-p
         (interrupt-thread thread (lambda () (abort-step interface steps)))
         (stop-plan (interface-runner interface) (task-top (sample-task sample))))))
 
 (defun watch-plans (interface thread calls ended)
-  "Watch the plans' THREAD, with the users' CALLS that it makes, until the semaphore ENDED says that
-it has ended: warn of plans that keep it, and end them if they are to end."
+  "Watch THREAD, the thread of the plans, until the semaphore ENDED is signalled at its end. Warn of
+plans that block THREAD, and end such plans if their end was requested. CALLS tells which users'
+code THREAD is running."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
         do (let ((sample (sample-thread interface thread)))
@@ -68,16 +71,16 @@ it has ended: warn of plans that keep it, and end them if they are to end."
                    earlier sample
                    (interface-hog interface) (and (<= 3 stuck) (sample-task sample)))
              (unless (user-calls-waiting-p calls)
-               (when (= 3 stuck) (warn-of-plan (sample-task sample)))
+               (when (= 3 stuck) (warn-of-blocking-plan (sample-task sample)))
                (when (and (<= 3 busy) (end-requested-p interface (sample-task sample)))
-                 (end-hog interface thread sample (<= 3 stuck)))))
+                 (end-blocking-plan interface thread sample (<= 3 stuck)))))
         finally (setf (interface-hog interface) nil)))
 
 ;;; The thread exists while there are plans and ticks pass by themselves. It sleeps only while no
 ;;; plan is ready. The next tick that finds plans starts another.
 
 (defun run-plans-in-ticks (interface)
-  "Run the plans of INTERFACE in the ticks from now on, without a thread."
+  "From now on, run the plans of INTERFACE at the end of each tick, without a thread."
   (swap-if (interface-thread interface) (current-thread) nil)
   ;; Another thread may have closed it before, and left the rest to this one.
   (when (interface-closing-p interface) (react-fully interface))
@@ -85,7 +88,8 @@ it has ended: warn of plans that keep it, and end them if they are to end."
   :over)
 
 (defun react-in-thread (interface)
-  "Let the plans of INTERFACE react. Return :IDLE, :BUDGET, :OVER if none go on, or NIL if aborted."
+  "Let the plans of INTERFACE react. Return :IDLE or :BUDGET; :OVER if the thread has no more plans
+to run; NIL if the reaction was aborted."
   (with-plans (interface)
     (unless (timeline-real-p (simulation-timeline (interface-simulation interface)))
       (return-from react-in-thread (run-plans-in-ticks interface)))
@@ -100,17 +104,18 @@ it has ended: warn of plans that keep it, and end them if they are to end."
             (t (setf (interface-thread interface) nil)
                :over)))))
 
-(defun call-for-ticks (interface)
-  "If a plan waits for a tick and the live simulation is idle because no event is pending, wake it."
+(defun wake-idle-simulation (interface)
+  "If a plan waits for a tick, and the live simulation is idle because no event is pending, wake the
+simulation."
   (let ((simulation (interface-simulation interface)))
     (when (and (or (interface-tick-wanted-p interface)
                    (wake-tick interface))
                (zerop (agenda-pending (simulation-agenda simulation))))
       (wake-owner (simulation-timeline simulation)))))
 
-(defun rest-plans (interface &optional seconds)
+(defun rest-until-woken (interface &optional seconds)
   (atomic-incf (interface-rests interface))
-  (call-for-ticks interface)
+  (wake-idle-simulation interface)
   (wait-on-semaphore (interface-wake-up interface) seconds)
   (setf (interface-tick-wanted-p interface) nil))
 
@@ -124,15 +129,15 @@ it has ended: warn of plans that keep it, and end them if they are to end."
       (:idle (unless (woken-by-tick-p interface)
                ;; With a listener for messages, as at the prompt, that is reported anyway.
                (unless (message-queue-listener *message-queue*) (warn-of-stranded-plans interface))
-               (rest-plans interface)))
+               (rest-until-woken interface)))
       (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)
-                 (rest-plans interface)))
-      ((nil) (rest-plans interface 0.05)))))
+                 (rest-until-woken interface)))
+      ((nil) (rest-until-woken interface 0.05)))))
 
-(defun call-as-thread (interface function)
-  "Call FUNCTION in what is the thread of INTERFACE from now on, until it returns or is left; but
-not if the start was given up, and another may have been started."
+(defun call-as-plans-thread (interface function)
+  "Call FUNCTION in this thread, which is the thread of INTERFACE until FUNCTION returns or is left.
+Do nothing if the start of this thread was given up."
   (let ((thread (current-thread)))
     (swap-if (interface-thread interface) :starting thread)
     (when (eq thread (interface-thread interface))
@@ -151,7 +156,8 @@ not if the start was given up, and another may have been started."
                (in-any-case
                  (call-as-owner simulation
                                 (lambda ()
-                                  (call-as-thread interface (lambda () (run-thread interface)))))
+                                  (call-as-plans-thread
+                                   interface (lambda () (run-thread interface)))))
                  (signal-semaphore ended))))
            (name (control)
              (format nil control (interface-robot interface))))
@@ -164,7 +170,7 @@ not if the start was given up, and another may have been started."
 
 ;; A time limit may come at any moment: it must not leave plans that wait for a thread to start.
 (defun ensure-thread (interface)
-  (when (and (thread-wanted-p interface) (null (thread-of interface)))
+  (when (and (plans-thread-wanted-p interface) (null (plans-thread interface)))
     (deferring-interrupts
       (when (swap-if (interface-thread interface) nil :starting)
         (in-any-case

@@ -6,8 +6,9 @@
 
 (defstruct (action (:constructor make-action (command resource outcome task cleanup-p issue tick))
                    (:copier nil))
-  "That COMMAND is done on RESOURCE, as TASK (NIL: no plan) asked for at TICK, perhaps to clean up.
-OUTCOME makes settings of an answer."
+  "A record that COMMAND, issued by a plan, is in progress on RESOURCE. TASK issued the command at
+TICK; TASK is NIL for calls from outside of plans. CLEANUP-P is true if the command is part of a
+cleanup. OUTCOME returns the settings of fluents for an answer."
   (command nil :type command :read-only t)
   (resource nil :read-only t)
   (outcome nil :type function :read-only t)
@@ -29,7 +30,7 @@ OUTCOME makes settings of an answer."
   (command-name (action-command action)))
 
 (defstruct (answer (:constructor make-answer (action err settings last-p)) (:copier nil))
-  "SETTINGS that an answer to ACTION with the error code ERR means, not yet applied."
+  "An answer to ACTION with the error code ERR, whose SETTINGS of fluents are not yet applied."
   (action nil :type action :read-only t)
   (err nil :read-only t)
   (settings '() :type list :read-only t)
@@ -45,7 +46,7 @@ OUTCOME makes settings of an answer."
     (removef (interface-actions interface) action)))
 
 (defun action-open-p (action)
-  "True if ACTION is in progress, and its end was not reported."
+  "True if ACTION is in progress, and its end was not reported to plans."
   (not (or (action-told-p action) (action-over-p action))))
 
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
@@ -57,7 +58,8 @@ OUTCOME makes settings of an answer."
 ;;; Answers.
 
 (defun final-answer-p (command err)
-  "True if an answer of COMMAND with the error code ERR is its last: a track that begins will end."
+  "True if an answer to COMMAND with the error code ERR is the last answer. A track is answered when
+it begins, and again when it ends."
   (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
@@ -65,16 +67,17 @@ OUTCOME makes settings of an answer."
     (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
 
 (defun take-answer (answer interface)
-  "Remove ANSWER from those not applied, and with the last one its action. True if it was there."
+  "Remove ANSWER from the answers not yet applied. If ANSWER is the last of its action, remove the
+action, too. Return true if ANSWER was not yet applied."
   (with-lock ((interface-actions-lock interface))
     (when (member answer (interface-answers interface))
       (removef (interface-answers interface) answer)
       (when (answer-last-p answer) (removef (interface-actions interface) (answer-action answer)))
       t)))
 
-(defun ends-by-command-p (action)
-  "True if a new command on its resource interrupts ACTION when it is issued: unless it takes no
-time, and is carried out first, or goes on in the background."
+(defun interrupted-by-command-p (action)
+  "True if a new command on the same resource interrupts ACTION at once. A command that takes no
+time is carried out first, and a command in the background goes on."
   (not (or (action-begun-p action)
            (command-instant-p (action-command action)))))
 
@@ -85,7 +88,8 @@ time, and is carried out first, or goes on in the background."
 ;;; interrupted command sets only the fluents for the state of the robot: no error fluent, no pulse.
 
 (defun note-pulses (interface action settings)
-  "Note which fluents SETTINGS, of the end of ACTION of INTERFACE, pulse in this tick."
+  "Record which fluents are pulsed in this tick by SETTINGS, the settings at the end of ACTION of
+INTERFACE."
   (when (action-task action)
     (loop with plan = (task-serial (task-top (action-task action)))
           for (kind fluent) in settings
@@ -102,11 +106,11 @@ time, and is carried out first, or goes on in the background."
     (and name (eql plan (task-serial (task-top task))) tick)))
 
 (defun apply-answer (answer interface)
-  "Apply ANSWER, unless that was done. The caller holds the plans."
+  "Apply ANSWER to fluents, unless ANSWER was already applied. The caller holds the plans."
   (when (take-answer answer interface)
     (let ((action (answer-action answer)) (settings (answer-settings answer)))
       (setf (action-begun-p action) t)
-      (note-unread interface action (answer-err answer))
+      (record-unread-end interface action (answer-err answer))
       (unless (action-told-p action) (note-pulses interface action settings))
       (with-answer ((action-issue action) (answer-err answer))
         (apply-settings (if (action-told-p action)
@@ -115,7 +119,8 @@ time, and is carried out first, or goes on in the background."
                             (plain-settings settings)))))))
 
 (defun post-answer (interface action err results)
-  "Post the answer to ACTION, with ERR and RESULTS, to its plans. In the simulator's thread."
+  "Post the answer to ACTION, with ERR and RESULTS, to the plans of INTERFACE. The simulator's
+thread calls this function."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))
@@ -133,7 +138,7 @@ time, and is carried out first, or goes on in the background."
 ;;; Interruptions, reported before the simulator does.
 
 (defun report-interrupted (action)
-  "Report to plans that ACTION was interrupted, as soon as its task has reached its wait."
+  "Report to plans that ACTION was interrupted, as soon as the task of ACTION has reached its wait."
   (setf (action-told-p action) t)
   (notify-at-rest (action-task action)
                   (lambda ()
@@ -155,8 +160,9 @@ time, and is carried out first, or goes on in the background."
   (let ((task (and (reacting-p interface) (current-task))))
     (and task (eq :running (task-state task)) task)))
 
-(defun take-over (interface resource &key except (test #'ends-by-command-p))
-  "Report that the plan at work, if any, ended the actions on RESOURCE, but EXCEPT, that pass TEST."
+(defun interrupt-older-actions (interface resource &key except (test #'interrupted-by-command-p))
+  "Report to plans that the running plan, if any, has interrupted the actions on RESOURCE that pass
+TEST, except the action EXCEPT."
   (when (reacting-p interface)
     (apply-answers-on resource interface except)
     (dolist (action (interface-actions interface))
@@ -165,7 +171,7 @@ time, and is carried out first, or goes on in the background."
                  (action-open-p action)
                  (funcall test action))
         (warn-of-clash interface action except)
-        (warn-of-haste interface action except)
+        (warn-of-hasty-command interface action except)
         (report-interrupted action)
         (count-takeover interface resource (action-task action) (task-at-work interface))))))
 
@@ -180,7 +186,8 @@ the robot is gone, end the plan at work."
     (funcall function)))
 
 (defun issue-action (interface command resource arguments outcome issue)
-  "Issue COMMAND on RESOURCE; OUTCOME makes settings of its end. ISSUE is for the trace."
+  "Issue COMMAND on RESOURCE; OUTCOME returns the settings of fluents at the end. ISSUE records the
+command in the trace."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
          (action (make-action command resource outcome task cleanup-p issue
@@ -195,13 +202,14 @@ the robot is gone, end the plan at work."
                                      (append arguments (list (continuation-of interface action))))))
              (setf issued-p t))
       (unless issued-p (forget-action action interface)))
-    (take-over interface resource :except action)))
+    (interrupt-older-actions interface resource :except action)))
 
 (defun grab (interface resource)
-  "Interrupt whatever goes on on RESOURCE, also what takes no time and in the background."
+  "Interrupt all commands on RESOURCE, including commands that take no time or go on in the
+background."
   (call-on-robot interface
                  (lambda () (grab-resource resource (interface-simulation interface))))
-  (take-over interface resource :test (constantly t)))
+  (interrupt-older-actions interface resource :test (constantly t)))
 
 ;;; When a plan ends.
 
@@ -219,7 +227,7 @@ the robot is gone, end the plan at work."
 
 ;; Commands that were issued to clean up go on.
 (defun interrupt-actions (interface task)
-  "Interrupt what the top-level TASK, which has not succeeded, has asked for and is under way."
+  "Interrupt the commands in progress that the top-level TASK, which has not succeeded, has issued."
   (dolist (action (interface-actions interface))
     (when (and (action-open-p action)
                (action-task action)
@@ -233,22 +241,23 @@ the robot is gone, end the plan at work."
 ;;; sets none, so a plan such as (whenever robot-stopped* ...) does not react to it. A wait for one
 ;;; event is treated in warnings.lisp.
 
-(defun watcher-of-end (interface command)
-  "Return a top-level task of INTERFACE, which this thread holds, that watches for the end of
-commands of the robot such as COMMAND; or NIL."
+(defun task-watching-end (interface command)
+  "Return a top-level task of INTERFACE that watches for the end of robot commands such as COMMAND,
+or NIL. This thread holds the plans of INTERFACE."
   (let ((pulse (symbol-value (pulse-of-command command))))
     (find-if (lambda (task)
                (let ((parts (waiting-parts task)))
-                 (and (some #'watches-p parts) (member pulse (fluents-awaited parts)))))
+                 (and (some #'waits-on-purpose-p parts) (member pulse (fluents-awaited parts)))))
              (tasks-of interface))))
 
-(defun warn-of-outside (interface command)
-  (let ((task (call-with-plans-if-free (lambda () (watcher-of-end interface command)) interface)))
+(defun warn-of-outside-command (interface command)
+  (let ((task (call-with-plans-if-free (lambda () (task-watching-end interface command))
+                                       interface)))
     (when task
       (warn-once-in-run
        interface (list :outside (task-label task))
-       "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is ~
-        not woken. Let a plan issue it: ~A."
+       "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is not woken. ~
+        Issue the command in a plan: ~A."
        command (task-label task)
        (fluent-text (symbol-value (pulse-of-command command)))
        (plan-call-text command)))))
@@ -261,4 +270,4 @@ commands of the robot such as COMMAND; or NIL."
                        (command-name (operation-command event))))
          (before (shiftf (interface-outside interface) command)))
     (when (and before (null command) (pulse-of-command before) (tasks-of interface))
-      (warn-of-outside interface before))))
+      (warn-of-outside-command interface before))))

@@ -11,8 +11,8 @@
   "The names of functions by which code may change a fluent, or have a plan do so.")
 
 (defun may-set-fluents-p (object seen)
-  "True if OBJECT, in the code of a function, or what that calls, may change a fluent. SEEN is a
-table of what has been looked through."
+  "True if OBJECT, found in the code of a function, may change a fluent, directly or by functions
+that it calls. SEEN is a table of objects that have been examined."
   (cond ((member object *fluent-setters* :test #'equal))
         ((gethash object seen) nil)
         ((functionp object)
@@ -24,7 +24,8 @@ table of what has been looked through."
          (may-set-fluents-p (fdefinition object) seen))))
 
 (defvar *known-kickers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "For each interface an alist of kickers: whether they may change fluents.")
+  "A table from each interface to an alist from kickers to true or false: whether the kicker may
+change fluents.")
 
 (defun kicker-sets-fluents-p (kicker interface)
   (let ((known (assoc kicker (gethash interface *known-kickers*) :test #'eq)))
@@ -45,28 +46,30 @@ table of what has been looked through."
 ;;; that reads none of these may succeed though nothing was done. Reading, waiting and networks all
 ;;; count as looking; being blocked and interrupted are left out, as plans make use of both.
 
-(defparameter *codes-of-no-trouble*
+(defparameter *harmless-error-codes*
   '(:interrupt :not-moving :goto-local :already-tracking
     :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
-  "Codes with which commands end that plans use, as those of the manual's appendix D do.")
+  "Error codes that are no failures, because plans make use of them, as in the manual's appendix
+D.")
 
-(defun came-to-nothing-p (command err)
+(defun command-failed-p (command err)
   "True if COMMAND, which ended with ERR, could not do what it is for."
   (and err
-       (not (member err *codes-of-no-trouble*))
+       (not (member err *harmless-error-codes*))
        (not (member err (command-expected command)))))
 
 ;; Plain data, so that forks have it, too.
 (defstruct (unread-end (:type list) (:conc-name unread-)
                        (:constructor make-unread (plan command part err)) (:copier nil))
-  "That COMMAND, a name, of the plan numbered PLAN on the part PART (NIL: robot) ended with ERR."
+  "A record that COMMAND, a name, of the plan with the number PLAN ended with the error code ERR.
+PART is the index of the part; NIL stands for the robot."
   plan command part err)
 
 (defun number-of-part (resource)
   (and (part-p resource) (part-index resource)))
 
 (defun unread-fluents (unread)
-  "Return the fluents that tell of UNREAD, that of its error the last."
+  "Return the fluents that hold the results of the command in UNREAD. The error fluent comes last."
   (loop for variable in (get (unread-command unread) 'result-fluents)
         for value = (symbol-value variable)
         collect (if (simple-vector-p value) (svref value (unread-part unread)) value)))
@@ -74,9 +77,9 @@ table of what has been looked through."
 (defun still-unread-p (unread)
   (notany #'was-read-p (unread-fluents unread)))
 
-(defun note-unread (interface action err)
-  "Note that ACTION of INTERFACE has ended with ERR, before this can be read. It supersedes the last
-end of the same command."
+(defun record-unread-end (interface action err)
+  "Record that ACTION of INTERFACE has ended with ERR, before plans can read ERR. The record
+supersedes that of an earlier end of the same command."
   (let ((command (action-name action)) (task (action-task action))
         (part (number-of-part (action-resource action))))
     (when (or err (interface-unread interface))
@@ -87,7 +90,7 @@ end of the same command."
                                   (eql part (unread-part unread)))))
                        (interface-unread interface))))
     (when (and task
-               (came-to-nothing-p (action-command action) err)
+               (command-failed-p (action-command action) err)
                (not (action-told-p action))
                (not (action-cleanup-p action)))
       (let ((unread (make-unread (task-serial (task-top task)) command part err)))
@@ -96,7 +99,7 @@ end of the same command."
         (when (still-unread-p unread) (push unread (interface-unread interface)))))))
 
 (defun warn-of-unread (interface task)
-  "Say once if a command of TASK, which has succeeded, came to nothing and that was not read."
+  "Warn once if a command of TASK failed, and TASK succeeded without reading the error."
   (let* ((serial (task-serial task))
          (all (interface-unread interface))
          (unread (find-if #'still-unread-p (remove serial all :key #'unread-plan :test-not #'eql)))
@@ -106,7 +109,7 @@ end of the same command."
       (warn-once (list :unread (task-label task)) (simulation-world simulation)
                  (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~
                               and did not look at ~A. After the wait write (if (fluent-value ~
-                              ~:*~A) (fail ...)), or what is to be done then."
+                              ~:*~A) (fail ...)), or another reaction to the error."
                          (task-label task) (unread-command unread) (unread-err unread)
                          (fluent-form-text (first (last (unread-fluents unread)))))
                  :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))
@@ -118,10 +121,10 @@ end of the same command."
 ;;; were given to clean up.
 
 (defun unawaited-actions (interface task)
-  "Return what the top-level TASK, of INTERFACE, has asked for and is under way."
+  "Return the actions in progress of the top-level TASK of INTERFACE that a plan should wait for."
   (remove-if-not (lambda (action)
                    (and (action-open-p action)
-                        (or (ends-by-command-p action)
+                        (or (interrupted-by-command-p action)
                             (trait-p :asks (action-command action)))
                         (not (trait-p :stops (action-command action)))
                         (not (action-cleanup-p action))
@@ -130,57 +133,58 @@ end of the same command."
                  (interface-actions interface)))
 
 (defun unawaited-advice (action)
-  "Return in a sentence what to do if ACTION is to end with its plan; or NIL."
+  "Return a sentence that says what to do if ACTION should end with its plan; or NIL."
   (if (eq :evaporated (task-state (action-task action)))
-      (format nil "The task that issued it was ended before, as by a deadline. ~
-                   If the command is to end as well, stop it: (rpl-robot-stop).")
-      (let ((wait (end-wait-text (action-outcome action) (action-resource action))))
-        (and wait (format nil "If the plan is to end with it, let it ~A." wait)))))
+      (format nil "The task that issued it was ended before, as by a deadline. If the command ~
+                   should end as well, stop the robot: (rpl-robot-stop).")
+      (let ((wait (wait-for-end-text (action-outcome action) (action-resource action))))
+        (and wait (format nil "If the plan should end with the command, let the plan ~A." wait)))))
 
 (defun warn-of-unawaited (interface task)
   (let ((action (first (unawaited-actions interface task))))
     (when action
       (warn-once-in-run interface (list :unawaited (task-label task))
-                        "The plan ~A succeeded while its command rpl-~(~A~) was under way, which ~
-                         continues.~@[ ~A~]"
+                        "The plan ~A succeeded while its command rpl-~(~A~) was under way; the ~
+                         command continues.~@[ ~A~]"
                         (task-label task) (action-name action) (unawaited-advice action)))))
 
 ;;; Programs may set fluents between two calls of RUN-TICKS. So it is a warning, once for each plan
 ;;; and run; without a reader of messages it is shown if the plan still waits when the run ends.
 
-(defun others-may-help-p (interface)
-  "True if what the run calls besides plans may set fluents: kickers, observers, other plans."
+(defun others-may-set-fluents-p (interface)
+  "True if the run has kickers, observers or other plans, which may set fluents."
   (let ((simulation (interface-simulation interface)))
     (or (world-has-kickers-p (simulation-world simulation))
         (simulation-observers simulation)
         (rest (simulation-participants simulation)))))
 
-(defun robots-wait-p (task)
-  "True if TASK waits for nothing but what only the robot changes, or for what never changes."
+(defun waits-for-robot-only-p (task)
+  "True if TASK waits only for fluents that the robot alone changes, or for a value that never
+changes."
   (or (eq +no-fluent+ (task-awaiting task))
       (let ((fluents (fluents-awaited (list task))))
         (and fluents (every #'robots-fluent-p fluents)))))
 
 (defun stranded-parts (interface task)
-  "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if it may go on."
+  "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if TASK may go on."
   (let ((parts (waiting-parts task)))
-    (and (notany #'watches-p parts)
-         (or (every #'robots-wait-p parts)
-             (not (others-may-help-p interface)))
+    (and (notany #'waits-on-purpose-p parts)
+         (or (every #'waits-for-robot-only-p parts)
+             (not (others-may-set-fluents-p interface)))
          parts)))
 
-(defun text-of-stranded (task parts)
+(defun stranded-task-text (task parts)
   (format nil "~A, which nothing in the run will change.~A"
           (text-of-plans (list task)) (advice-on-stillness parts)))
 
 (defun warn-of-stranded (interface task parts)
-  "Say once that TASK, of the plans of INTERFACE, will not go on, as PARTS of it wait in vain."
+  "Warn once that TASK, a plan of INTERFACE, will not go on because PARTS of TASK wait in vain."
   (let ((simulation (interface-simulation interface))
         (awaited (mapcar #'task-awaiting parts)))
     (warn-once (list :stranded (task-label task))
                (simulation-world simulation)
-               (list "At tick " (simulation-tick simulation) " " (text-of-stranded task parts)
-                     (if (and (live-p simulation) (notany #'robots-wait-p parts))
+               (list "At tick " (simulation-tick simulation) " " (stranded-task-text task parts)
+                     (if (and (live-p simulation) (notany #'waits-for-robot-only-p parts))
                          " So it waits until you do, as from a REPL."
                          ""))
                :notable (or (live-p simulation)
@@ -189,7 +193,7 @@ end of the same command."
 
 (defun deadlocked-p (interface)
   "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
-  (and (null (hog-of interface))
+  (and (null (blocking-task interface))
        ;; What is published tells most cases apart without the lock.
        (not (ready-p interface))
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
@@ -206,7 +210,7 @@ end of the same command."
             when parts collect (list task parts)))))
 
 (defun warn-of-stranded-plans (interface)
-  "Say so if plans of INTERFACE were begun and wait in vain."
+  "Warn of the plans of INTERFACE that were begun and wait in vain."
   (loop for (task parts) in (stranded-plans interface)
         do (warn-of-stranded interface task parts)))
 
@@ -214,10 +218,11 @@ end of the same command."
   (unless (simulation-over simulation) (warn-of-stranded-plans interface)))
 
 (defun stranded-plan-text ()
-  "Return in a sentence that a plan that was begun in the current simulation waits in vain, or NIL."
+  "Return a sentence about a plan, begun in the current simulation, that waits in vain; NIL if there
+is no such plan."
   (let ((interface (usable-interface)))
     (destructuring-bind (&optional task parts) (and interface (first (stranded-plans interface)))
-      (and task (format nil "At the end ~A" (text-of-stranded task parts))))))
+      (and task (format nil "At the end ~A" (stranded-task-text task parts))))))
 
 ;;; Programs begin plans that never end, and stop when they have seen enough. Loops and policies say
 ;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see RECORD-PROGRESS-CHECKED. What is left are
@@ -230,7 +235,7 @@ end of the same command."
            (member task (interface-ends-requested interface))
            (warning-given-p (list :stranded (task-label task))
                             (simulation-world (interface-simulation interface)))
-           (some #'watches-p (all-tasks task)))))
+           (some #'waits-on-purpose-p (all-tasks task)))))
 
 (defmethod note-plans-shown ((interface interface))
   (record-progress-checked (simulation-world (interface-simulation interface))))

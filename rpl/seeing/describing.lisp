@@ -10,8 +10,9 @@
 
 (addition task-stack)
 (defun task-stack (task)
-  "Return the expressions that TASK is at, as lists, innermost first: a new one for each call of a
-plan. Those of tasks around it are left out. () when TASK is over."
+  "Return a list of the expressions that TASK is evaluating, innermost first: one expression for
+each call of a plan in progress. Expressions of the tasks around TASK are left out. Return () when
+TASK is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (forms-under-way (task-frame task)))
@@ -19,26 +20,27 @@ plan. Those of tasks around it are left out. () when TASK is over."
 ;;; Variables.
 
 (defun environments (environment)
-  "Return ENVIRONMENT and those around it, innermost first."
+  "Return a list of ENVIRONMENT and the environments around it, innermost first."
   (loop for each = environment then (svref each 0)
         while (plusp (length each)) collect each))
 
 (defun frame-names (frame)
-  "Return the names for the environment of FRAME: a list for each level."
+  "Return the names of variables in the environment of FRAME: a list of names for each level."
   (loop for each in (frame-chain frame)
         while (eq (frame-environment each) (frame-environment frame))
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
-  "Return lists (name value) of the variables of one level; of those with one name, the last."
+  "Return lists (name value) of the variables with NAMES in ENVIRONMENT, one level. Of variables
+with the same name, only the last is included."
   (loop for (name . later) on names
         for index from 1 below (length environment)
         when (and (symbol-package name) (not (member name later)))
           collect (list name (svref environment index))))
 
 (defun visible-levels (frame)
-  "Return what FRAME sees, innermost first: lists (environment variable...), each variable a list
-(name value)."
+  "Return the variables visible in FRAME, innermost first: lists (environment variable...). Each
+variable is a list (name value)."
   (loop for environment in (environments (frame-environment frame))
         for names in (frame-names frame)
         collect (cons environment
@@ -47,7 +49,7 @@ plan. Those of tasks around it are left out. () when TASK is over."
         append names into shadowed))
 
 (defun frame-variables (frame)
-  "Return the variables that FRAME sees, innermost first: a list of lists (name value)."
+  "Return the variables visible in FRAME, innermost first: a list of lists (name value)."
   (mapcan #'rest (visible-levels frame)))
 
 ;; A debugger shows the calls under way with their arguments; a frame is one.
@@ -59,8 +61,8 @@ plan. Those of tasks around it are left out. () when TASK is over."
             (form-text (node-form (frame-node frame)) 40))))
 
 (defun visible-variables (frames)
-  "Return a table: for each environment of FRAMES, the innermost first, the variables in it that are
-in force where the innermost frame is that sees it."
+  "Return a table from each environment of FRAMES to its variables that are visible in the innermost
+frame with that environment. FRAMES begin with the innermost frame."
   (let ((table (make-hash-table :test 'eq)))
     (dolist (frame frames table)
       (loop for (environment . variables) in (visible-levels frame)
@@ -68,8 +70,9 @@ in force where the innermost frame is that sees it."
               do (setf (gethash environment table) variables)))))
 
 (defun stack-entries (task)
-  "Return what TASK is at, innermost first: a list of lists (form variable...), each variable, a
-list (name value), with the outermost expression that sees it."
+  "Return a list of lists (form variable...) for the expressions that TASK is evaluating, innermost
+first. Each variable, a list (name value), is listed with the outermost expression in which it is
+visible."
   (let ((visible (visible-variables (frame-chain (task-frame task))))
         (around (and (task-parent task) (task-frame (task-parent task))))
         (known '())
@@ -87,8 +90,8 @@ list (name value), with the outermost expression that sees it."
 
 (addition task-variables)
 (defun task-variables (task)
-  "Return the variables of the plan that are visible where TASK is: a list of lists (name value),
-innermost first, without shadowed ones. () when TASK is over."
+  "Return the variables of the plan that are visible to TASK: a list of lists (name value),
+innermost first, without shadowed variables. Return () when TASK is over."
   (check-argument task-variables task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (and (task-frame task) (frame-variables (task-frame task))))
@@ -96,11 +99,12 @@ innermost first, without shadowed ones. () when TASK is over."
 ;;;; What DESCRIBE tells
 
 (defun write-lines (stream &rest items)
-  "Write to STREAM each of ITEMS, alternating a name and a text, on a line; none whose text is NIL."
+  "Write ITEMS, in which names and texts alternate, to STREAM: a name and its text on each line.
+Leave out names whose text is NIL."
   (loop for (name text) on items by #'cddr
         when text do (format stream "  ~A: ~A~%" name text)))
 
-(defun outcome-text (task)
+(defun task-outcome-text (task)
   (case (task-state task)
     (:succeeded (form-text (task-result task) 70))
     (:failed (cut (one-line (failure-text (task-result task))) 200))))
@@ -115,14 +119,14 @@ innermost first, without shadowed ones. () when TASK is over."
                "Waits for" (and (task-awaits task)
                                 (format nil "~A, since tick ~D" (task-awaits task)
                                         (task-since task)))
-               "Result" (outcome-text task))
+               "Result" (task-outcome-text task))
   (unless (task-over-p task)
     (format stream "  Stack:~%")
     (write-stack task 4 stream)
     (when (task-children task)
       (format stream "  Parts:~%")
       (dolist (child (task-children task)) (write-task-tree child 2 stream))))
-  (dolist (valve (valves-of task))
+  (dolist (valve (valves-of-task task))
     (format stream "  ")
     (write-valve valve stream)))
 

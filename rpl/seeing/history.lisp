@@ -8,10 +8,10 @@
 ;;; one in use; and signal MISUSE where no trace was kept.
 
 (defun trace-to-read (which runner)
-  "Return the trace that tells of WHICH, a task or a number, and that number."
+  "Return the trace that records WHICH, a task or the number of a task, and that number."
   (check-argument trace-of which (typep which '(or null task (integer 1)))
                   "a task, as begin-plan returns, or the number of one")
-  (let ((runner (or runner (runner-to-see which))))
+  (let ((runner (or runner (runner-to-show which))))
     (values (or (call-with-client-still (runner-client runner) (lambda () (plan-trace runner)))
                 (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
                              they start."))
@@ -24,15 +24,16 @@
                trace)
       (reject-use "There was no task ~A in this trace." number)))
 
-(defun ancestry (number trace)
-  "Return the entries of TRACE for the starts of task NUMBER and those around it, innermost first."
+(defun ancestor-entries (number trace)
+  "Return the entries of TRACE for the starts of the task NUMBER and the tasks around it, innermost
+first."
   (loop for each = number then (trace-entry-value start)
         while each
         for start = (start-of each trace)
         collect start))
 
-(defun family (number trace)
-  "Return a predicate of numbers: those of the task NUMBER of TRACE and of all its parts."
+(defun descendant-test (number trace)
+  "Return a predicate that is true of the numbers of the task NUMBER of TRACE and of all its parts."
   (let ((members (make-hash-table)))
     (setf (gethash number members) t)
     (loop for entry across trace
@@ -48,10 +49,11 @@
 (defun trace-of (which &key event form runner)
   "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, perhaps
 over, its number, or NIL for all. With EVENT, an event or a list of them, return only entries of
-these events; with FORM, the name of an operator, only those at calls of it. RUNNER is by default
-that of the task, or the one in use. Signals MISUSE if no trace was kept."
+these events; with FORM, the name of an operator, only entries at calls of that operator. RUNNER is
+a plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
+trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
-    (let ((member-p (if number (family number trace) (constantly t))))
+    (let ((member-p (if number (descendant-test number trace) (constantly t))))
       (loop for entry across trace
             when (and (funcall member-p (trace-entry-task entry))
                       (or (null event) (member (trace-entry-event entry) (ensure-list event)))
@@ -71,7 +73,7 @@ that of the task, or the one in use. Signals MISUSE if no trace was kept."
 that were handled. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
-(defun answer-to (issue trace)
+(defun answer-entry (issue trace)
   (find-if (lambda (entry)
              (and (eq :answer (trace-entry-event entry)) (eq issue (trace-entry-subject entry))))
            trace :from-end t))
@@ -89,7 +91,7 @@ is a property list:
   (let ((trace (trace-to-read which runner)))
     (loop for entry in (trace-of which :event :command :runner runner)
           for issue = (trace-entry-subject entry)
-          for answer = (answer-to issue trace)
+          for answer = (answer-entry issue trace)
           collect (list :tick (trace-entry-tick entry)
                         :command (cons (issue-name issue) (issue-arguments issue))
                         :task (trace-entry-task entry)
@@ -102,14 +104,15 @@ is a property list:
   "Return a list for TASK, a task or its number, and the tasks around it, up to the plan itself.
 Each element is a list of number, name or NIL, and expression. See TRACE-OF."
   (multiple-value-bind (trace number) (trace-to-read task runner)
-    (loop for start in (ancestry number trace)
+    (loop for start in (ancestor-entries number trace)
           collect (list (trace-entry-task start) (trace-entry-subject start)
                         (trace-entry-form start)))))
 
 ;;;; Bars over time
 
 (define-record (span (:constructor make-span (kind start text &optional end)))
-  "What a task waited for, or did, from tick START to END."
+  "A period of a task from tick START to END, in which it waited, was blocked, cleaned up or ran a
+command."
   (kind :waiting keyword "what a span is of: :waiting, :parts (waiting for them), :blocked,
 :cleaning, :failure (it takes no time) or :command" :export)
   (start 0 real "the tick at which a span begins" :export)
@@ -121,9 +124,10 @@ text" :export)
          "the calls of procedures that the command was issued in, outermost first" :writable))
 
 (define-record (bar (:constructor make-bar (serial parent name form start depth)))
-  "The life of a task; or a call of a procedure within it, as far as commands were issued there."
+  "The period in which a task, or a call of a procedure within a task, was under way. A call has a
+bar only if the call issued commands."
   (serial 0 fixnum "the number of the task" :export)
-  (parent nil (or null bar) "the bar that it is part of, or NIL")
+  (parent nil (or null bar) "the bar that contains the bar, or NIL")
   (name nil t "the name of the task, or NIL" :export)
   (form nil t "the expression that the task ran" :export)
   (start 0 real "the tick at which the task started" :export)
@@ -136,12 +140,12 @@ text" :export)
   (commands '() list
             "the spans of the commands that the task issued, oldest first" :writable :export)
   (parts '() list
-         "the bars of the tasks that the task consisted of, oldest first" :writable :export)
+         "the bars of the tasks that were parts of the task, oldest first" :writable :export)
   (call-p nil boolean "the bar is of a call of a procedure, within a task" :writable :export))
 
 (defun bar-label (bar &optional (text #'form-text))
-  "Return a label for the task of BAR, or the call within a task. The function TEXT makes text of an
-expression, by default a short one."
+  "Return a label for the task or call of BAR. TEXT is a function that returns text for an
+expression, by default a short text."
   (cond ((bar-call-p bar) (funcall text (bar-form bar)))
         ((bar-name bar) (format nil "~D ~(~A~)" (bar-serial bar) (bar-name bar)))
         (t (format nil "~D ~A" (bar-serial bar) (funcall text (bar-form bar))))))
@@ -162,7 +166,8 @@ expression, by default a short one."
         (bar-end bar) tick))
 
 (defun note-in-bar (bar entry)
-  "Add ENTRY, of its task, to BAR, unless it is the start or a command."
+  "Add ENTRY, a trace entry of the task of BAR, to BAR. Entries for starts and commands are handled
+elsewhere."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
       ;; What decides a construct ends the wait for its parts without a wake-up.
@@ -187,8 +192,8 @@ expression, by default a short one."
     (when parent (push bar (bar-parts parent)))
     bar))
 
-(defun calls-in (stack)
-  "Return the calls of plan procedures in STACK, which has the innermost first, outermost first."
+(defun plan-calls-in (stack)
+  "Return the calls of plan procedures in STACK, outermost first. STACK itself is innermost first."
   (reverse (remove-if-not (lambda (form)
                             (and (consp form)
                                  (symbolp (first form))
@@ -199,7 +204,7 @@ expression, by default a short one."
   (let* ((issue (trace-entry-subject entry))
          (span (make-span :command (trace-entry-tick entry)
                           (whole-form-text (cons (issue-name issue) (issue-arguments issue))))))
-    (setf (span-calls span) (calls-in (first (trace-entry-value entry)))
+    (setf (span-calls span) (plan-calls-in (first (trace-entry-value entry)))
           (gethash (trace-entry-subject entry) commands) span)
     (push span (bar-commands bar))))
 
@@ -211,36 +216,39 @@ expression, by default a short one."
 
 ;;; Calls within a task.
 
-(defun call-at (span depth) (nth depth (span-calls span)))
+(defun call-at-depth (span depth) (nth depth (span-calls span)))
 
-(defun runs-of (spans depth)
-  "Return SPANS, of commands, as lists of those that follow each other in one call at DEPTH."
+(defun split-by-call (spans depth)
+  "Split SPANS, the spans of commands, into lists of spans that follow each other in the same call
+at DEPTH."
   (loop while spans
-        collect (let ((call (call-at (first spans) depth)))
-                  (loop while (and spans (eq call (call-at (first spans) depth)))
+        collect (let ((call (call-at-depth (first spans) depth)))
+                  (loop while (and spans (eq call (call-at-depth (first spans) depth)))
                         collect (pop spans)))))
 
 (defun call-bar (bar spans depth until)
-  "Return the bar in BAR of the call at DEPTH that issued the commands SPANS; it ends before UNTIL."
-  (let ((call (make-bar (bar-serial bar) bar nil (call-at (first spans) depth)
+  "Return a bar, as a part of BAR, for the call at DEPTH that issued the commands SPANS. The bar
+ends at UNTIL at the latest."
+  (let ((call (make-bar (bar-serial bar) bar nil (call-at-depth (first spans) depth)
                         (span-start (first spans)) (1+ (bar-depth bar)))))
     (setf (bar-call-p call) t
           (bar-end call) (min until (reduce #'max spans :key #'span-end))
-          (bar-commands call) (remove-if (lambda (span) (call-at span (1+ depth))) spans)
+          (bar-commands call) (remove-if (lambda (span) (call-at-depth span (1+ depth))) spans)
           (bar-parts call) (call-bars call spans (1+ depth)))
     call))
 
 (defun call-bars (bar spans &optional (depth 0))
   "Return bars, parts of BAR, for the calls at DEPTH in which the commands SPANS were issued."
-  (loop for (run . more) on (runs-of spans depth)
-        when (call-at (first run) depth)
+  (loop for (run . more) on (split-by-call spans depth)
+        when (call-at-depth (first run) depth)
           collect (call-bar bar run depth
                             (if more
                                 (span-start (first (first more)))
                                 (reduce #'max run :key #'span-end)))))
 
 (defun finish-bar (bar now)
-  "Put what is in BAR, and its parts, in order; what has not ended goes on until NOW."
+  "Put the spans, commands and parts in BAR, and in its parts, in order. Set the end of what has not
+ended to NOW."
   (unless (bar-end bar) (end-bar bar nil now))
   (setf (bar-spans bar) (nreverse (bar-spans bar))
         (bar-commands bar) (nreverse (bar-commands bar))
@@ -251,9 +259,9 @@ expression, by default a short one."
   (setf (bar-parts bar) (append (call-bars bar (bar-commands bar)) (bar-parts bar))))
 
 (defun bars (trace &optional now)
-  "Return the bars of the plans, top-level tasks, that TRACE tells of, in order of their start;
-those of other tasks are parts of these. What has not ended goes on until the tick NOW, by default
-the last of TRACE."
+  "Return the bars of the plans, top-level tasks, in TRACE, in order of their start. The bars of
+other tasks are parts of these bars. What has not ended ends at the tick NOW, by default the last
+tick of TRACE."
   (let ((bars (make-hash-table)) (commands (make-hash-table :test 'eq)) (roots '()) (last 0))
     (loop for entry across trace
           for bar = (gethash (trace-entry-task entry) bars)

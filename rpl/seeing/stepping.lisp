@@ -15,7 +15,7 @@
   (:documentation "A plan has stopped in the debugger: at a failure, or to be stepped through."))
 
 (defun plan-break-p (object)
-  "True of breaks of plans."
+  "True if OBJECT is a PLAN-BREAK condition."
   (typep object 'plan-break))
 
 (setf (documentation 'plan-break-task 'function)
@@ -35,7 +35,7 @@
           do (format stream "~%    ~(~A~) = ~A" name (form-text value 70)))))
 
 (defun enter-break (break)
-  "Enter the debugger for BREAK, if one is available; return when the plan is to go on."
+  "Enter the debugger for BREAK, if a debugger is available. Return when the plan is to go on."
   (if (debugger-p)
       (invoke-debugger break)
       (message-set "Break: " (own-text break))))
@@ -44,9 +44,9 @@
 
 (addition *break-on-plan-failures*)
 (defvar *break-on-plan-failures* nil
-  "Which failures enter the debugger where they happen, even if the plan handles them: T for all, a
-class of failures as HANDLE-FAILURE takes it, a list of classes, or NIL for none. Without an
-interactive debugger they are messages.")
+  "Which failures enter the debugger where they happen, even if the plan handles the failure. The
+value is T for all failures, a class of failures as in HANDLE-FAILURE, a list of classes, or NIL for
+none. Without an interactive debugger, such failures are messages.")
 
 (defun break-wanted-p (failure)
   (let ((types *break-on-plan-failures*))
@@ -72,17 +72,18 @@ interactive debugger they are messages.")
   "When true, plans that are started stop before each expression: see STEP-TASK.")
 
 (defstruct (course (:constructor make-course (task)) (:copier nil))
-  "How TASK is stepped through. MODE is :run, :step (stop before any expression) or :over: run
-the task WITHIN until it comes back to the frame UNTIL; to any of its expressions, if that is
-:NEXT; until it is over, if that is NIL."
+  "How TASK is stepped through. MODE is :run, :step (stop before any expression) or :over. In the
+mode :over, the task WITHIN runs until it returns to the frame UNTIL; if UNTIL is :NEXT, until its
+next expression; if UNTIL is NIL, until the task is over."
   (task nil :type task :read-only t)
   (mode :step :type (member :step :over :run))
   (within nil :type (or null task))
   (until nil :type (or null frame (eql :next))))
 
 (defgeneric next-form (node frame)
-  (:documentation "Return the expression that the coming step of FRAME, of NODE, begins, and whether
-that is a leaf; NIL if it begins none, or one that has a step of its own.")
+  (:documentation "Return the expression that the next step of FRAME, a frame of NODE, begins, and
+true if the expression is a leaf. Return NIL if the step begins no expression, or an expression with
+a step of its own.")
   (:method (node frame)
     (if (and (zerop (frame-counter frame)) (null (frame-data frame)))
         (values (node-form node) nil)
@@ -94,15 +95,16 @@ that is a leaf; NIL if it begins none, or one that has a step of its own.")
           (values (node-form part) t)
           nil))))
 
-(defun note-return (course task frame)
-  "Record in COURSE if TASK, about to take a step at FRAME, is back at the frame that it runs to."
+(defun note-frame-return (course task frame)
+  "If TASK, about to take a step at FRAME, has returned to the frame UNTIL of COURSE, record that in
+COURSE."
   (let ((until (course-until course)))
     (when (and (frame-p until)
                (eq task (course-within course))
                (not (member until (rest (frame-chain frame)))))
       (setf (course-until course) :next))))
 
-(defun stops-p (course task)
+(defun stop-wanted-p (course task)
   (ecase (course-mode course)
     (:run nil)
     (:step t)
@@ -146,26 +148,26 @@ this task."
   (let ((course (some (lambda (whole) (find whole courses :key #'course-task))
                       (lineage task))))
     (when course
-      (note-return course task frame)
+      (note-frame-return course task frame)
       (multiple-value-bind (form leaf-p) (next-form (frame-node frame) frame)
-        (when (and form (stops-p course task))
+        (when (and form (stop-wanted-p course task))
           (stop-at course task frame form leaf-p))))))
 
 ;;; Which tasks are stepped through.
 
-(defun courses-of (runner)
-  "Return the courses through tasks of RUNNER that are not over."
+(defun stepping-courses (runner)
+  "Return the courses of RUNNER whose tasks are not over."
   (and (runner-stepper runner)
        (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil) :key #'course-task)))
 
 (addition step-task)
 (defun step-task (task &optional (on t))
-  "Stop from now on before each expression of TASK and its parts; no longer if ON is NIL. A stop
-enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to run. Without an
-interactive debugger it is a message, and the task goes on. Returns nothing."
+  "From now on, stop before each expression of TASK and its parts. If ON is NIL, stop no longer. A
+stop enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to run. Without an
+interactive debugger, a stop is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")
   (let* ((runner (task-runner task))
-         (others (remove task (courses-of runner) :key #'course-task))
+         (others (remove task (stepping-courses runner) :key #'course-task))
          (courses (if on (cons (make-course task) others) others)))
     (setf (runner-stepper runner)
           (and courses

@@ -2,15 +2,16 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(runner-in-use runner-to-see task-with image-of-tasks runner-mark task-image))
+(export '(runner-in-use runner-to-show task-holding-value image-of-tasks runner-change-mark
+          task-image))
 
 (defgeneric runner-in-use (interface)
   (:documentation "Return the plan runner shown by default while INTERFACE is in use, or NIL.")
   (:method (interface) (declare (ignore interface)) nil))
 
-(defun runner-to-see (&optional subject)
-  "Return the plan runner of SUBJECT: itself, a task's, that of the plan that asks, or the one in
-use. Signals MISUSE if there is none."
+(defun runner-to-show (&optional subject)
+  "Return the plan runner of SUBJECT, a plan runner, a task or NIL. For NIL, return the runner of
+the running plan, or else the runner in use. Signals MISUSE if there is none."
   (or (cond ((task-p subject) (task-runner subject))
             ((typep subject 'plan-runner) subject)
             (*runner*)
@@ -18,14 +19,15 @@ use. Signals MISUSE if there is none."
       (reject-use "No plans have run here. Start one first: (begin-plan ...), or the line PLAN at ~
                    the prompt.")))
 
-(defun task-with (value runner)
-  "Return the task of RUNNER that has VALUE in, or within, a variable, and its name; or NIL."
+(defun task-holding-value (value runner)
+  "Return the task of RUNNER with a variable whose value is or contains VALUE, and the name of the
+variable; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
           for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
-          do (when name (return-from task-with (values task name))))))
+          do (when name (return-from task-holding-value (values task name))))))
 
-(defun valves-of (task)
+(defun valves-of-task (task)
   (flet ((valves-in (object)
            (if (claim-p object) (claim-valves object) '())))
     (remove-duplicates
@@ -37,7 +39,7 @@ use. Signals MISUSE if there is none."
 ;;;; As text
 
 (defun write-stack (task column stream)
-  "Write to STREAM the expressions that TASK is at, innermost first, and its variables."
+  "Write to STREAM the expressions that TASK is evaluating, innermost first, and its variables."
   (loop for (form . variables) in (stack-entries task)
         for head = "at " then "in "
         do (format stream "~V@T~A~A~%" column head (form-text form 70))
@@ -58,18 +60,18 @@ which tick. If ALL is true, write stacks, innermost expression first, with the p
 their values, and the valves that tasks have or want."
   (check-argument print-tasks which (typep which '(or null task plan-runner))
                   "a task, as begin-plan returns, or a plan runner")
-  (let ((which (or which (runner-to-see))))
+  (let ((which (or which (runner-to-show))))
     (dolist (task (if (task-p which) (list which) (plan-runner-tasks which)))
       (write-task-tree task 0 stream (and all #'write-stack)))
     (when all
-      (dolist (valve (remove-duplicates (mapcan #'valves-of (all-tasks which)) :from-end t))
+      (dolist (valve (remove-duplicates (mapcan #'valves-of-task (all-tasks which)) :from-end t))
         (write-valve valve stream)))))
 
 ;;; An image is made while no plan runs, as between two ticks; any thread may draw from it. It has
 ;;; the visible rows, from top to bottom, up to a given number. Other rows are only counted.
 
 (define-record task-image
-  "What is shown of a task."
+  "The data of a task that pictures show."
   (serial 0 fixnum "the number of the task" :export)
   (depth 0 fixnum "of how many tasks the task is part" :export)
   (look :running keyword "how the task is, as a keyword: :running, :waiting, :blocked, :cleaning,
@@ -94,11 +96,11 @@ of many the innermost" :export)
 
 ;;; A task.
 
-(defun look-of (task)
+(defun task-look (task)
   (cond ((evaporating-p task) (if (task-cleaning task) :cleaning :ending))
         ((blocked-p task) :blocked)
         ((task-cleaning task) :cleaning)
-        ((find task (courses-of (task-runner task)) :key #'course-task) :stepped)
+        ((find task (stepping-courses (task-runner task)) :key #'course-task) :stepped)
         ((eq :waiting (task-state task)) :waiting)
         (t :running)))
 
@@ -106,10 +108,10 @@ of many the innermost" :export)
 
 (defun image-of-task (task depth folded-p)
   (make-task-image :serial (task-serial task) :depth depth
-                   :look (look-of task) :state (task-state-text task)
+                   :look (task-look task) :state (task-state-text task)
                    :name (and (task-name task) (task-label task))
                    :form (form-text (task-form task) 100)
-                   :calls (loop for call in (last (calls-in (task-stack task)) +most-calls+)
+                   :calls (loop for call in (last (plan-calls-in (task-stack task)) +most-calls+)
                                 collect (form-text call 100))
                    :awaits (task-awaits task) :since (task-since task)
                    :path (task-path task)
@@ -130,13 +132,14 @@ of many the innermost" :export)
     (nreverse rows)))
 
 (defun image-of-tasks (runner &key (folded '()) (most 300))
-  "Return the image of the tasks of RUNNER, none of which goes on meanwhile: at most MOST rows, and
-without the parts of those tasks whose numbers are among FOLDED."
+  "Return the image of the tasks of RUNNER, with at most MOST rows. The parts of tasks whose numbers
+are among FOLDED are left out. No task may go on meanwhile."
   (let ((plans (plan-runner-tasks runner)))
     (make-tree-image :tick (plan-runner-tick runner) :rows (rows-of-tasks plans folded most)
                      :plans (length plans) :tasks (runner-alive runner))))
 
-(defun runner-mark (runner)
-  "Return a list that differs, by EQUAL, after any change of the tasks of RUNNER. For any thread."
+(defun runner-change-mark (runner)
+  "Return a list that is no longer EQUAL after a change of the tasks of RUNNER. Any thread may call
+this function."
   (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))

@@ -11,22 +11,23 @@
 
 (defun quoted (form) (form-text form 60))
 
-(defun at-words (entry)
-  "Return where the task of ENTRY was, as words to follow others; none if it had not begun."
+(defun at-form-text (entry)
+  "Return text for the end of a sentence: the expression at which the task of ENTRY was. Return an
+empty string if the task had not begun."
   (if (trace-entry-form entry)
       (format nil " at ~A" (quoted (trace-entry-form entry)))
       ""))
 
-(defun blocked-then-p (number index trace)
+(defun blocked-at-entry-p (number index trace)
   "True if the task NUMBER, or one that it is part of, was blocked at entry INDEX of TRACE."
-  (loop for start in (ancestry number trace)
+  (loop for start in (ancestor-entries number trace)
         for last = (find-if (lambda (entry)
                               (and (= (trace-entry-task start) (trace-entry-task entry))
                                    (member (trace-entry-event entry) '(:block :unblock))))
                             trace :from-end t :end index)
         thereis (and last (eq :block (trace-entry-event last)))))
 
-(defun earlier (trace index test)
+(defun earlier-entry (trace index test)
   "Return the last entry of TRACE before INDEX, in the same tick, of which TEST is true, or NIL."
   (loop with tick = (trace-entry-tick (aref trace index))
         for i from (1- index) downto 0
@@ -40,47 +41,47 @@
 
 ;;; Agents.
 
-(defun issue-words (issue trace)
+(defun issue-description (issue trace)
   (let ((entry (find issue trace :key #'trace-entry-subject)))
     (format nil "~A, which task ~D issued~@[ at tick ~D~]"
             (quoted (cons (issue-name issue) (issue-arguments issue)))
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
-(defun agent-words (agent trace)
+(defun agent-description (agent trace)
   (cond ((integerp agent)
-         (format nil "task ~D, ~A" agent (task-words agent trace)))
+         (format nil "task ~D, ~A" agent (task-description agent trace)))
         ((answer-p agent)
          (format nil "the answer~@[ ~S~] to ~A" (answer-error agent)
-                 (issue-words (answer-issue agent) trace)))
+                 (issue-description (answer-issue agent) trace)))
         (t (agent-text agent))))
 
-(defun task-words (number trace)
+(defun task-description (number trace)
   (let ((start (start-of number trace)))
     (if (trace-entry-subject start)
         (format nil "~(~A~)" (trace-entry-subject start))
         (quoted (trace-entry-form start)))))
 
-(defun change-words (entry trace)
+(defun change-description (entry trace)
   (format nil "~A was ~:[pulsed~;set to ~:*~A~] by ~A~@[, at ~A~]"
           (fluent-text (trace-entry-subject entry))
           (and (eq :set (trace-entry-event entry)) (form-text (trace-entry-value entry) 40))
-          (agent-words (trace-entry-agent entry) trace)
+          (agent-description (trace-entry-agent entry) trace)
           (and (trace-entry-form entry) (quoted (trace-entry-form entry)))))
 
 ;;; Causes.
 
 (defun fluent-reason (fluent index trace)
-  (let ((change (earlier trace index
-                         (lambda (entry)
-                           (and (member (trace-entry-event entry) '(:set :pulse))
-                                (depends-p fluent (trace-entry-subject entry)))))))
+  (let ((change (earlier-entry trace index
+                               (lambda (entry)
+                                 (and (member (trace-entry-event entry) '(:set :pulse))
+                                      (depends-p fluent (trace-entry-subject entry)))))))
     (if change
-        (change-words change trace)
+        (change-description change trace)
         (format nil "~A came true" (fluent-text fluent)))))
 
-(defun part-words (end trace)
+(defun part-end-description (end trace)
   (format nil "its part ~D, ~A, ~A" (trace-entry-task end)
-          (task-words (trace-entry-task end) trace)
+          (task-description (trace-entry-task end) trace)
           (ecase (trace-entry-event end)
             (:succeed "succeeded")
             (:fail (format nil "failed (~A)" (cut (trace-entry-detail end) 100)))
@@ -90,44 +91,44 @@
   (let ((subject (trace-entry-subject entry)))
     (cond ((null subject)
            (let* ((number (trace-entry-task entry))
-                  (end (earlier trace index (lambda (end) (part-ended-p end number trace)))))
-             (if end (part-words end trace) "its turn had come")))
+                  (end (earlier-entry trace index (lambda (end) (part-ended-p end number trace)))))
+             (if end (part-end-description end trace) "its turn had come")))
           ((realp subject) (format nil "tick ~D had come" subject))
           ((fluent-p subject) (fluent-reason subject index trace))
           ((equal "" subject) "what it had to come after was over")
           (t (format nil "it was given ~A by ~A" (trace-entry-detail entry)
-                     (agent-words (trace-entry-agent entry) trace))))))
+                     (agent-description (trace-entry-agent entry) trace))))))
 
 (defun end-reason (entry index trace)
-  "Return why ENTRY, that its task evaporated or began to clean up, happened."
+  "Return text that says why the task of ENTRY evaporated or began to clean up."
   (let* ((agent (trace-entry-agent entry))
          (other (and (integerp agent) (/= agent (trace-entry-task entry))))
          (end (and other
-                   (earlier trace index
-                            (lambda (entry)
-                              (and (= agent (trace-entry-task entry))
-                                   (member (trace-entry-event entry) '(:succeed :fail))))))))
-    (cond (end (format nil "~A ~:[failed~;succeeded~]" (agent-words agent trace)
+                   (earlier-entry trace index
+                                  (lambda (entry)
+                                    (and (= agent (trace-entry-task entry))
+                                         (member (trace-entry-event entry) '(:succeed :fail))))))))
+    (cond (end (format nil "~A ~:[failed~;succeeded~]" (agent-description agent trace)
                        (eq :succeed (trace-entry-event end))))
-          (other (format nil "~A ended it" (agent-words agent trace)))
+          (other (format nil "~A ended it" (agent-description agent trace)))
           ((integerp agent) "it had cleaned up")
-          (t (format nil "~A ended it" (agent-words agent trace))))))
+          (t (format nil "~A ended it" (agent-description agent trace))))))
 
 ;;; Sentences.
 
-(defun wait-words (entry)
+(defun wait-description (entry)
   (if (trace-entry-subject entry)
-      (format nil "began to wait for ~A~A" (trace-entry-detail entry) (at-words entry))
+      (format nil "began to wait for ~A~A" (trace-entry-detail entry) (at-form-text entry))
       (format nil "began to wait for its parts, of ~A" (quoted (trace-entry-form entry)))))
 
-(defun event-words (entry index trace)
-  "Return what ENTRY, number INDEX of TRACE, says of its task, as the rest of a sentence; or NIL."
+(defun event-description (entry index trace)
+  "Return the rest of a sentence about the task of ENTRY, the entry number INDEX of TRACE; or NIL."
   (let ((form (quoted (trace-entry-form entry))))
     (case (trace-entry-event entry)
-      (:wait (wait-words entry))
+      (:wait (wait-description entry))
       (:wake (format nil "~:[went on~;could have gone on~]~A, ~2:*~:[~;but was blocked, ~]~*~
                           because ~A"
-                     (blocked-then-p (trace-entry-task entry) index trace) (at-words entry)
+                     (blocked-at-entry-p (trace-entry-task entry) index trace) (at-form-text entry)
                      (wake-reason entry index trace)))
       (:succeed (format nil "succeeded with ~A" (form-text (trace-entry-value entry) 60)))
       (:fail (format nil "ended by the failure: ~A" (cut (trace-entry-detail entry) 200)))
@@ -135,11 +136,11 @@
       (:evaporate (format nil "evaporated, because ~A" (end-reason entry index trace)))
       (:clean (format nil "began to clean up at ~A, because ~A" form
                       (if (eql (trace-entry-agent entry) (trace-entry-task entry))
-                          "it had come to that"
+                          "it had reached that cleanup"
                           (end-reason entry index trace))))
       (:cleaned "had cleaned up")
       (:command (format nil "issued ~A" (trace-entry-detail entry)))
-      (:block (format nil "was blocked by ~A" (agent-words (trace-entry-agent entry) trace)))
+      (:block (format nil "was blocked by ~A" (agent-description (trace-entry-agent entry) trace)))
       (:unblock "was blocked no longer"))))
 
 ;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
@@ -150,15 +151,16 @@
                        trace :start start :end end)))
     (and part
          (format nil "At tick ~D it was done with ~A, because ~A." (trace-entry-tick part)
-                 (quoted (trace-entry-form entry)) (part-words part trace)))))
+                 (quoted (trace-entry-form entry)) (part-end-description part trace)))))
 
-(defun own-sentences (number trace)
-  "Return what happened to the task NUMBER of TRACE after its start, the newest first."
+(defun task-event-sentences (number trace)
+  "Return sentences on the events of the task NUMBER of TRACE after its start, the newest first."
   (let ((sentences '()) (parts-wait nil) (since 0))
     (loop for entry across trace
           for index from 0
           for event = (trace-entry-event entry)
-          for words = (and (= number (trace-entry-task entry)) (event-words entry index trace))
+          for words = (and (= number (trace-entry-task entry))
+                           (event-description entry index trace))
           when words
             do (when (and parts-wait (not (member event '(:wake :evaporate :block :unblock))))
                  (push (decision-sentence parts-wait since index trace) sentences))
@@ -172,35 +174,36 @@
   (let ((number (trace-entry-task start)) (parent (trace-entry-value start)))
     (if parent
         (format nil "Task ~D, ~A, was started at tick ~D as a part of task ~D, ~A."
-                number (task-words number trace) (trace-entry-tick start) parent
-                (task-words parent trace))
+                number (task-description number trace) (trace-entry-tick start) parent
+                (task-description parent trace))
         (format nil "Task ~D is the plan ~A, started at tick ~D by ~A."
-                number (task-words number trace) (trace-entry-tick start)
-                (agent-words (trace-entry-agent start) trace)))))
+                number (task-description number trace) (trace-entry-tick start)
+                (agent-description (trace-entry-agent start) trace)))))
 
-(defun shortened (sentences)
+(defun shorten-sentences (sentences)
   (let ((more (- (length sentences) *longest-chain*)))
     (if (plusp more)
         (append (subseq sentences 0 *longest-chain*)
-                (list (format nil "Before that, ~D more things happened to it; ~
-                                   TASK-HISTORY has them."
+                (list (format nil "Before that, ~D more events happened to the task; TASK-HISTORY ~
+                                   lists them."
                               more)))
         sentences)))
 
 (defgeneric reasons (subject runner)
-  (:documentation "Return a list of sentences that say what brought SUBJECT where it is; RUNNER, if
-not NIL, has the tasks that are meant.")
+  (:documentation "Return a list of sentences that explain how SUBJECT got into its present state.
+RUNNER, if not NIL, is the plan runner that has SUBJECT.")
   (:method (subject runner)
     (declare (ignore runner))
     (reject-argument 'why 'subject subject
-                     (format nil "a robot, its name or a part of one, for the command that failed ~
-                                  last; a task, or its number; or nothing"))))
+                     (format nil "a robot, its name or a part of a robot, for the command that ~
+                                  failed last; a task or its number; or no argument"))))
 
 (defun task-reasons (which runner)
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (start-of number trace)             ; or there is none
-    (append (shortened (own-sentences number trace))
-            (loop for start in (ancestry number trace) collect (start-sentence start trace)))))
+    (append (shorten-sentences (task-event-sentences number trace))
+            (loop for start in (ancestor-entries number trace)
+                  collect (start-sentence start trace)))))
 
 (defmethod reasons ((task task) runner)
   (task-reasons task runner))
@@ -211,14 +214,14 @@ not NIL, has the tasks that are meant.")
 ;; The first argument may be left out before keywords, so the arguments are one list.
 (addition why)
 (defun why (&rest arguments)
-  "Write to :STREAM (default *STANDARD-OUTPUT*), in sentences, why something is as it is. Return
-nothing.
-  \(why), (why ROBOT), or its name or a part of it: which command failed or was interrupted last,
-what was asked for, when and by whom, its error code, what that means and what to try.
-  \(why TASK), or its number: how a task of a plan, perhaps over, got where it is. Events come
-newest first: which fluent woke it and which task set that, and how it and the tasks around it were
-started. :RUNNER names the plan runner if there are several. Needs a trace: see *TRACE-PLANS*.
-Signals MISUSE if no trace was kept; UNKNOWN-NAME and WRONG-ARGUMENT."
+  "Write to :STREAM (default *STANDARD-OUTPUT*) sentences that explain why a command failed, or how
+a task got into its state. Return nothing.
+  \(why), (why ROBOT), or the name or a part of a robot: which command failed or was interrupted
+last, when and by whom it was issued, its error code, what the code means and what to try.
+  \(why TASK), or the number of a task: how a task of a plan, perhaps over, got into its state.
+Events come newest first: which fluent woke the task, which task set the fluent, and how the task
+and the tasks around it were started. :RUNNER names the plan runner if there are several. Needs a
+trace: see *TRACE-PLANS*. Signals MISUSE if no trace was kept; UNKNOWN-NAME and WRONG-ARGUMENT."
   (multiple-value-bind (subject options)
       (if (keywordp (first arguments))
           (values nil arguments)

@@ -39,7 +39,7 @@ about the waiting breaks. Return NIL if ANSWERS is empty."
 the input line."
   (let ((reading (line-awaiting-input conversation))
         (asked (waiting-breaks-text
-                (ars-magna.cli:awaited-answers (conversation-session conversation))))
+                (ars-magna.cli:waiting-break-texts (conversation-session conversation))))
         (lines (1+ (count #\Newline text))))
     (cond (reading (list (running-line-text "~A waits for your answer" reading) :red))
           (asked (list asked :red))

@@ -29,7 +29,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
     (when (window-state-left-run-p state)
       (write-to-transcript transcript
                            (format nil "From here on: ~A in ~A.~%" (shown-robot window)
-                                   (ars-magna.cli:words-for-run (window-simulation window)))))
+                                   (ars-magna.cli:run-description (window-simulation window)))))
     (when (window-state-typed state) (pass-key conversation (window-state-typed state)))))
 
 (defun save-settings (window)
@@ -58,7 +58,7 @@ window of its robot."
               (window-preferences window) (copy-preferences preferences))))
     (if state
         (restore-window-state window state)
-        (ars-magna.cli:tell-first-messages (window-session window)))))
+        (ars-magna.cli:show-definition-messages (window-session window)))))
 
 ;;;; Coming and going
 
@@ -100,7 +100,7 @@ Return a text about what was ended, to append to a sentence."
   (let* ((session (window-session window))
          (line (running-line (window-conversation window)))
          (place (and (ars-magna.cli:in-trial-or-fork-p session)
-                     (ars-magna.cli:words-for-run (window-simulation window))))
+                     (ars-magna.cli:run-description (window-simulation window))))
          (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
     (ars-magna.cli:abandon-session session)
     (format nil "~@[. Its prompt was in ~A and has left this run~]~
@@ -110,14 +110,14 @@ Return a text about what was ended, to append to a sentence."
             place
             (and line (cut (one-line line) 200))
             (loop for line in lines repeat 10 collect (cut (one-line line) 200))
-            (ars-magna.cli:asked-of-others-p session))))
+            (ars-magna.cli:answerable-by-others-p session))))
 
 (defun run-to-notify (window)
   "Return the run whose message queue reports that WINDOW has closed. It is the run that WINDOW
 shows, or, if that is a trial or fork, the run outside."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
-        (or (ars-magna.cli:run-of-robot (shown-robot window))
+        (or (ars-magna.cli:live-run-of-robot (shown-robot window))
             (global-value '*simulation*)
             simulation)
         simulation)))
@@ -187,7 +187,7 @@ show all robots of that run."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
-           (ars-magna.cli:tell-of-run (window-session window) simulation name))
+           (ars-magna.cli:announce-run (window-session window) simulation name))
           ;; There is a run to show, but other windows show all of its robots.
           ((ars-magna.cli:run-after (window-simulation window) (shown-robot window))
            (warn-of-closing window (format nil "its run is over (~A)" reason))
@@ -307,7 +307,7 @@ comes first. Other windows are left out while their prompts are in a trial or fo
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
     (unless (eq window (window-of-this-thread))
-      (ars-magna.cli:tell-of-run (window-session window) simulation name))))
+      (ars-magna.cli:announce-run (window-session window) simulation name))))
 
 (defun open-window (robot)
   "Show ROBOT in a window and raise the window. It is the window of ROBOT, a window that shows its

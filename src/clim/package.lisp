@@ -12,7 +12,7 @@ are written with package prefixes. Manual B.")
                 #:holding-p #:interface-p #:interface-runner #:interface-robot
                 #:interface-simulation)
   (:import-from :ars-magna.rpl
-                #:bar #:bar-serial #:bars #:image-of-tasks #:runner-mark #:runner-trace
+                #:bar #:bar-serial #:bars #:image-of-tasks #:runner-change-mark #:runner-trace
                 #:runner-client
                 #:trace-so-far #:task-image #:task-image-serial #:task-image-folded-p
                 #:task-image-name #:task-image-state #:task-image-form #:task-image-awaits

@@ -51,7 +51,7 @@ EQUAL if LOOK would show the same."
         (timeline-p (eq :timeline (plan-look-view look))))
     (list (plan-look-simulation look) interface (plan-look-view look) (plan-look-folded look)
           (plans-traced-p interface)
-          (and runner (runner-mark runner))
+          (and runner (runner-change-mark runner))
           (and runner timeline-p (plan-runner-tasks runner)
                (simulation-tick (plan-look-simulation look))))))
 

@@ -44,7 +44,7 @@ line."))
                                 (ars-magna.cli:drawn-line-text line)))))
 
 ;; The interactor and the strip say so meanwhile.
-(defmethod ars-magna.cli:tell-asking ((console window-console))
+(defmethod ars-magna.cli:announce-program-input ((console window-console))
   (notify-window console))
 
 ;; The transcript breaks its lines itself, again whenever its width changes.
@@ -123,14 +123,14 @@ line is empty."
 
 (defun request-answer-first (conversation what)
   (write-at-prompt conversation "~A: answer the break first, with one of ~A.~%"
-                   what (ars-magna.cli:ways-awaited (conversation-session conversation))))
+                   what (ars-magna.cli:restart-choices-text (conversation-session conversation))))
 
 ;; While a break waits for an answer, other lines would be taken for a wrong answer.
 (defun refuse-line-at-break-p (conversation line)
   "Return true if LINE cannot run because a break waits for an answer at the prompt and LINE is no
 answer. Print a message in this case."
-  (when (and (ars-magna.cli:ways-awaited (conversation-session conversation))
-             (not (ars-magna.cli:answers-break-p line)))
+  (when (and (ars-magna.cli:restart-choices-text (conversation-session conversation))
+             (not (ars-magna.cli:answers-any-break-p line)))
     (request-answer-first conversation (string-upcase (string-right-trim " " line)))
     t))
 
@@ -155,7 +155,7 @@ change."
 (defun running-line (conversation)
   "Return the text of the running line, or NIL if no line is running."
   (and (conversation-thread conversation)
-       (ars-magna.cli:at-work-on (conversation-session conversation))
+       (ars-magna.cli:running-line-p (conversation-session conversation))
        (console-entered (conversation-console conversation))))
 
 (defun line-awaiting-input (conversation)

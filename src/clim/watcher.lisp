@@ -61,26 +61,27 @@ code has."
 SIMULATION has no rate."
   (if (live-p simulation)
       (simulation-rate simulation)
-      (nth-value 1 (ars-magna.cli:pace-of simulation))))
+      (nth-value 1 (ars-magna.cli:simulation-pace simulation))))
 
 (defun paused-until-resume-p (simulation)
   "True if SIMULATION is paused, as a live run or as a trial, so that RESUME continues it."
   (if (live-p simulation)
       (paused-p simulation)
-      (eq :paused (ars-magna.cli:pace-of simulation))))
+      (eq :paused (ars-magna.cli:simulation-pace simulation))))
 
 (defun time-state (simulation sample)
   "Return two values: the keyword of STATE-WORDS that says how time passes in SIMULATION, and a text
 that continues the words, or NIL."
   (let ((busy (blocking-code-text simulation sample)))
     (cond ((and (simulation-over simulation)
-                (not (eq :ended (ars-magna.cli:pace-of simulation))))
+                (not (eq :ended (ars-magna.cli:simulation-pace simulation))))
            :over)
           ;; In a trial or fork the prompt lets ticks pass.
           ((not (live-p simulation))
-           (or (ars-magna.cli:pace-of simulation) (if (headless-p simulation) :still :stopped)))
+           (or (ars-magna.cli:simulation-pace simulation)
+               (if (headless-p simulation) :still :stopped)))
           ((users-code-broken-p simulation)
-           (values :broken (ars-magna.cli:asker-of-break simulation)))
+           (values :broken (ars-magna.cli:other-debugger-text simulation)))
           (busy (values :busy busy))
           ((paused-p simulation) :paused)
           ((not (idle-p simulation)) :running)

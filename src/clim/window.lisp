@@ -76,7 +76,7 @@
            (window-title (watcher-robot (window-watcher window))
                          (and (not (live-p simulation))
                               (not (simulation-over simulation))
-                              (ars-magna.cli:words-for-run simulation)))))))
+                              (ars-magna.cli:run-description simulation)))))))
 
 (defun make-robot-window (watcher &rest options)
   "Return a new window for the robot of WATCHER, without showing it. OPTIONS are CLIM's options for

@@ -24,5 +24,5 @@ resumed, on all processors and on many machines. Names lparallel.")
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm #:fluent-p #:fluent-text)
-  (:import-from :ars-magna.rpl-robot #:*plan-failed* #:*plan-limit*
+  (:import-from :ars-magna.rpl-robot #:*on-plan-failure* #:*plan-limit*
                 #:*trace-plans* #:stranded-plan-text))

@@ -167,7 +167,7 @@ success."
   (let* ((condition (result-condition result))
          (*trial-values* '())
          (failed '())
-         (values (let ((*plan-failed* (lambda (task) (push task failed))))
+         (values (let ((*on-plan-failure* (lambda (task) (push task failed))))
                    (run-noting-failures experiment condition result))))
     (multiple-value-bind (outcome reason) (outcome-of-run experiment values)
       (setf (values (result-outcome result) (result-reason result))
