@@ -80,7 +80,7 @@
                                (rpl:wait-for driver:robot-stopped*)))))
       (is (= 1 (length (lines-of text))) "~A" text)
       (is-true (has-words-p text "rpl-robot-turn of the plan"
-                            "rpl-robot-go-forward was given before" "(wait-for robot-stopped*)")))
+                            "rpl-robot-go-forward was issued before" "(wait-for robot-stopped*)")))
     (dolist (plan (list (plan-of (driver:rpl-robot-go-forward 1)
                                  (driver:rpl-robot-set-speed 1)
                                  (driver:rpl-robot-stop)

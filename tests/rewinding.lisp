@@ -355,7 +355,7 @@ as STATES say. GO-ON is called after each."
        (setf interface (shiftf driver::*interface* nil))))
     (is-true (run:simulation-over (driver::interface-simulation interface)))
     (awaiting (null (driver::plans-thread interface)))
-    (is (null (driver::tasks-of interface)))))
+    (is (null (driver::tasks-of-interface interface)))))
 
 (test rewind.live-plans-go-on
   (live-rover (:rate 500 :seed 2)

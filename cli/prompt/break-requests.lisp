@@ -7,7 +7,7 @@
 
 (defvar *session* nil "The session that the debugger asks, in any thread; the newest.")
 
-(defvar *asking-p* nil "True in a thread that has broken and asks how to continue.")
+(defvar *asking-how-to-continue-p* nil "True in a thread that has broken and asks how to continue.")
 
 ;;; What the user sees.
 

@@ -201,7 +201,7 @@ the same run, else all sessions. Return NIL if the user ended SESSION."
   "If this thread runs a line of a prompt, read lines that answer breaks in other threads, until no
 break waits."
   (let ((session *session*))
-    (when (and session (eq (session-thread session) (current-thread)) (not *showing-p*))
+    (when (and session (eq (session-thread session) (current-thread)) (not *showing-messages-p*))
       (loop for break-request = (first (session-breaks session))
             while break-request
             do (when (session-over-p session) (invoke-restart 'end-line))
@@ -231,7 +231,7 @@ and Lisp runs other programs, too."
 debugger."
   ;; The question needs stack that is not there.
   (when (typep condition 'storage-condition) (abort-by-restart condition))
-  (let* ((*asking-p* t) (sessions (sessions-to-ask)))
+  (let* ((*asking-how-to-continue-p* t) (sessions (sessions-to-ask)))
     (cond ((break-ignored-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)

@@ -72,7 +72,7 @@ returns."
              (not (find (current-thread) (running-sessions) :key #'session-thread)))
     (remove console (mapcar #'session-console (sessions-showing *simulation*)))))
 
-(defvar *showing-p* nil
+(defvar *showing-messages-p* nil
   "True while this thread shows messages. Messages that come up meanwhile are shown later.")
 
 (defvar *showing-lock* (make-lock "showing messages"))
@@ -80,10 +80,10 @@ returns."
 (defun show-messages (session)
   "Show all queued messages, in SESSION or in the sessions of their runs, and the prompts again. Do
 nothing if SESSION has lost its user."
-  (unless *showing-p*
+  (unless *showing-messages-p*
     (with-lock (*showing-lock*)
       (unless (session-abandoned-p session)
-        (let ((*showing-p* t))
+        (let ((*showing-messages-p* t))
           (deliver-messages session (take-all-messages)))))))
 
 ;;; Messages about a world's file, while it is loaded, come before there is a run.

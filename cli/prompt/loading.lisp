@@ -75,7 +75,7 @@ function PLACE."
             (setf (user-calls-place calls) outer)))
         (funcall function))))
 
-(defun line-at (text position)
+(defun line-number-at (text position)
   (1+ (count #\Newline text :end position)))
 
 (defun call-locating-errors (function file line)
@@ -91,10 +91,10 @@ function LINE returns for the condition. For NIL, LINE returns the number of the
 (defun line-of-read-error (condition stream start)
   "Return the number of the line in STREAM on which the reader failed with CONDITION. If the form
 does not end, return the number of the line of START, where the form begins."
-  (line-at (grown-text stream)
-           (if (typep condition 'end-of-file)
-               start
-               (max start (1- (grown-position stream))))))
+  (line-number-at (grown-text stream)
+                  (if (typep condition 'end-of-file)
+                      start
+                      (max start (1- (grown-position stream))))))
 
 (defun read-form-in-file (stream file)
   "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if the form cannot be
@@ -127,4 +127,4 @@ read."
                                      file
                                      (lambda (condition)
                                        (declare (ignore condition))
-                                       (line-at text position)))))))
+                                       (line-number-at text position)))))))

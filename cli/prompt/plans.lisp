@@ -73,7 +73,7 @@ them."
 them."
   (cut (one-line (call-in-user-syntax (lambda () (funcall function object)))) 300))
 
-(defun reason-text (failure)
+(defun failure-reason-text (failure)
   (if (eq (type-of failure) 'plan-failure)
       (format nil "~:[no reason given~;~:*~A~]~{ ~A~}"
               (and (failure-class failure) (safe-text (failure-class failure)))
@@ -121,7 +121,7 @@ run."
         (:failed (note-failure job result)
                  (error-set (make-plan-verdict
                              job "failed: ~A. PLANS tells more."
-                             (string-right-trim "." (user-text #'reason-text result)))))
+                             (string-right-trim "." (user-text #'failure-reason-text result)))))
         (t (message-set (make-plan-verdict job "was stopped.")))))))
 
 (defun report-stuck-plan (job)

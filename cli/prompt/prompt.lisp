@@ -40,7 +40,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     (unless (eq rest text) (record-line-begun session rest))
     rest))
 
-(defun read-next (session)
+(defun read-next-line (session)
   "Return the next line of SESSION, or NIL at the end. For a line that is too long, return an
 outline and the condition LINE-TOO-LONG."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
@@ -59,7 +59,7 @@ outline and the condition LINE-TOO-LONG."
   (call-whereabouts-hooks session)
   (find-run-and-robot session)
   (when (session-account session) (report-last-line session))
-  (multiple-value-bind (text trouble) (unless (stopped-p session) (read-next session))
+  (multiple-value-bind (text trouble) (unless (stopped-by-error-p session) (read-next-line session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
            (unless (session-breaks session) (find-run-and-robot session))
@@ -73,7 +73,7 @@ outline and the condition LINE-TOO-LONG."
 the other line."
   (let ((*asker* nil) (*told-of* nil)) (run-next-line session)))
 
-(defun stopped-p (session)
+(defun stopped-by-error-p (session)
   "Wait until the requests of SESSION have ended. Return true if SESSION stops at errors and has had
 an error."
   (when (reader-stop-p (session-reader session))
@@ -177,7 +177,7 @@ input. The lines command the robot ROBOT-NAME of SIMULATION. Return SESSION."
 (defun interrupt-own-line ()
   "End the running line of this thread's session, if there is one. Do not end a break in a session
 whose user is lost: users of other sessions are asked when the session is over."
-  (when (and *session* (not (and *asking-p* (session-abandoned-p *session*))))
+  (when (and *session* (not (and *asking-how-to-continue-p* (session-abandoned-p *session*))))
     (handle-interrupt)))
 
 (defun interrupt-session (session)

@@ -20,7 +20,7 @@ true. Return the values of BODY. Signals WRONG-ARGUMENT."
 
 ;;;; As a bundle of ways over the map
 
-(defun start-of (projection)
+(defun snapshot-of-start (projection)
   "Return a snapshot of the world in which the rollouts of PROJECTION began. For rollouts in a
 believed world, return a snapshot of that world after a rollout."
   (let* ((rollout (first (projection-rollouts projection)))
@@ -52,7 +52,7 @@ WRONG-ARGUMENT; and MISUSE if the program that PNG needs is missing."
                   (and (projection-p projection) (projection-rollouts projection) t)
                   "a projection with rollouts, as PROJECT returns")
   (picture-kind 'save-projection-picture file)
-  (apply #'save-bundle 'save-projection-picture "rollout" file (start-of projection)
+  (apply #'save-bundle 'save-projection-picture "rollout" file (snapshot-of-start projection)
          (lambda ()
            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
                    (projection-rollouts projection)))

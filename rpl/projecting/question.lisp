@@ -89,7 +89,7 @@ and :HORIZON. Values may be fluents. Signals WRONG-ARGUMENT."
 
 ;;; Seeds. The same trial of all branches has the same one.
 
-(defun mix-numbers (&rest numbers)
+(defun hash-numbers (&rest numbers)
   "Return a hash code of NUMBERS, integers: an integer from 0 to 2^62 - 1."
   (let ((digest (make-digest)))
     (digest-add digest numbers)
@@ -102,12 +102,12 @@ tick."
   (let* ((interface (wish-interface question))
          (simulation (if interface (interface-simulation interface) *simulation*))
          (seed (option question :seed)))
-    (cond (seed (mix-numbers seed trial))
-          ((null simulation) (mix-numbers 0 trial))
-          (t (mix-numbers (simulation-seed simulation)
-                          (simulation-tick simulation)
-                          (if (wish-task question) (wishes-in-tick interface) -1)
-                          trial)))))
+    (cond (seed (hash-numbers seed trial))
+          ((null simulation) (hash-numbers 0 trial))
+          (t (hash-numbers (simulation-seed simulation)
+                           (simulation-tick simulation)
+                           (if (wish-task question) (wishes-in-tick interface) -1)
+                           trial)))))
 
 ;;;; Answers
 

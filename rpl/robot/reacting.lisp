@@ -162,7 +162,7 @@ nothing."
       (close-runner (interface-runner interface))
       (setf (interface-closed-p interface) t))))
 
-(defun tasks-of (interface)
+(defun tasks-of-interface (interface)
   (plan-runner-tasks (interface-runner interface)))
 
 (defun woken-by-tick-p (interface)

@@ -42,7 +42,7 @@ INTERFACE was made, and plans still drive another robot. Otherwise return NIL."
 to another robot since. Signals MISUSE if plans still drive the robot of the old interface."
   (let* ((interface (usable-interface))
          (robot (and interface (newly-commanded-robot interface))))
-    (when (and robot (tasks-of interface))
+    (when (and robot (tasks-of-interface interface))
       (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends the ~
                    plans of that robot."
                   (interface-robot interface)))
@@ -230,14 +230,14 @@ the run is over before it begins."
   (let ((interface (usable-interface)))
     (when interface
       (note-plans-shown interface)
-      (tasks-of interface))))
+      (tasks-of-interface interface))))
 
 (defun request-plan-end (interface task)
   "Request that TASK of INTERFACE evaporates, or all tasks if TASK is NIL. The plan runner ends the
 tasks later."
   (check-not-secluded (interface-simulation interface))
   (record-plan-action interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
-  (dolist (task (if task (list task) (tasks-of interface)))
+  (dolist (task (if task (list task) (tasks-of-interface interface)))
     (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
   (stop-plan (interface-runner interface) task))
 

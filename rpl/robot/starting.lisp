@@ -60,7 +60,8 @@ live run go on while a headless simulation runs inside of the live run."
 (defun warn-of-ended-plans (interface robot)
   "Warn once that plans of INTERFACE end because plans are to drive ROBOT. Warn only if ROBOT is
 another robot of the same run, or if one of these plans has called RPL-INIT-ROBOT itself."
-  (let* ((tasks (remove-if #'task-over-p (tasks-of interface))) (before (interface-robot interface))
+  (let* ((tasks (remove-if #'task-over-p (tasks-of-interface interface)))
+         (before (interface-robot interface))
          (same-p (eq robot before)))
     (when (and tasks
                (interface-valid-p interface)
@@ -160,18 +161,19 @@ in this tick, as in most ticks. No other thread may touch the plans meanwhile."
              ;; Headless there is no other thread, and most ticks need no lock.
              (unless (and (null (interface-holder interface)) (advance-without-reaction interface))
                (with-plans (interface) (react-fully interface)))))
-        ((tasks-of interface) (ensure-thread interface))
+        ((tasks-of-interface interface) (ensure-thread interface))
         ;; Without plans what was posted is only applied.
         ((interface-answers interface)
          (with-plans (interface)
-           (unless (tasks-of interface) (react-fully interface))))))
+           (unless (tasks-of-interface interface) (react-fully interface))))))
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
   (cond ((plans-thread interface) (wake-tick interface))
         ((ready-p interface))
         ((wish-to-serve interface) t)
-        ((live-p simulation) (and (plans-thread-wanted-p interface) (tasks-of interface) t))))
+        ((live-p simulation)
+         (and (plans-thread-wanted-p interface) (tasks-of-interface interface) t))))
 
 ;; A thread that applies posts holds the plans, and publishes what is left before it releases them.
 (defmethod participant-at-work-p ((interface interface))
@@ -199,6 +201,6 @@ in this tick, as in most ticks. No other thread may touch the plans meanwhile."
   (close-interface interface))
 
 (defmethod participant-unfinished ((interface interface))
-  (loop for task in (tasks-of interface)
+  (loop for task in (tasks-of-interface interface)
         unless (or (task-parent task) (task-over-p task))
           collect (format nil "the plan ~A" (task-label task))))

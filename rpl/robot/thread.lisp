@@ -96,7 +96,7 @@ to run; NIL if the reaction was aborted."
     ;; Read first: a request to end the plans is served in this reaction.
     (let* ((closing-p (interface-closing-p interface))
            (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
-      (cond ((and (tasks-of interface) (not closing-p))
+      (cond ((and (tasks-of-interface interface) (not closing-p))
              (if (and (not (live-p (interface-simulation interface)))
                       (or (eq :idle outcome) (waits-for-tick-p interface)))
                  (run-plans-in-ticks interface)

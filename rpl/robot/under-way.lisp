@@ -248,7 +248,7 @@ or NIL. This thread holds the plans of INTERFACE."
     (find-if (lambda (task)
                (let ((parts (waiting-parts task)))
                  (and (some #'waits-on-purpose-p parts) (member pulse (fluents-awaited parts)))))
-             (tasks-of interface))))
+             (tasks-of-interface interface))))
 
 (defun warn-of-outside-command (interface command)
   (let ((task (call-with-plans-if-free (lambda () (task-watching-end interface command))
@@ -269,5 +269,5 @@ or NIL. This thread holds the plans of INTERFACE."
                        (not (find robot (interface-actions interface) :key #'action-resource))
                        (command-name (operation-command event))))
          (before (shiftf (interface-outside interface) command)))
-    (when (and before (null command) (pulse-of-command before) (tasks-of interface))
+    (when (and before (null command) (pulse-of-command before) (tasks-of-interface interface))
       (warn-of-outside-command interface before))))

@@ -65,7 +65,7 @@ D.")
 PART is the index of the part; NIL stands for the robot."
   plan command part err)
 
-(defun number-of-part (resource)
+(defun part-number (resource)
   (and (part-p resource) (part-index resource)))
 
 (defun unread-fluents (unread)
@@ -81,7 +81,7 @@ PART is the index of the part; NIL stands for the robot."
   "Record that ACTION of INTERFACE has ended with ERR, before plans can read ERR. The record
 supersedes that of an earlier end of the same command."
   (let ((command (action-name action)) (task (action-task action))
-        (part (number-of-part (action-resource action))))
+        (part (part-number (action-resource action))))
     (when (or err (interface-unread interface))
       (setf (interface-unread interface)
             (remove-if (lambda (unread)
@@ -202,10 +202,10 @@ changes."
   "Return lists (task parts) of plans of INTERFACE that wait in vain; () if any of them can go on."
   (when (and (null (interface-awaited interface))
              (interface-valid-p interface)
-             (tasks-of interface)
+             (tasks-of-interface interface)
              (deadlocked-p interface))
     (with-plans (interface)
-      (loop for task in (tasks-of interface)
+      (loop for task in (tasks-of-interface interface)
             for parts = (stranded-parts interface task)
             when parts collect (list task parts)))))
 
@@ -243,6 +243,6 @@ is no such plan."
 (defmethod participant-cut-off ((interface interface))
   (when (interface-valid-p interface)
     (with-plans (interface)
-      (loop for task in (tasks-of interface)
+      (loop for task in (tasks-of-interface interface)
             when (cut-off-p interface task)
               collect (format nil "the plan ~A" (task-label task))))))

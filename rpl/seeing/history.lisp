@@ -17,7 +17,7 @@
                              they start."))
             (if (task-p which) (task-serial which) which))))
 
-(defun start-of (number trace)
+(defun start-entry (number trace)
   "Return the entry of TRACE for the start of the task NUMBER. Signals MISUSE."
   (or (find-if (lambda (entry)
                  (and (= number (trace-entry-task entry)) (eq :start (trace-entry-event entry))))
@@ -29,7 +29,7 @@
 first."
   (loop for each = number then (trace-entry-value start)
         while each
-        for start = (start-of each trace)
+        for start = (start-entry each trace)
         collect start))
 
 (defun descendant-test (number trace)

@@ -71,7 +71,7 @@ none. Without an interactive debugger, such failures are messages.")
 (defvar *step-plans* nil
   "When true, plans that are started stop before each expression: see STEP-TASK.")
 
-(defstruct (course (:constructor make-course (task)) (:copier nil))
+(defstruct (stepping-course (:constructor make-stepping-course (task)) (:copier nil))
   "How TASK is stepped through. MODE is :run, :step (stop before any expression) or :over. In the
 mode :over, the task WITHIN runs until it returns to the frame UNTIL; if UNTIL is :NEXT, until its
 next expression; if UNTIL is NIL, until the task is over."
@@ -98,24 +98,24 @@ a step of its own.")
 (defun note-frame-return (course task frame)
   "If TASK, about to take a step at FRAME, has returned to the frame UNTIL of COURSE, record that in
 COURSE."
-  (let ((until (course-until course)))
+  (let ((until (stepping-course-until course)))
     (when (and (frame-p until)
-               (eq task (course-within course))
+               (eq task (stepping-course-within course))
                (not (member until (rest (frame-chain frame)))))
-      (setf (course-until course) :next))))
+      (setf (stepping-course-until course) :next))))
 
 (defun stop-wanted-p (course task)
-  (ecase (course-mode course)
+  (ecase (stepping-course-mode course)
     (:run nil)
     (:step t)
-    (:over (or (task-over-p (course-within course))
-               (and (eq task (course-within course))
-                    (eq :next (course-until course)))))))
+    (:over (or (task-over-p (stepping-course-within course))
+               (and (eq task (stepping-course-within course))
+                    (eq :next (stepping-course-until course)))))))
 
 (defun resume-stepping (course mode &optional task until)
-  (setf (course-mode course) mode
-        (course-within course) task
-        (course-until course) until))
+  (setf (stepping-course-mode course) mode
+        (stepping-course-within course) task
+        (stepping-course-until course) until))
 
 (document-restarts
  'step "In a plan that is being stepped: do this, and stop before the next expression."
@@ -145,7 +145,7 @@ this task."
 
 (defun consider-stop (courses task frame)
   "Stop TASK before its step at FRAME, if one of COURSES says so."
-  (let ((course (some (lambda (whole) (find whole courses :key #'course-task))
+  (let ((course (some (lambda (whole) (find whole courses :key #'stepping-course-task))
                       (lineage task))))
     (when course
       (note-frame-return course task frame)
@@ -158,7 +158,8 @@ this task."
 (defun stepping-courses (runner)
   "Return the courses of RUNNER whose tasks are not over."
   (and (runner-stepper runner)
-       (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil) :key #'course-task)))
+       (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil)
+                  :key #'stepping-course-task)))
 
 (addition step-task)
 (defun step-task (task &optional (on t))
@@ -167,8 +168,8 @@ stop enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far 
 interactive debugger, a stop is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")
   (let* ((runner (task-runner task))
-         (others (remove task (stepping-courses runner) :key #'course-task))
-         (courses (if on (cons (make-course task) others) others)))
+         (others (remove task (stepping-courses runner) :key #'stepping-course-task))
+         (courses (if on (cons (make-stepping-course task) others) others)))
     (setf (runner-stepper runner)
           (and courses
                (lambda (task frame)

@@ -100,7 +100,7 @@ of many the innermost" :export)
   (cond ((evaporating-p task) (if (task-cleaning task) :cleaning :ending))
         ((blocked-p task) :blocked)
         ((task-cleaning task) :cleaning)
-        ((find task (stepping-courses (task-runner task)) :key #'course-task) :stepped)
+        ((find task (stepping-courses (task-runner task)) :key #'stepping-course-task) :stepped)
         ((eq :waiting (task-state task)) :waiting)
         (t :running)))
 

@@ -9,13 +9,13 @@
 
 (defparameter *longest-chain* 12 "How many steps of a task's history WHY tells at most.")
 
-(defun quoted (form) (form-text form 60))
+(defun short-form-text (form) (form-text form 60))
 
 (defun at-form-text (entry)
   "Return text for the end of a sentence: the expression at which the task of ENTRY was. Return an
 empty string if the task had not begun."
   (if (trace-entry-form entry)
-      (format nil " at ~A" (quoted (trace-entry-form entry)))
+      (format nil " at ~A" (short-form-text (trace-entry-form entry)))
       ""))
 
 (defun blocked-at-entry-p (number index trace)
@@ -37,14 +37,14 @@ empty string if the task had not begun."
 
 (defun part-ended-p (entry number trace)
   (and (member (trace-entry-event entry) '(:succeed :fail :evaporate))
-       (eql number (trace-entry-value (start-of (trace-entry-task entry) trace)))))
+       (eql number (trace-entry-value (start-entry (trace-entry-task entry) trace)))))
 
 ;;; Agents.
 
 (defun issue-description (issue trace)
   (let ((entry (find issue trace :key #'trace-entry-subject)))
     (format nil "~A, which task ~D issued~@[ at tick ~D~]"
-            (quoted (cons (issue-name issue) (issue-arguments issue)))
+            (short-form-text (cons (issue-name issue) (issue-arguments issue)))
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
 (defun agent-description (agent trace)
@@ -56,17 +56,17 @@ empty string if the task had not begun."
         (t (agent-text agent))))
 
 (defun task-description (number trace)
-  (let ((start (start-of number trace)))
+  (let ((start (start-entry number trace)))
     (if (trace-entry-subject start)
         (format nil "~(~A~)" (trace-entry-subject start))
-        (quoted (trace-entry-form start)))))
+        (short-form-text (trace-entry-form start)))))
 
 (defun change-description (entry trace)
   (format nil "~A was ~:[pulsed~;set to ~:*~A~] by ~A~@[, at ~A~]"
           (fluent-text (trace-entry-subject entry))
           (and (eq :set (trace-entry-event entry)) (form-text (trace-entry-value entry) 40))
           (agent-description (trace-entry-agent entry) trace)
-          (and (trace-entry-form entry) (quoted (trace-entry-form entry)))))
+          (and (trace-entry-form entry) (short-form-text (trace-entry-form entry)))))
 
 ;;; Causes.
 
@@ -119,11 +119,11 @@ empty string if the task had not begun."
 (defun wait-description (entry)
   (if (trace-entry-subject entry)
       (format nil "began to wait for ~A~A" (trace-entry-detail entry) (at-form-text entry))
-      (format nil "began to wait for its parts, of ~A" (quoted (trace-entry-form entry)))))
+      (format nil "began to wait for its parts, of ~A" (short-form-text (trace-entry-form entry)))))
 
 (defun event-description (entry index trace)
   "Return the rest of a sentence about the task of ENTRY, the entry number INDEX of TRACE; or NIL."
-  (let ((form (quoted (trace-entry-form entry))))
+  (let ((form (short-form-text (trace-entry-form entry))))
     (case (trace-entry-event entry)
       (:wait (wait-description entry))
       (:wake (format nil "~:[went on~;could have gone on~]~A, ~2:*~:[~;but was blocked, ~]~*~
@@ -151,7 +151,7 @@ empty string if the task had not begun."
                        trace :start start :end end)))
     (and part
          (format nil "At tick ~D it was done with ~A, because ~A." (trace-entry-tick part)
-                 (quoted (trace-entry-form entry)) (part-end-description part trace)))))
+                 (short-form-text (trace-entry-form entry)) (part-end-description part trace)))))
 
 (defun task-event-sentences (number trace)
   "Return sentences on the events of the task NUMBER of TRACE after its start, the newest first."
@@ -200,7 +200,7 @@ RUNNER, if not NIL, is the plan runner that has SUBJECT.")
 
 (defun task-reasons (which runner)
   (multiple-value-bind (trace number) (trace-to-read which runner)
-    (start-of number trace)             ; or there is none
+    (start-entry number trace)          ; or there is none
     (append (shorten-sentences (task-event-sentences number trace))
             (loop for start in (ancestor-entries number trace)
                   collect (start-sentence start trace)))))
