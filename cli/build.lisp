@@ -18,8 +18,8 @@
 
 (in-package :ars-magna.build)
 
-(defvar *root* (uiop:pathname-parent-directory-pathname
-                (uiop:pathname-directory-pathname *load-truename*))
+(defvar *project-directory* (uiop:pathname-parent-directory-pathname
+                             (uiop:pathname-directory-pathname *load-truename*))
   "The project's directory.")
 
 (defun path-in-environment (name)
@@ -27,63 +27,63 @@
   (let ((value (uiop:getenvp name)))
     (and value (uiop:parse-native-namestring value))))
 
-(defvar *cache* (path-in-environment "ARS_MAGNA_CACHE")
+(defvar *cache-directory* (path-in-environment "ARS_MAGNA_CACHE")
   "The directory for all compiled files; NIL means ASDF's default cache.")
 
 (defun project-fasls ()
-  (uiop:subpathname *cache* "project/"))
+  (uiop:subpathname *cache-directory* "project/"))
 
 (defun library-fasls ()
-  (uiop:subpathname *cache* "libraries/"))
+  (uiop:subpathname *cache-directory* "libraries/"))
 
 (defun configure ()
-  "Make ASDF find this project and write compiled files into *CACHE*."
+  "Make ASDF find this project and write compiled files into *CACHE-DIRECTORY*."
   (mapc #'asdf:register-immutable-system '("asdf" "uiop"))
   (asdf:initialize-source-registry
-   `(:source-registry (:directory ,*root*) :inherit-configuration))
-  (when *cache*
+   `(:source-registry (:directory ,*project-directory*) :inherit-configuration))
+  (when *cache-directory*
     (asdf:initialize-output-translations
      `(:output-translations
-       (,(merge-pathnames "**/*.*" *root*)
+       (,(merge-pathnames "**/*.*" *project-directory*)
         ,(merge-pathnames "**/*.*" (project-fasls)))
        (t (,(library-fasls) :implementation))
        :ignore-inherited-configuration))))
 
-(defun one-line (condition)
+(defun text-on-one-line (condition)
   "Return CONDITION, a condition or a string, as text on one line."
   (let ((words (uiop:split-string (princ-to-string condition) :separator '(#\Space #\Newline))))
     (format nil "~{~A~^ ~}" (remove "" words :test #'string=))))
 
-(defun call-telling (function &optional (where ""))
+(defun call-or-quit (function &optional (where ""))
   "Call FUNCTION. If FUNCTION signals an error, print WHERE and the error on one line, and exit with
 status 2."
   (handler-case (funcall function)
     (error (condition)
-      (format t "~&~A~%" (one-line (format nil "~A~A" where condition)))
+      (format t "~&~A~%" (text-on-one-line (format nil "~A~A" where condition)))
       (uiop:quit 2))))
 
-(call-telling #'configure "The places where ASDF looks for libraries cannot be read
+(call-or-quit #'configure "ASDF's list of library directories cannot be read
 (from CL_SOURCE_REGISTRY or files in ~/.config/common-lisp): ")
 
-(load (uiop:subpathname *root* "cli/prompt/clx.lisp"))
+(load (uiop:subpathname *project-directory* "cli/prompt/clx.lisp"))
 
 ;;; Libraries.
 
-(defun missing-p (library)
+(defun library-missing-p (library)
   "True if ASDF cannot find LIBRARY. Signals an error if its system file does not define LIBRARY."
   (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream)))
     (not (or (asdf:find-system library nil)
              (let ((file (nth-value 2 (asdf:locate-system library))))
                (when file
-                 (error "~A does not define ~A, and hides others that may. Mend or remove it."
+                 (error "~A does not define ~A, and hides files that may. Correct or remove it."
                         (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
   "Print, on one line, the libraries from the environment variable LIBRARIES that ASDF cannot find."
-  (call-telling
+  (call-or-quit
    (lambda ()
      (format t "~&missing: ~{~A ~}~%"
-             (remove-if-not #'missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))))
+             (remove-if-not #'library-missing-p (uiop:split-string (uiop:getenv "LIBRARIES")))))))
 
 (defun project-system-p (name)
   (string= (asdf:primary-system-name name) "ars-magna"))
@@ -99,10 +99,10 @@ status 2."
   "Print the versions of the libraries that the simulator and its prompt use, on one line."
   (flet ((text (name)
            (format nil "~A ~A" name
-                   (if (missing-p name)
+                   (if (library-missing-p name)
                        "(not installed)"
                        (or (asdf:component-version (asdf:find-system name)) "(no version)")))))
-    (call-telling
+    (call-or-quit
      (lambda ()
        (format t "~{~A~^, ~}~%"
                (mapcar #'text
@@ -118,9 +118,9 @@ status 2."
                    (project-system-p (asdf:component-name system))))
              (mapcar #'asdf:find-system (asdf:already-loaded-systems))))
 
-(defun files-of (component)
+(defun component-files (component)
   (if (typep component 'asdf:parent-component)
-      (mapcan #'files-of (asdf:component-children component))
+      (mapcan #'component-files (asdf:component-children component))
       (list (asdf:component-pathname component))))
 
 (defun library-files ()
@@ -128,10 +128,10 @@ status 2."
   (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
           (loop for system in (loaded-libraries)
                 collect (asdf:system-source-file system)
-                append (files-of system))
+                append (component-files system))
           (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
 
-(defun library-names ()
+(defun library-file-endings ()
   "Return the endings of the paths of files that determine which libraries ASDF finds."
   (remove-duplicates
    (cons "/source-registry.conf"
@@ -139,66 +139,67 @@ status 2."
                collect (format nil "/~A" (file-namestring (asdf:system-source-file system)))))
    :test #'string=))
 
-(defun library-places ()
+(defun library-directories ()
   "Return lists (directory . options) of directories where ASDF and Quicklisp look for libraries,
-and of ASDF's configuration directories. The options are ASDF's."
+and of ASDF's configuration directories. The options have ASDF's format."
   (flet ((tree (directory) (list directory :recurse t)))
-    (append (remove *root* (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
+    (append (remove *project-directory*
+                    (uiop:symbol-call :asdf/source-registry :flatten-source-registry)
                     :key #'first :test #'equal)
             (mapcar #'tree (uiop:xdg-config-pathnames "common-lisp/"))
             (mapcar #'tree (uiop:system-config-pathnames "common-lisp/"))
             (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
 
-(defun write-libraries (out)
+(defun write-library-list (out)
   "Write to OUT the files and directories of libraries that this Lisp depends on, for setup.sh."
   (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
     (dolist (path (library-files)) (note "file" path))
-    (format out "~{name ~A~%~}" (library-names))
-    (loop for (directory . options) in (library-places)
+    (format out "~{name ~A~%~}" (library-file-endings))
+    (loop for (directory . options) in (library-directories)
           do (note (if (getf options :recurse) "tree" "directory") directory))))
 
-(defun list-libraries ()
+(defun save-library-list ()
   "Write the list of libraries to the file named in ARS_MAGNA_LIBRARIES, if that variable is set."
   (let ((file (path-in-environment "ARS_MAGNA_LIBRARIES")))
     (when file
       (ensure-directories-exist file)
       (with-open-file (out file :direction :output :if-exists :supersede)
-        (write-libraries out)))))
+        (write-library-list out)))))
 
 ;;; Compiling.
 
-(defun forget (fasls)
-  "Delete FASLS, a directory of compiled files, if *CACHE* is set."
-  (when *cache*
+(defun delete-fasls (fasls)
+  "Delete FASLS, a directory of compiled files, if *CACHE-DIRECTORY* is set."
+  (when *cache-directory*
     (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
 
-(defun note-trouble (condition)
+(defun print-trouble (condition)
   (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
           (or *compile-file-truename* *load-truename*) condition))
 
-(defvar *began* (get-universal-time) "The universal time when this Lisp started.")
+(defvar *start-time* (get-universal-time) "The universal time when this Lisp started.")
 
-(defvar *damaged-p* nil "True if compiled files cannot be loaded.")
+(defvar *damaged-fasls-p* nil "True if compiled files cannot be loaded.")
 
-(defun loading-old-p ()
+(defun loading-old-fasl-p ()
   "True while a compiled file is loaded that is older than this Lisp process."
   (and *load-truename*
        (equal "fasl" (pathname-type *load-truename*))
-       (< (file-write-date *load-truename*) *began*)))
+       (< (file-write-date *load-truename*) *start-time*)))
 
-(defun warned-file ()
+(defun warnings-marker ()
   "Return the path of a marker file. The file exists while the cache has compiled files of sources
 that caused warnings."
   (merge-pathnames "warned" (project-fasls)))
 
-(defun note-warned ()
-  (when *cache*
-    (ensure-directories-exist (warned-file))
-    (with-open-file (out (warned-file) :direction :output :if-exists :append
-                                       :if-does-not-exist :create)
+(defun make-warnings-marker ()
+  (when *cache-directory*
+    (ensure-directories-exist (warnings-marker))
+    (with-open-file (out (warnings-marker) :direction :output :if-exists :append
+                                           :if-does-not-exist :create)
       (declare (ignorable out)))))
 
-(defun count-troubles (function)
+(defun call-counting-warnings (function)
   "Call FUNCTION. Return the number of warnings that FUNCTION signalled, and true if it signalled an
 error."
   (let ((count 0))
@@ -207,21 +208,21 @@ error."
                               ;; SBCL itself muffles that compiling and loading define macros twice.
                               (unless (typep warning sb-ext:*muffled-warnings*)
                                 (incf count)
-                                (note-warned)
-                                (note-trouble warning))))
+                                (make-warnings-marker)
+                                (print-trouble warning))))
                    (error (lambda (condition)
-                            (note-trouble condition)
-                            (setf *damaged-p* (or (typep condition 'sb-ext:invalid-fasl)
-                                                  (loading-old-p)))
-                            (return-from count-troubles (values count t)))))
+                            (print-trouble condition)
+                            (setf *damaged-fasls-p* (or (typep condition 'sb-ext:invalid-fasl)
+                                                        (loading-old-fasl-p)))
+                            (return-from call-counting-warnings (values count t)))))
       (funcall function))
     (values count nil)))
 
-(defun give-up ()
+(defun quit-after-failure ()
   "Delete the project's compiled files and exit. The status is 1 if these files were damaged, so
 that compiling again may help, else 2."
-  (forget (project-fasls))
-  (uiop:quit (if *damaged-p* 1 2)))
+  (delete-fasls (project-fasls))
+  (uiop:quit (if *damaged-fasls-p* 1 2)))
 
 (defun load-libraries (names)
   "Compile and load the libraries NAMES. After an error, delete the compiled files of all libraries
@@ -229,55 +230,55 @@ and try again. If the second try fails, too, exit with status 2."
   (flet ((load-them () (mapc #'asdf:load-system names)))
     (handler-case (load-them)
       (error (condition)
-        (note-trouble condition)
-        (forget (library-fasls))
+        (print-trouble condition)
+        (delete-fasls (library-fasls))
         (handler-case (load-them)
           (error (condition)
-            (note-trouble condition)
+            (print-trouble condition)
             (uiop:quit 2)))))))
 
 (defun load-project (system)
-  "Compile and load SYSTEM, a system of the project. Exit if that fails."
+  "Compile and load SYSTEM, a system of the project. Exit if loading fails."
   (load-libraries (libraries system))
-  (when (nth-value 1 (count-troubles (lambda () (asdf:load-system system))))
-    (give-up))
-  (list-libraries))
+  (when (nth-value 1 (call-counting-warnings (lambda () (asdf:load-system system))))
+    (quit-after-failure))
+  (save-library-list))
 
 (defun load-strictly (system)
   "Compile and load SYSTEM like LOAD-PROJECT, but exit also after a warning in the project's files."
-  (when (and *cache* (probe-file (warned-file)))
-    (forget (project-fasls)))
+  (when (and *cache-directory* (probe-file (warnings-marker)))
+    (delete-fasls (project-fasls)))
   (load-libraries (libraries system))
   (let ((uiop:*compile-file-warnings-behaviour* :error)
         (uiop:*compile-file-failure-behaviour* :error))
     (multiple-value-bind (warnings failed-p)
-        (count-troubles (lambda () (asdf:load-system system)))
+        (call-counting-warnings (lambda () (asdf:load-system system)))
       (when (or failed-p (plusp warnings))
-        (give-up))))
-  (list-libraries))
+        (quit-after-failure))))
+  (save-library-list))
 
 (defun load-tests ()
   "Compile and load the tests. If the window's libraries are installed, load its tests, too."
   (load-strictly "ars-magna/tests")
-  (unless (some #'missing-p (libraries "ars-magna/clim-tests"))
+  (unless (some #'library-missing-p (libraries "ars-magna/clim-tests"))
     (load-strictly "ars-magna/clim-tests")))
 
 ;;; McCLIM, which only the window needs, is found by ASDF or by an installed Quicklisp.
 
 (defun print-window-libraries ()
   "Print where McCLIM was found: asdf, quicklisp or nothing. If CLX does not work, print why."
-  (call-telling
+  (call-or-quit
    (lambda ()
      (write-line (cond ((uiop:symbol-call :ars-magna.clx :clx-trouble))
-                       ((not (missing-p "mcclim/looks")) "asdf")
+                       ((not (library-missing-p "mcclim/looks")) "asdf")
                        ((uiop:symbol-call :ars-magna.clx :quicklisp-file) "quicklisp")
                        (t "nothing"))))))
 
 (defun get-window-libraries ()
-  "Load McCLIM through Quicklisp. If that fails, print the reason and exit with status 1."
+  "Load McCLIM through Quicklisp. If loading fails, print the reason and exit with status 1."
   (handler-case (uiop:symbol-call :ars-magna.clx :load-by-quicklisp)
     (error (condition)
-      (format t "~&*** ~A~%" (one-line condition))
+      (format t "~&*** ~A~%" (text-on-one-line condition))
       (uiop:quit 1))))
 
 ;;; The prompt.
@@ -294,7 +295,7 @@ and try again. If the second try fails, too, exit with status 2."
 
 (defun save-window-prompt ()
   "Save a core of the prompt with McCLIM loaded, in the file named in ARS_MAGNA_CORE."
-  (when (missing-p "mcclim/looks")
+  (when (library-missing-p "mcclim/looks")
     (get-window-libraries))
   (save-prompt "ars-magna/clim"))
 

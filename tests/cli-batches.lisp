@@ -270,7 +270,7 @@ last. Return its status, and its error output."
   "The third does so anyway; the second if the first has begun nothing, and is not half of it."
   (flet ((at-once-p (ending now &rest times)
            (let ((cli::*interrupts-while-ending* ending))
-             (and (cli::ends-at-once-p now times) t))))
+             (and (cli::exit-at-once-p now times) t))))
     (is (equal '(nil t nil nil t)
                (list (at-once-p nil 10) (at-once-p nil 10 9) (at-once-p nil 10 9.9d0)
                      (at-once-p 0 10 9) (at-once-p 0 10 9 8))))))

@@ -98,7 +98,7 @@ choose_cache; echo \"in ${cache#$root/}\""))
   "What a user's build has warned of is compiled anew where a warning is an error."
   (call-in-new-directory
    (lambda (directory)
-     (let* ((ars-magna.build::*cache* directory)
+     (let* ((ars-magna.build::*cache-directory* directory)
             (file (merge-pathnames "project/some.fasl" directory)))
        (flet ((kept-p ()
                 (ensure-directories-exist file)
@@ -106,7 +106,7 @@ choose_cache; echo \"in ${cache#$root/}\""))
                 (ars-magna.build:load-strictly "asdf")
                 (and (probe-file file) t)))
          (is-true (kept-p))
-         (ars-magna.build::note-warned)
+         (ars-magna.build::make-warnings-marker)
          (is-false (kept-p))
          (is-true (kept-p)))))))
 

@@ -131,8 +131,8 @@
     (cli::begin-screen console)
     (get-output-stream-string stream)
     (format console "one~%~A~%" (cli::paint "two" :red))
-    (is (string= "two" (cli::last-held-back console)))
-    (cli::write-at-once (cli::over-screen (format nil "a~%b")) console)
+    (is (string= "two" (cli::last-held-back-line console)))
+    (cli::write-at-once (cli::overwrite-screen-code (format nil "a~%b")) console)
     (let ((shown (get-output-stream-string stream)))
       (is (search "a" shown))
       (is (null (search "one" shown))))
@@ -143,10 +143,10 @@
 
 (test screens.forget-the-oldest-of-much
   (let ((console (cli::make-console (make-string-output-stream))))
-    (is (string= "" (cli::last-held-back console)))
+    (is (string= "" (cli::last-held-back-line console)))
     (cli::begin-screen console)
     (loop for i below 10000 do (format console "~D~%" i))
-    (is (string= "9999" (cli::last-held-back console)))
+    (is (string= "9999" (cli::last-held-back-line console)))
     (is (<= (length (cli::console-held-back console)) (* 2 cli::+most-held-back+)))))
 
 ;;; Numbers and files.

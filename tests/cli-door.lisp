@@ -44,7 +44,7 @@ without McCLIM for ASDF to find. Return its error output and status."
        (dolist (part '("sudo apt-get install cl-quicklisp" "(quicklisp-quickstart:install)"
                        "ocicl setup && ocicl install mcclim"))
          (is (mentions-p errors part))
-         (is (mentions-p cli::*how-to-get-windows* part)))))))
+         (is (mentions-p cli::*mcclim-installation-text* part)))))))
 
 (test window.option-says-why-quicklisp-could-not-get-mcclim
   "And nothing of a prompt that could not be made, which there is."
@@ -62,7 +62,7 @@ without McCLIM for ASDF to find. Return its error output and status."
   (call-with-home-directory
    (lambda ()
      (pretend-quicklisp '(error "no road leads there"))
-     (let ((text (handler-case (cli::load-windows t)
+     (let ((text (handler-case (cli::load-window-system t)
                    (cli::bad-line (condition) (princ-to-string condition)))))
        (is (mentions-p text "could not get McCLIM (no road leads there)"))
        (is (mentions-p text "Is the network there?"))))))

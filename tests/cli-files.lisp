@@ -70,7 +70,7 @@ function of its name. Return that parameter."
                            (defexperiment rest-a-while (:robots hen) (:trials 2) (:limit 3)~@
                              (:run (run-ticks (half 2))) (:success t))"))
             (base:native-path file))
-           (let ((experiment (cli::experiment-called file)))
+           (let ((experiment (cli::experiment-named file)))
              (is (equal file (experiment:experiment-file experiment)))
              (experiment:run-experiment experiment :directory rows :stream nil)
              (is (= 2 (experiment:count-rows rows)))
@@ -110,7 +110,7 @@ function of its name. Return that parameter."
     (base:with-own-definitions ()
       (handler-case (cli::robot-names-in-world (base:native-name path))
         (error (condition)
-          (let* ((*package* (find-package :cl-user)) (said (cli::ending-reason condition)))
+          (let* ((*package* (find-package :cl-user)) (said (cli::ending-message condition)))
             (is-true (has-words-p said "(obj t12345)") "~A" said)))))))
 
 (test files.that-cannot-be-read-say-so-in-plain-words
@@ -278,7 +278,7 @@ function of its name. Return that parameter."
       :close-stream
       (dolist (function (list #'cli::load-lisp
                               (lambda (path)
-                                (cli::run-arguments (list (uiop:native-namestring path))))))
+                                (cli::run-with-arguments (list (uiop:native-namestring path))))))
         (is-true (has-words-p (said-by (lambda () (funcall function path)))
                               "the file is a journal; (replay FILE)"))))))
 

@@ -26,7 +26,7 @@
            (session (cli:make-session :output (make-broadcast-stream))))
       (run:stop-simulator)
       (is (not (cli::waits-for-commands-p session)))
-      (is (mentions-p (cli::time-text session simulation) "RESUME"))
+      (is (mentions-p (cli::time-description session simulation) "RESUME"))
       (type-here "resume")
       (is (time:live-p simulation))
       (is (eq :free (run:simulation-rate simulation)) "it has the rate that it had")

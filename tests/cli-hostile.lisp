@@ -59,7 +59,7 @@
 
 (test complaints.say-whose-name-it-is-and-how-to-have-it
   (is-true (has-words-p (complaint "(defparameter robot-turn 1)")
-                        "ROBOT-TURN is a name of ARS-MAGNA" "(shadow 'ROBOT-TURN)"))
+                        "ROBOT-TURN is a name of the package ARS-MAGNA" "(shadow 'ROBOT-TURN)"))
   (is-true (has-words-p (complaint "(intern \"NO-NAME-OF-OURS\" :ars)") "lock" "NO-NAME-OF-OURS")))
 
 (test complaints.are-short
@@ -163,7 +163,7 @@ is left: SBCL itself ends where there is none at all."
                                      (loop repeat 3 do (format console "lost~%"))
                                      0))))
     (finishes (format console "nobody hears~%"))
-    (is (= 1 (cli::deliver console 0)))))
+    (is (= 1 (cli::finish-console console 0)))))
 
 ;;; Interrupts.
 

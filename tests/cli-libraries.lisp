@@ -51,7 +51,7 @@
 
 (test libraries.of-a-core-are-listed-with-the-places-where-others-may-be-found
   (let ((lines (lines-of (printed-in-child
-                          "alexandria" "(ars-magna.build::write-libraries *standard-output*)"))))
+                          "alexandria" "(ars-magna.build::write-library-list *standard-output*)"))))
     (flet ((line-p (start end)
              (is-true (some (lambda (line)
                               (and (begins-with-p start line) (ends-with-p end line)))

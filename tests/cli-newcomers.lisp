@@ -170,7 +170,7 @@
   (flet ((widest (width)
            (let ((cli::*text-width* width))
              (reduce #'max (lines-of (with-output-to-string (*standard-output*)
-                                       (cli::write-help-on "rewind")))
+                                       (cli::write-help-about "rewind")))
                      :key #'length))))
     (is (<= 41 (widest 79) 79))
     (is (<= (widest 40) 40))))

@@ -161,7 +161,7 @@
                  "Robot> (+ 1 1)" "2" "Robot> ")
                (typed :echo t))))
   (is (equal '("plan fetch 1" "plan b")
-             (cli::plan-lines (cli::parse-options '("--plan" "fetch 1" "--plan=b"))))))
+             (cli::lines-for-plan-options (cli::parse-options '("--plan" "fetch 1" "--plan=b"))))))
 
 (rpl:def-interp-proc ars-user::mumble (fail-p)
   "Fail, or return, with an object that cannot be printed."
@@ -271,8 +271,8 @@
       (is (search (symbol-name layer) help)))
     (is-true (has-words-p help "from 1 to 256" "from 4 to 40"))
     (is (< (search "replacing it." help) (search "file:" help)
-           (search "PICTURE world.svg is usually" help) (search "Shown by default" help)
-           (search "Shown if named" help))
+           (search "PICTURE world.svg is usually" help) (search "shown by default" help)
+           (search "shown if you name them" help))
         "the common call does not come first")))
 
 (test display.says-why-there-is-none

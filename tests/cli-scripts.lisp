@@ -23,7 +23,7 @@ output, its status, and what it writes to the error output."
          (status (let ((*standard-output* (cli::make-console output)) (*error-output* errors))
                    (handler-case (let ((*trace-output* *trace-output*)
                                        (*debug-io* *debug-io*) (*terminal-io* *terminal-io*))
-                                   (cli::run-arguments arguments))
+                                   (cli::run-with-arguments arguments))
                      (cli::usage-error (condition)
                        (format errors "~A" condition)
                        2)))))

@@ -10,13 +10,13 @@
 (defclass mute-console (cli:console) ()
   (:documentation "A console that does not show the line that is being typed."))
 
-(defmethod cli:wipe ((console mute-console) stream)
+(defmethod cli:erase-typed-line ((console mute-console) stream)
   (declare (ignore stream)))
 
-(defmethod cli:draw ((console mute-console) stream)
+(defmethod cli:draw-typed-line ((console mute-console) stream)
   (declare (ignore stream)))
 
-(defmethod cli:leave-line ((console mute-console) stream)
+(defmethod cli:finish-typed-line ((console mute-console) stream)
   (declare (ignore stream)))
 
 (defstruct talk session thread (turns (base:make-semaphore "turns")) output)
@@ -186,7 +186,7 @@
 line."
   (let ((session (talk-session talk)))
     (awaiting (and (cli::break-state-own (cli::session-break-state session))
-                   (cli::being-typed-p (cli::session-input session))))))
+                   (cli::reading-line-p (cli::session-input session))))))
 
 (test sessions.break-of-one-that-is-lost-is-answered-in-another
   "As when the X server dies under a window."
@@ -350,9 +350,9 @@ WITH-OUTPUT-TO-STRING is gone by then."
 
 (test window.robot-has-to-be-in-a-run-that-lives
   (in-studio (robot)
-    (is (eq robot (cli::robot-at-work-called 'studio-robot)))))
+    (is (eq robot (cli::find-running-robot 'studio-robot)))))
 
 (test window.needs-a-run-that-lives
   (signals cli::usage-error
-    (cli::check-window (cli::parse-options '("--window" "--batch"))))
-  (is (null (cli::check-window (cli::parse-options '("--world" "hall"))))))
+    (cli::check-window-option (cli::parse-options '("--window" "--batch"))))
+  (is (null (cli::check-window-option (cli::parse-options '("--world" "hall"))))))

@@ -53,7 +53,7 @@
 
 (defun typed-ahead-of (session)
   "Return how many lines of SESSION wait, what is being typed after them, and where the cursor is."
-  (multiple-value-list (cli:typed-ahead (cli:session-input session))))
+  (multiple-value-list (cli:type-ahead-state (cli:session-input session))))
 
 (defun typed-ahead-in (window)
   (typed-ahead-of (window::window-session window)))
@@ -89,10 +89,10 @@
     (give-keys window "turn 1" :return "turn 2" :return "tur")
     (let ((input (cli:session-input (window::conversation-session
                                      (window::window-conversation window)))))
-      (is (= 2 (cli::drop-waiting input)))
+      (is (= 2 (cli::discard-waiting-lines input)))
       (is (equal '(0 "tur" 3) (typed-ahead-in window)))
       (is (equal (format nil "turn 1~%turn 2") (first (entries-of window))))
-      (is (= 0 (cli::drop-waiting input))))))
+      (is (= 0 (cli::discard-waiting-lines input))))))
 
 (test ahead.says-how-many-lines-wait
   (is (equal "Next> " (window::waiting-label 0)))
@@ -293,7 +293,7 @@
     (let* ((console (window::conversation-console (window::window-conversation window)))
            (text (format nil "*ERROR* -> ~{~A~^ ~}" (loop repeat 60 collect "trouble")))
            (painted (cli::paint text :red)))
-      (is (equal painted (cli:fitted painted console)))
+      (is (equal painted (cli:fit-to-window painted console)))
       (dolist (columns '(40 80))
         (let ((rows (window::rows-of-line 0 painted columns)))
           (is (< 2 (length rows)))

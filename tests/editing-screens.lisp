@@ -185,7 +185,7 @@ KEYS have been pressed at Robot>."
         (cli::show-prompt console "Robot> ")
         (write-string "on" console)
         (when finish-p (finish-output console))
-        (cli::begin-line console)
+        (cli::begin-typed-line console)
         (terpri console)
         (finish-output console)
         (print-on-paper paper (get-output-stream-string out)))
@@ -211,7 +211,7 @@ KEYS have been pressed at Robot>."
 (test screen.counts-columns-as-they-are-seen
   (is (= 4 (cli::text-columns "漢字")))
   (is (= 1 (cli::text-columns (format nil "e~C" (code-char #x301)))))
-  (multiple-value-bind (rows row column) (cli::rows-of "" "a漢字b" 4 4)
+  (multiple-value-bind (rows row column) (cli::break-into-rows "" "a漢字b" 4 4)
     (is (equal '(("a漢" :newline) ("字b" nil)) rows))
     (is (equal '(1 3) (list row column)))))
 
@@ -219,9 +219,9 @@ KEYS have been pressed at Robot>."
   "A prompt may have some; what is typed shows that it has."
   (let ((red (format nil "~C[31mRobot> ~:*~C[0m" #\Escape)))
     (is (= 7 (cli::text-columns red)))
-    (is (equal '(0 7) (rest (multiple-value-list (cli::rows-of red "" 0 20)))))
+    (is (equal '(0 7) (rest (multiple-value-list (cli::break-into-rows red "" 0 20)))))
     (is (equal (list (list (format nil "~Ax^[[1m" red) nil))
-               (cli::rows-of red (format nil "x~C[1m" #\Escape) 0 20)))
+               (cli::break-into-rows red (format nil "x~C[1m" #\Escape) 0 20)))
     (is (equal (format nil "~Aone~%two" red)
                (cli::broken-text (format nil "~Aone two" red) 10)))))
 

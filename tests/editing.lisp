@@ -55,7 +55,7 @@ name in *KEY-CODES*."
     (loop for line = (read-line stream nil)
           while line
           collect line
-          do (cli::remember-line stream line nil))))
+          do (cli::add-to-history stream line nil))))
 
 (defmacro types-p (expected &rest keys)
   `(is (equal ',expected (keyed-in ,@keys))))
@@ -90,14 +90,14 @@ name in *KEY-CODES*."
     (cli::add-octets queue (octets-of-key (format nil "one~Ctwo~:*~Cthree"
                                                   (code-char 3))))
     (cli::put-back-octet queue #\x)
-    (is-true (cli::forget-until-interrupt queue))
-    (is (equal "three" (coerce (cli::take-all-octets queue) 'string)))
-    (is-false (cli::forget-until-interrupt queue))
+    (is-true (cli::drop-until-interrupt queue))
+    (is (equal "three" (coerce (cli::remove-all-octets queue) 'string)))
+    (is-false (cli::drop-until-interrupt queue))
     (cli::put-back-octet queue (code-char 3))
     (cli::add-octets queue (list #\y))
-    (is (eql (code-char 3) (cli::take-octet queue)))
-    (is-false (cli::forget-until-interrupt queue))
-    (is (equal '(#\y) (cli::take-all-octets queue)))))
+    (is (eql (code-char 3) (cli::pop-octet queue)))
+    (is-false (cli::drop-until-interrupt queue))
+    (is (equal '(#\y) (cli::remove-all-octets queue)))))
 
 (test editing.moves
   (types-p ("xabc") "abc" #\A "x" :enter)
@@ -170,7 +170,7 @@ name in *KEY-CODES*."
 
 (test editing.says-how-many-lines-after-the-last-prompt-it-leaves-out
   (is (equal '(0 0 2 1 0)
-             (mapcar (lambda (text) (cli::answers-at-end (format nil text)))
+             (mapcar (lambda (text) (cli::count-output-lines (format nil text)))
                      '("turn 1~%33" "Robot> turn 1~%33~%Robot> "
                        "Robot> (list :p)~%(:p)~%(list 2)~%" "Robot> (list~%1)~%(1)"
                        "33~%Robot> (list~%     > 1)~%~%"))))
@@ -214,7 +214,7 @@ name in *KEY-CODES*."
   (let ((cli::*completer* (lambda (text point)
                             (declare (ignore text point))
                             (values 0 '("camera") " ")))
-        (cli::*program-reads* (constantly nil)))
+        (cli::*before-program-reads* (constantly nil)))
     (is (equal "cam" (read-line (typed-text-for (keyboard-for '("cam" :tab :enter))
                                                 (terminal-console))
                                 nil)))))
@@ -245,7 +245,7 @@ name in *KEY-CODES*."
                                                 "three" :enter))
                                 (terminal-console))))
     (is (equal "one" (read-line stream)))
-    (is (= 1 (cli::drop-waiting stream)))
+    (is (= 1 (cli::discard-waiting-lines stream)))
     (is (equal '("two") (cli::history-entries (cli::edited-history stream))))
     (is (equal "three" (read-line stream)))))
 
@@ -253,7 +253,7 @@ name in *KEY-CODES*."
   (let ((stream (typed-text-for (keyboard-for '("one" :enter "two" :enter) :at-hand t)
                                 (terminal-console))))
     (is (equal "one" (read-line stream)))
-    (is-true (cli::typed-within-p stream 0))
+    (is-true (cli::typed-input-within-p stream 0))
     (is (equal "two" (read-line stream)))))
 
 (test editing.takes-for-pasted-what-comes-all-at-once
@@ -261,11 +261,11 @@ name in *KEY-CODES*."
   (flet ((typed (&rest keys)
            (let ((stream (typed-text-for (keyboard-for keys :at-hand t) (terminal-console))))
              (values stream (read-line stream)))))
-    (is-true (cli::pasted-lines-left-p (typed "one" :enter "two" :enter)))
-    (is-false (cli::pasted-lines-left-p (typed "one" :enter)))
-    (is-false (cli::pasted-lines-left-p (typed "one" :enter "t")))
+    (is-true (cli::pasted-lines-waiting-p (typed "one" :enter "two" :enter)))
+    (is-false (cli::pasted-lines-waiting-p (typed "one" :enter)))
+    (is-false (cli::pasted-lines-waiting-p (typed "one" :enter "t")))
     (let ((stream (typed "one" :enter "two" :enter "three" :enter "fo")))
-      (is (= 2 (cli::drop-waiting stream)))
+      (is (= 2 (cli::discard-waiting-lines stream)))
       (is (equal "fo" (read-line stream))))))
 
 (test editing.swallows-one-key-and-no-more

@@ -28,7 +28,7 @@
     (let* ((said nil)
            (errors (with-output-to-string (*error-output*)
                      (setf said (said-by (lambda ()
-                                           (cli::experiment-called (placed "leaver.lisp"))))))))
+                                           (cli::experiment-named (placed "leaver.lisp"))))))))
       (is-true (has-words-p said "leaver.lisp" "line 3" "exit would end"))
       ;; The compiler has nothing to say of that.
       (is-true (has-words-p errors "Mind the step"))
@@ -106,7 +106,7 @@
     (flet ((check ()
              (said-by (lambda ()
                         (ars-magna.experiment:check-same-code
-                         (cli::experiment-called (placed "a stroll.lisp")) (placed "there"))))))
+                         (cli::experiment-named (placed "a stroll.lisp")) (placed "there"))))))
       (is (string= "nothing" (check)))
       (write-file "a stroll.lisp" "~A~%" (substitute #\5 #\4 *stroll* :count 1))
       (is-true (has-words-p (check) "shard-0-of-2" "other code" "file a stroll.lisp"))
@@ -164,8 +164,8 @@
 
 (defun script-settings (settings)
   "Return what a shell makes of SETTINGS, a list of lists (variable value)."
-  (let ((text (cli::with-settings "@SETTINGS@" (loop for (variable value) in settings
-                                                     collect (list variable value "what")))))
+  (let ((text (cli::insert-settings "@SETTINGS@" (loop for (variable value) in settings
+                                                       collect (list variable value "what")))))
     (lines-of text)))
 
 (test scripts.have-their-settings-quoted
@@ -175,12 +175,12 @@
         for written = (first (script-settings `(("a" ,word))))
         do (is (string= line (string-right-trim " " (subseq written 0 (search "#" written))))))
   (dolist (name '("spread-parallel.sh" "spread-slurm.sh"))
-    (is-false (search "@SETTINGS@" (cli::with-settings (cli::text-called name) '(("a" 1 "one")))))
-    (is-true (eql 0 (search (format nil "#!/bin/sh~%") (cli::text-called name))))))
+    (is-false (search "@SETTINGS@" (cli::insert-settings (cli::shell-text name) '(("a" 1 "one")))))
+    (is-true (eql 0 (search (format nil "#!/bin/sh~%") (cli::shell-text name))))))
 
 (test shards.are-of-a-size-that-pays
   (in-place
-    (let ((experiment (cli::experiment-called (placed "a stroll.lisp"))))
+    (let ((experiment (cli::experiment-named (placed "a stroll.lisp"))))
       (loop for (trials script shards) in '((5 "run.sh" 5) (100 "run.sh" 16) (10000 "run.sh" 40)
                                             (1000000 "run.sh" 1000) (100 "job.sh" 1)
                                             (100000 "job.sh" 40) (10000000 "job.sh" 1000))

@@ -44,7 +44,7 @@ output, and what to the error output."
          (written (with-output-to-string (*standard-output*)
                     (let ((*error-output* errors)
                           (base:*message-queue* (base:make-message-queue))
-                          (command (cli::find-command-called (first arguments))))
+                          (command (cli::find-shell-command (first arguments))))
                       (setf status (funcall (second command) (rest arguments)))))))
     (values status written (get-output-stream-string errors))))
 
@@ -91,22 +91,22 @@ output, and what to the error output."
                        ("compare" "1" "2" "x" "--against" "3")
                        ("compare" "--by" "a") ("compare" "x" "y" "z" "--by" "a") ("frob")
                        ("frob" "x")))
-    (signals cli::usage-error (cli::run-arguments arguments))))
+    (signals cli::usage-error (cli::run-with-arguments arguments))))
 
 (test options-of-commands.are-all-in-their-usage
   (loop for (command options) in `(("experiment" ,cli::*experiment-options*)
                                    ("merge" ,cli::*merge-options*)
                                    ("compare" ,cli::*compare-options*))
         for usage = (with-output-to-string (*standard-output*)
-                      (is (eql 0 (cli::run-arguments (list command "--help")))))
+                      (is (eql 0 (cli::run-with-arguments (list command "--help")))))
         do (is (eql 0 (search (format nil "Usage: ars-magna ~A" command) usage)))
            (loop for (option) in options
                  do (is-true (search option usage) "~A of ~A" option command)))
   (loop for (command) in cli::*shell-commands*
-        do (is-true (search command (cli::usage-of-command nil)) "~A" command)))
+        do (is-true (search command (cli::command-usage nil)) "~A" command)))
 
 (test commands.that-are-unknown-name-the-nearest
-  (is-true (has-words-p (said-by (lambda () (cli::run-arguments '("expriment" "a"))))
+  (is-true (has-words-p (said-by (lambda () (cli::run-with-arguments '("expriment" "a"))))
                         "expriment" "Did you mean experiment")))
 
 ;;; Files and names.
@@ -126,7 +126,7 @@ output, and what to the error output."
 (test files.mean-their-own-experiments-before-those-that-they-load
   (in-place
     (flet ((name-of (file)
-             (ars-magna.experiment:experiment-name (cli::experiment-called (placed file)))))
+             (ars-magna.experiment:experiment-name (cli::experiment-named (placed file)))))
       (write-file "own.lisp" "(load (merge-pathnames \"a stroll.lisp\" *load-truename*))
                               (defexperiment trip (:robots ars-worlds:dot) (:run t))")
       (write-file "lent.lisp" "(load (merge-pathnames \"a stroll.lisp\" *load-truename*))")
@@ -145,12 +145,12 @@ output, and what to the error output."
 (test experiments.are-known-by-name-before-files-without-their-type
   (in-place
     (cli::load-experiments (base:native-path (placed "a stroll.lisp")))
-    (let ((known (cli::experiment-called "stroll")))
+    (let ((known (cli::experiment-named "stroll")))
       (write-file "stroll.lisp" "(error \"this must not be loaded\")")
       (uiop:with-current-directory ((uiop:parse-native-namestring *place*))
-        (is (eq known (cli::experiment-called "stroll")))
-        (signals cli::file-trouble (cli::experiment-called "stroll.lisp"))))
-    (is-true (has-words-p (said-by (lambda () (cli::experiment-called "strll")))
+        (is (eq known (cli::experiment-named "stroll")))
+        (signals cli::file-trouble (cli::experiment-named "stroll.lisp"))))
+    (is-true (has-words-p (said-by (lambda () (cli::experiment-named "strll")))
                           "strll" "Did you mean stroll"))))
 
 ;;; Control C.
@@ -168,16 +168,16 @@ output, and what to the error output."
 (defun stopped-after (seconds)
   "Return what is said when an experiment is stopped that has had a trial under way for SECONDS."
   (let* ((condition (first (ars-magna.experiment:experiment-conditions
-                            (cli::experiment-called (placed "a stroll.lisp")))))
+                            (cli::experiment-named (placed "a stroll.lisp")))))
          (progress (ars-magna.experiment::make-progress nil nil 10 2))
          (*error-output* (make-string-output-stream)))
     (setf (svref (ars-magna.experiment::progress-under-way progress) 2)
           (list condition 7 (- (ars-magna.host:real-microseconds)
                                (* seconds internal-time-units-per-second))))
-    (cli::call-stoppable (lambda ()
-                           (let ((ars-magna.experiment::*progress* progress))
-                             (ars-magna.host:signal-user-interrupt)))
-                         "experiment" '() '())
+    (cli::call-reporting-interruption (lambda ()
+                                        (let ((ars-magna.experiment::*progress* progress))
+                                          (ars-magna.host:signal-user-interrupt)))
+                                      "experiment" '() '())
     (get-output-stream-string *error-output*)))
 
 (test interrupts.name-the-trial-that-does-not-end
@@ -343,7 +343,7 @@ output, and what to the error output."
     ;; Without a limit this returns, as their rows are there.
     (is (eql 0 (shell "experiment" (placed "hang.lisp") "--quiet" "--out" (placed "out"))))
     (let ((limit '((:time-limit 1/2)))
-          (experiment (cli::experiment-called (placed "hang.lisp"))))
+          (experiment (cli::experiment-named (placed "hang.lisp"))))
       (dolist (settings (list (cli::parallel-settings experiment limit "x/")
                               (cli::slurm-settings experiment limit "x/")))
         (is (equal "--time-limit 1/2" (second (assoc "limit" settings :test #'string=))))))))

@@ -96,7 +96,7 @@ what is there."
         (is (and (search "&amp;key" page) (not (search "&key" page))))))))
 
 (test our-manual.escapes-what-html-takes-for-its-own
-  (is (string= "a &lt;b&gt; &amp; &quot;c&quot;" (manual:escaped "a <b> & \"c\"")))
+  (is (string= "a &lt;b&gt; &amp; &quot;c&quot;" (manual:escape-html "a <b> & \"c\"")))
   (is (string= "make-pt" (manual:anchor "MAKE-PT")))
   (is (string/= (manual:anchor "add") (manual:anchor "add!")))
   (is (every (lambda (char) (or (alphanumericp char) (find char "-_")))
@@ -104,7 +104,7 @@ what is there."
 
 (test our-manual.writes-numbers-as-people-do
   (is (equal '("0.0005" "0.004" "1" "0.1")
-             (mapcar #'manual::number-words (list 5d-4 .004 1 .1d0)))))
+             (mapcar #'manual::shortest-number-text (list 5d-4 .004 1 .1d0)))))
 
 ;;; Entries.
 

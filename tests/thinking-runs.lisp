@@ -178,7 +178,7 @@
 (test live-thinking.is-told-by-status-unless-it-is-real
   (loop for (mode text) in '((:real nil) (:free "free") (:charged "charged"))
         do (live-thinking (mode)
-             (is (equal text (cli::thinking-text
+             (is (equal text (cli::thinking-cost-text
                               (run:status (first (run:simulation-robots simulation)))))))))
 
 (test live-thinking.modes-change-while-plans-run

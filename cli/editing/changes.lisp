@@ -6,9 +6,9 @@
 ;;; returns a new text and point, and what it has killed, which Control-Y brings back. The keys are
 ;;; those of Emacs and of shells. A pasted text may have several lines.
 
-(defvar *changes* (make-hash-table)
+(defvar *editing-keys* (make-hash-table)
   "Table from keys to functions that change a line. Such a function takes the text and the position
-of the cursor. It returns the new text, the new position and the killed text, if any.")
+of the cursor. The function returns the new text, the new position and the killed text, if any.")
 
 (defmacro define-key (table keys lambda-list documentation &body body)
   "Define each of KEYS: its entry in TABLE is a function of LAMBDA-LIST that runs BODY."
@@ -25,14 +25,14 @@ of the cursor. It returns the new text, the new position and the killed text, if
 (defun line-end (text point)
   (or (position #\Newline text :start point) (length text)))
 
-(defun before-word (text point &optional (in-word-p #'alphanumericp))
+(defun word-start-before (text point &optional (in-word-p #'alphanumericp))
   "Return the start of the word in TEXT at or before POINT. IN-WORD-P tells which characters are in
 words."
   (let* ((end (position-if in-word-p text :end point :from-end t))
          (gap (and end (position-if-not in-word-p text :end end :from-end t))))
     (if gap (1+ gap) 0)))
 
-(defun after-word (text point)
+(defun word-end-after (text point)
   "Return the end of the word in TEXT at or after POINT."
   (let ((start (position-if #'alphanumericp text :start point)))
     (or (and start (position-if-not #'alphanumericp text :start start))
@@ -40,68 +40,68 @@ words."
 
 ;;; Moving.
 
-(define-key *changes* (:control-a :home) (text point)
+(define-key *editing-keys* (:control-a :home) (text point)
   "Go to the beginning of the line."
   (values text (line-start text point)))
 
-(define-key *changes* (:control-e :end) (text point)
+(define-key *editing-keys* (:control-e :end) (text point)
   "Go to the end of the line."
   (values text (line-end text point)))
 
-(define-key *changes* (:control-b :left) (text point)
+(define-key *editing-keys* (:control-b :left) (text point)
   "Go one character back."
   (values text (max 0 (1- point))))
 
-(define-key *changes* (:control-f :right) (text point)
+(define-key *editing-keys* (:control-f :right) (text point)
   "Go one character forward."
   (values text (min (length text) (1+ point))))
 
-(define-key *changes* (:meta-b) (text point)
+(define-key *editing-keys* (:meta-b) (text point)
   "Go back to the beginning of a word."
-  (values text (before-word text point)))
+  (values text (word-start-before text point)))
 
-(define-key *changes* (:meta-f) (text point)
+(define-key *editing-keys* (:meta-f) (text point)
   "Go forward to the end of a word."
-  (values text (after-word text point)))
+  (values text (word-end-after text point)))
 
 ;;; Changing.
 
-(defun inserted (string text point)
+(defun insert-in-text (string text point)
   (values (concatenate 'string (subseq text 0 point) string (subseq text point))
           (+ point (length string))))
 
-(defun deleted (text start end)
+(defun delete-from-text (text start end)
   "Return TEXT without the characters from START to END, and START, the new cursor position."
   (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
 
-(defun killed (text start end)
-  "Return the values of DELETED, and the deleted text as a third value."
-  (multiple-value-call #'values (deleted text start end) (subseq text start end)))
+(defun kill-from-text (text start end)
+  "Return the values of DELETE-FROM-TEXT, and the deleted text as a third value."
+  (multiple-value-call #'values (delete-from-text text start end) (subseq text start end)))
 
-(define-key *changes* (:rubout) (text point)
+(define-key *editing-keys* (:rubout) (text point)
   "Delete the character before the cursor."
-  (deleted text (max 0 (1- point)) point))
+  (delete-from-text text (max 0 (1- point)) point))
 
-(define-key *changes* (:delete) (text point)
+(define-key *editing-keys* (:delete) (text point)
   "Delete the character under the cursor."
-  (deleted text point (min (length text) (1+ point))))
+  (delete-from-text text point (min (length text) (1+ point))))
 
-(define-key *changes* (:control-k) (text point)
+(define-key *editing-keys* (:control-k) (text point)
   "Kill the text from the cursor to the end of the line."
-  (killed text point (line-end text point)))
+  (kill-from-text text point (line-end text point)))
 
-(define-key *changes* (:control-u) (text point)
+(define-key *editing-keys* (:control-u) (text point)
   "Kill the text from the beginning of the line to the cursor."
-  (killed text (line-start text point) point))
+  (kill-from-text text (line-start text point) point))
 
-(define-key *changes* (:control-w) (text point)
+(define-key *editing-keys* (:control-w) (text point)
   "Kill the text before the cursor, back to a blank."
-  (killed text (before-word text point (lambda (char) (not (blank-p char)))) point))
+  (kill-from-text text (word-start-before text point (lambda (char) (not (blank-p char)))) point))
 
-(define-key *changes* (:meta-rubout) (text point)
+(define-key *editing-keys* (:meta-rubout) (text point)
   "Kill the word before the cursor."
-  (killed text (before-word text point) point))
+  (kill-from-text text (word-start-before text point) point))
 
-(define-key *changes* (:meta-d) (text point)
+(define-key *editing-keys* (:meta-d) (text point)
   "Kill the word after the cursor."
-  (killed text point (after-word text point)))
+  (kill-from-text text point (word-end-after text point)))

@@ -23,7 +23,7 @@ appended after a newline, or NIL at the end of the stream."))
   (vector-push-extend #\Newline text)
   (loop for char across line do (vector-push-extend char text)))
 
-(defun text-stream (text start more)
+(defun make-growing-text (text start more)
   "Return a stream of TEXT from START on. The function MORE returns further lines, as in
 GROWING-TEXT."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
@@ -64,11 +64,11 @@ is NIL."
 
 ;;; The file.
 
-(defun entry-on-a-line (entry)
+(defun encode-entry (entry)
   (flet ((escaped (line) (format nil "~{~A~^\\\\~}" (uiop:split-string line :separator "\\"))))
     (format nil "~{~A~^\\n~}" (mapcar #'escaped (lines-in entry)))))
 
-(defun entry-of-line (line)
+(defun decode-entry (line)
   (with-output-to-string (out)
     (loop with position = 0
           while (< position (length line))
@@ -78,22 +78,22 @@ is NIL."
                (write-char (if escaped (char (format nil "~%\\") escaped) char) out)
                (incf position (if escaped 2 1))))))
 
-(defun entries-in (file)
+(defun read-history-file (file)
   "Return the newest entries in FILE, newest first."
   (let ((lines (remove "" (uiop:split-string (file-text file) :separator '(#\Newline))
                        :test #'string=)))
-    (mapcar #'entry-of-line (reverse (last lines *history-limit*)))))
+    (mapcar #'decode-entry (reverse (last lines *history-limit*)))))
 
-(defun shorten-file (file entries)
+(defun shorten-history-file (file entries)
   "Rewrite FILE with only ENTRIES, newest first, if FILE has more than twice *HISTORY-LIMIT* lines."
   (when (< (* 2 *history-limit*) (count #\Newline (file-text file)))
     (call-replacing-file (lambda (out)
-                           (format out "~{~A~%~}" (mapcar #'entry-on-a-line (reverse entries))))
+                           (format out "~{~A~%~}" (mapcar #'encode-entry (reverse entries))))
                          file)))
 
 (defun make-history (&optional file)
-  (let ((entries (and file (ignore-errors (entries-in file)))))
-    (when entries (ignore-errors (shorten-file file entries)))
+  (let ((entries (and file (ignore-errors (read-history-file file)))))
+    (when entries (ignore-errors (shorten-history-file file entries)))
     (%make-history :entries entries :file file)))
 
 (defun save-entry (history)
@@ -108,7 +108,7 @@ is NIL."
      (with-open-file (out (history-file history) :direction :output :if-exists :append
                                                  :if-does-not-exist :create
                                                  :external-format :utf-8)
-       (format out "~A~%" (entry-on-a-line (first (history-entries history))))))))
+       (format out "~A~%" (encode-entry (first (history-entries history))))))))
 
 ;;; Entries.
 
@@ -121,12 +121,12 @@ is NIL."
     (setf (history-unsaved-p history) t)))
 
 (defun begins-with-p (text start)
-  "True if TEXT begins with START. For long texts this is faster than STARTS-WITH-SUBSEQ."
+  "True if TEXT begins with START. For long texts, BEGINS-WITH-P is faster than STARTS-WITH-SUBSEQ."
   (and (<= (length start) (length text))
        (string= start text :end2 (length start))))
 
 ;; The same text need not be compared for each line to see that it continues.
-(defun amend-entry (history line before)
+(defun extend-entry (history line before)
   "Append LINE to the newest entry of HISTORY, if BEFORE, the text that LINE continues, begins with
 that entry."
   (let ((newest (first (history-entries history)))

@@ -8,14 +8,14 @@
 ;;; returns the terminal's next octet, as a character, or NIL at the end. Called with an octet, it
 ;;; puts that back.
 
-(defparameter *keys-of-codes*
+(defparameter *key-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
     ("1~" :home) ("7~" :home) ("4~" :end) ("8~" :end) ("3~" :delete)
     ("1;5C" :meta-f) ("1;5D" :meta-b) ("1;3C" :meta-f) ("1;3D" :meta-b)
     ("200~" :paste) ("202~" :entry))
   "Lists (code key): a terminal sends the code after Escape [ or Escape O when the key is pressed.")
 
-(defun read-code (next)
+(defun read-escape-code (next)
   "Read a code from NEXT, up to the first letter or tilde, and return it."
   (with-output-to-string (out)
     (loop for char = (funcall next)
@@ -23,7 +23,7 @@
           do (write-char char out)
           until (or (alpha-char-p char) (char= char #\~)))))
 
-(defun read-text (lead next)
+(defun read-utf-8-character (lead next)
   "Read from NEXT the rest of the UTF-8 character that begins with the octet LEAD. Return the
 character as a string."
   (decoded (with-output-to-string (out)
@@ -42,7 +42,7 @@ character as a string."
                         (return))
                       (write-char char out)))))
 
-(defun with-newlines (text)
+(defun normalize-newlines (text)
   "Return TEXT, which was pasted, with line ends as newlines, but without newlines at its end."
   (string-right-trim
    '(#\Newline)
@@ -54,29 +54,29 @@ character as a string."
 
 (defun read-paste (next)
   "Read pasted text from NEXT, up to the code that ends such text, and return the text."
-  (loop with end = (paste-ended)
+  (loop with end = (paste-end-code)
         with octets = (make-array 100 :element-type 'character :adjustable t :fill-pointer 0)
         for char = (funcall next)
         while char
         do (vector-push-extend char octets)
            (when (and (char= char #\~) (uiop:string-suffix-p octets end))
              (decf (fill-pointer octets) (length end))
-             (return (with-newlines (decoded octets))))
-        finally (return (with-newlines (decoded octets)))))
+             (return (normalize-newlines (decoded octets))))
+        finally (return (normalize-newlines (decoded octets)))))
 
-(defun key-called (control &rest arguments)
+(defun key-named (control &rest arguments)
   (make-keyword (string-upcase (apply #'format nil control arguments))))
 
 (defun read-key-after-escape (next)
   (let ((char (funcall next)))
     (case char
       ((nil) nil)
-      ((#\[ #\O) (let ((key (second (assoc (read-code next) *keys-of-codes* :test #'string=))))
+      ((#\[ #\O) (let ((key (second (assoc (read-escape-code next) *key-codes* :test #'string=))))
                    (if (member key '(:paste :entry))
                        (list key (read-paste next))
                        (or key :unknown))))
       (#\Rubout :meta-rubout)
-      (t (if (graphic-char-p char) (key-called "meta-~A" char) :unknown)))))
+      (t (if (graphic-char-p char) (key-named "meta-~A" char) :unknown)))))
 
 (defun read-key (next)
   "Read the next key from NEXT and return it; NIL at the end of the input."
@@ -86,14 +86,14 @@ character as a string."
           ((char= char #\Tab) :tab)
           ((find char '(#\Rubout #\Backspace)) :rubout)
           ((char= char +escape+) (read-key-after-escape next))
-          ((< (char-code char) 32) (key-called "control-~C" (code-char (+ 64 (char-code char)))))
-          (t (read-text char next)))))
+          ((< (char-code char) 32) (key-named "control-~C" (code-char (+ 64 (char-code char)))))
+          (t (read-utf-8-character char next)))))
 
 ;;; The reverse, for keys that are pressed elsewhere than at a terminal.
 
-(defun escaped-key (key)
+(defun escape-sequence-of-key (key)
   "Return the escape sequence that a terminal sends for KEY, a keyword; NIL if there is none."
-  (let ((code (find key *keys-of-codes* :key #'second)) (name (string-downcase key)))
+  (let ((code (find key *key-codes* :key #'second)) (name (string-downcase key)))
     (cond (code (escape "~A" (first code)))
           ((eq key :meta-rubout) (format nil "~C~C" +escape+ #\Rubout))
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
@@ -102,12 +102,12 @@ character as a string."
   "Return the octets that a terminal sends for KEY, as a string with one character for each. The
 string is empty if no terminal has KEY."
   (cond ((stringp key) (encoded key))
-        ((consp key) (format nil "~A~A~A" (escaped-key (first key)) (encoded (second key))
-                             (paste-ended)))
+        ((consp key) (format nil "~A~A~A" (escape-sequence-of-key (first key))
+                             (encoded (second key)) (paste-end-code)))
         ((eq key :return) (string #\Return))
         ((eq key :tab) (string #\Tab))
         ((eq key :rubout) (string #\Rubout))
-        ((escaped-key key))
+        ((escape-sequence-of-key key))
         ((starts-with-subseq "CONTROL-" (string key))
          (string (code-char (logand 31 (char-code (char (string key) 8))))))
         (t "")))
@@ -129,10 +129,10 @@ of Control-C in OCTETS."
 (defun empty-queue-p (queue)
   (null (octet-queue-octets queue)))
 
-(defun whole-line-p (queue)
+(defun queue-has-line-p (queue)
   (find-if (lambda (octet) (find octet '(#\Return #\Newline))) (octet-queue-octets queue)))
 
-(defun take-octet (queue)
+(defun pop-octet (queue)
   (let ((octet (pop (octet-queue-octets queue))))
     (when (char= octet *control-c*) (decf (octet-queue-interrupts queue)))
     octet))
@@ -152,12 +152,12 @@ of Control-C in OCTETS."
       (progn (push octet (octet-queue-octets queue))
              (when (char= octet *control-c*) (incf (octet-queue-interrupts queue))))))
 
-(defun take-all-octets (queue)
+(defun remove-all-octets (queue)
   (setf (octet-queue-interrupts queue) 0)
   (shiftf (octet-queue-octets queue) '()))
 
-(defun forget-until-interrupt (queue)
+(defun drop-until-interrupt (queue)
   "Remove all octets up to the last Control-C from QUEUE. Return true if there was a Control-C."
   (when (plusp (octet-queue-interrupts queue))
-    (loop until (zerop (octet-queue-interrupts queue)) do (take-octet queue))
+    (loop until (zerop (octet-queue-interrupts queue)) do (pop-octet queue))
     t))

@@ -76,7 +76,7 @@ blanks; without a second quote it extends to the end of TEXT."
 ;;; first word ends with a colon. A warning or an error is known by its beginning. Other answers are
 ;;; lines without a prompt among lines with prompts.
 
-(defparameter *labels* '("Robot>" "Break>") "The prompts that pasted lines may begin with.")
+(defparameter *prompt-labels* '("Robot>" "Break>") "The prompts that pasted lines may begin with.")
 
 (defun message-p (text)
   (let* ((start (position-if-not #'blank-p text))
@@ -88,20 +88,20 @@ blanks; without a second quote it extends to the end of TEXT."
   (some (lambda (beginning) (starts-with-subseq beginning text))
         '("*WARNING* -> " "*ERROR* -> " "*BREAK* -> ")))
 
-(defun after-label (text)
+(defun text-after-prompt (text)
   "Return the rest of TEXT, a line, after its prompt; NIL if TEXT does not begin with a prompt."
   (let* ((text (subseq text (or (position-if-not #'blank-p text) 0)))
-         (label (find-if (lambda (label) (starts-with-subseq label text)) *labels*)))
+         (label (find-if (lambda (label) (starts-with-subseq label text)) *prompt-labels*)))
     (and label (subseq text (length label)))))
 
-(defun without-label (text)
+(defun text-without-prompts (text)
   "Return TEXT, a line, without the prompts at its beginning. If TEXT is a message, a warning or an
 error, return an empty string."
-  (let ((rest (after-label text)))
+  (let ((rest (text-after-prompt text)))
     (cond ((warning-p text) "")
           ((null rest) text)
           ((message-p rest) "")
-          (t (without-label (string-left-trim " " rest))))))
+          (t (text-without-prompts (string-left-trim " " rest))))))
 
 (define-constant +continuation-prompt+ "     > " :test #'string=
   :documentation "The prompt for lines that continue the line before.")
@@ -109,30 +109,30 @@ error, return an empty string."
 (defun continuation-prompt-p (text)
   (starts-with-subseq +continuation-prompt+ text))
 
-(defun line-pasted (text before)
+(defun without-pasted-prompt (text before)
   "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if TEXT continues another
 line."
-  (cond ((null before) (without-label text))
+  (cond ((null before) (text-without-prompts text))
         ((continuation-prompt-p text) (subseq text (length +continuation-prompt+)))
         (t text)))
 
 ;;; If several lines were pasted, prompts tell which of them were typed.
 
-(defun typed-line-of (line)
+(defun typed-part (line)
   "Return the part of LINE, a pasted line, that was typed after a prompt; NIL if there is none."
-  (cond ((continuation-prompt-p line) (line-pasted line t))
-        ((after-label line) (let ((text (without-label line)))
-                             (and (string/= "" text) text)))))
+  (cond ((continuation-prompt-p line) (without-pasted-prompt line t))
+        ((text-after-prompt line) (let ((text (text-without-prompts line)))
+                                   (and (string/= "" text) text)))))
 
-(defun read-over (text more)
+(defun skip-form (text more)
   "If TEXT begins with a Lisp form, read that form and discard it. MORE, a function of the text read
 so far, returns the next line of the form, or signals an error at the end."
   (when (and (not (comment-p text)) (lisp-p text))
     (handler-case (let ((*read-suppress* t))
-                    (read-preserving-whitespace (text-stream text 0 more)))
+                    (read-preserving-whitespace (make-growing-text text 0 more)))
       (error () nil))))
 
-(defun rest-of-form (text lines)
+(defun split-after-form (text lines)
   "Divide LINES, which were pasted below TEXT. Return the lines that complete the form begun in
 TEXT, without prompts, and the lines after the form. A line typed at a prompt does not belong to the
 form."
@@ -140,24 +140,24 @@ form."
     (flet ((next-of-form (text)
              (declare (ignore text))
              (loop for line = (first lines)
-                   when (or (null lines) (and (after-label line) (typed-line-of line)))
+                   when (or (null lines) (and (text-after-prompt line) (typed-part line)))
                      do (error "No pasted line is left to complete the form.")
                    do (pop lines)
-                   unless (after-label line)
-                     return (first (push (or (typed-line-of line) line) taken)))))
-      (read-over text #'next-of-form)
+                   unless (text-after-prompt line)
+                     return (first (push (or (typed-part line) line) taken)))))
+      (skip-form text #'next-of-form)
       (values (nreverse taken) lines))))
 
-(defun typed-by-label (lines)
+(defun lines-typed-at-prompts (lines)
   "Return the typed lines among LINES, which were pasted; the first line has a prompt. Lines below
 an incomplete form are taken for the rest of the form."
   (loop while lines
         for line = (pop lines)
-        for typed = (typed-line-of line)
+        for typed = (typed-part line)
         when typed
           collect typed
-          and when (after-label line)
-                append (multiple-value-bind (rest below) (rest-of-form typed lines)
+          and when (text-after-prompt line)
+                append (multiple-value-bind (rest below) (split-after-form typed lines)
                          (setf lines below)
                          rest)))
 
@@ -165,23 +165,23 @@ an incomplete form are taken for the rest of the form."
   "Return the typed lines among LINES, which were pasted. These are the lines before the first
 prompt, lines with prompts except messages, and lines that complete a form. If no line has a prompt,
 return LINES."
-  (let ((start (position-if #'after-label lines)))
+  (let ((start (position-if #'text-after-prompt lines)))
     (if start
-        (append (subseq lines 0 start) (typed-by-label (nthcdr start lines)))
+        (append (subseq lines 0 start) (lines-typed-at-prompts (nthcdr start lines)))
         lines)))
 
-(defun answers-at-end (text)
+(defun count-output-lines (text)
   "Return the number of lines of TEXT, which was pasted, that follow the last prompt and are taken
 for output."
   (let* ((lines (lines-in text))
-         (start (position-if #'after-label lines :from-end t))
+         (start (position-if #'text-after-prompt lines :from-end t))
          (last (and start (nthcdr start lines)))
          (typed (make-hash-table :test 'eq)))
-    (dolist (line (typed-by-label last)) (setf (gethash line typed) t))
+    (dolist (line (lines-typed-at-prompts last)) (setf (gethash line typed) t))
     (count-if-not (lambda (line)
                     (or (gethash line typed)
-                        (after-label line) (continuation-prompt-p line) (comment-p line)))
+                        (text-after-prompt line) (continuation-prompt-p line) (comment-p line)))
                   last)))
 
-(defun without-answers (text)
+(defun without-pasted-output (text)
   (format nil "~{~A~^~%~}" (typed-lines (lines-in text))))

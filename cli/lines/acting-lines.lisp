@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defun tell-rewound (point simulation)
+(defun warn-of-rewind (point simulation)
   "Queue a warning that the robot no longer goes to POINT, because a rewind has replaced
 SIMULATION."
   (let ((*message-queue* (simulation-messages (latest simulation))))
@@ -10,32 +10,32 @@ SIMULATION."
                               longer goes there. Type the line again to send it there."
                          point))))
 
-(defun tell-failed-way (control point &rest arguments)
+(defun report-failed-way (control point &rest arguments)
   (error-set (make-verdict (format nil "go-to: ~?" control (cons point arguments)))))
 
-(defun tell-arrival (err robot point)
+(defun report-arrival (err robot point)
   "Queue a message about the end of a drive of ROBOT to POINT, a text. ERR is an error code, or
 NIL."
   (case err
     ((nil) (message-set (format nil "go-to: Robot is near ~A, by its odometer" point)))
-    (:no-way (tell-failed-way "There is no way to ~A for ~A" point robot))
-    (:gave-up (tell-failed-way "Obstacles on the way to ~A stopped ~A too often" point robot))
-    (t (tell-failed-way "Interrupted on the way to ~A" point))))
+    (:no-way (report-failed-way "There is no way to ~A for ~A" point robot))
+    (:gave-up (report-failed-way "Obstacles on the way to ~A stopped ~A too often" point robot))
+    (t (report-failed-way "Interrupted on the way to ~A" point))))
 
 (define-line "GO-TO" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:moving)
     "Let the robot find its way to X, Y, through doorways and round obstacles."
   (let ((job (make-job :name "GO-TO" :verdict-p t))
         (simulation (current-simulation))
-        (point (format nil "~A ~A" (amount-text x) (amount-text y)))
+        (point (format nil "~A ~A" (plain-number-text x) (plain-number-text y)))
         (account (session-account session)))
     (let ((own (asker-for account)) (*asker* (asker-for account :text "GO-TO")))
       (robot-go-to (session-robot) x y
                    (lambda (err robot)
                      (let ((*asker* own) (*told-of* own))
                        (if (eq simulation (latest simulation))
-                           (tell-arrival err robot point)
-                           (tell-rewound point simulation)))
+                           (report-arrival err robot point)
+                           (warn-of-rewind point simulation)))
                      (end-job job err))))
     (push job (session-jobs session))))
 
@@ -45,14 +45,14 @@ NIL."
 ;;; object; then the number of the part that acts, 0 if left out, or nothing if the robot acts; then
 ;;; the other arguments.
 
-(defun by-part-p (by)
+(defun part-variable-p (by)
   "True if BY, a list (variable type) of a method, stands for a part of the robot."
   (and (second by) (part-type-p (type-keyword (second by)))))
 
 (defun method-usage (name method)
   (multiple-value-bind (objects by others) (method-signature method)
     (format nil "~(~A~{ ~A~}~@[ [~A]~]~{ ~A~}~)" name objects
-            (and (by-part-p by) (first by))
+            (and (part-variable-p by) (first by))
             (mapcar #'first others))))
 
 (defun manipulation-usages (manipulation &optional (usage #'method-usage))
@@ -62,31 +62,31 @@ is a function like METHOD-USAGE, which returns the text for a method."
                            collect (funcall usage (manipulation-name manipulation) method))
                      :test #'string=))
 
-(defun manipulation-called (name)
+(defun find-manipulation-named (name)
   (or (find-manipulation name nil)
       (reject-unknown-name "manipulation" name (mapcar #'manipulation-name (all-manipulations))
                    "MANIPULATE lists all.")))
 
-(defun arguments-for (method data robot)
-  "Return the arguments for METHOD from DATA, the typed values, for ROBOT. NIL if the number of
+(defun method-arguments (method data robot)
+  "Return the arguments for METHOD from DATA, the typed values, for ROBOT. Return NIL if the number of
 values is wrong."
   (multiple-value-bind (objects by others) (method-signature method)
     (let* ((count (length objects))
            (extra (- (length data) count (length others))))
-      (when (or (zerop extra) (and (= 1 extra) (by-part-p by)))
+      (when (or (zerop extra) (and (= 1 extra) (part-variable-p by)))
         (append (loop for number in (subseq data 0 count)
                       collect (designator-numbered number robot))
                 ;; The part that acts, the first if its number is left out, or the robot.
-                (list (if (by-part-p by)
+                (list (if (part-variable-p by)
                           (read-argument (type-keyword (second by))
                                          (if (= 1 extra) (nth count data) 0) robot)
                           robot))
                 (nthcdr (+ count extra) data))))))
 
-(defun send-manipulation (session manipulation data)
+(defun start-manipulation (session manipulation data)
   (let ((robot (session-robot)) (job (make-job)))
     (apply #'run-manipulation (manipulation-name manipulation)
-           (append (or (some (lambda (method) (arguments-for method data robot))
+           (append (or (some (lambda (method) (method-arguments method data robot))
                              (manipulation-methods manipulation))
                        (reject-line "Usage: ~{MANIPULATE ~A~^ or ~}. Give numbers for objects ~
                                      and parts." (manipulation-usages manipulation)))
@@ -103,8 +103,8 @@ values is wrong."
     (:manipulating)
     "List the manipulations, or carry out the manipulation NAME. ARGS are the numbers of the
 designators that denote its objects, then the number of the hand or other part."
-  (cond (name (send-manipulation session (manipulation-called name)
-                                 (read-data (or args "") (find-line "MANIPULATE"))))
+  (cond (name (start-manipulation session (find-manipulation-named name)
+                                  (read-typed-data (or args "") (find-line "MANIPULATE"))))
         ((all-manipulations)
          (dolist (manipulation (all-manipulations))
            (format t "~{  ~A~%~}" (manipulation-usages manipulation))))

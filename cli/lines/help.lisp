@@ -12,12 +12,12 @@
   (dolist (line lines)
     (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~A" (usage line)))))
 
-(defun lines-of (family)
+(defun lines-in-family (family)
   (remove family (all-lines) :key #'line-family :test-not #'eq))
 
 (defun write-main-menu ()
   (loop for (family . title) in *families*
-        for lines = (lines-of family)
+        for lines = (lines-in-family family)
         do (when lines
              (format t "~A~%" title)
              (write-menu lines)))
@@ -39,19 +39,19 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
   (dolist (parameter (line-parameters line)) (write-filled (line-parameter-help parameter) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
 
-(defun write-help-on (name)
+(defun write-help-about (name)
   (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
         (alias (assoc name *aliases* :test #'string-equal))
-        (plan (plan-called name)))
+        (plan (find-plan-named name)))
     (cond (line (write-help line))
           (alias (format t "~{~A is an alias of ~A~}~%" alias))
           (plan (write-plan-help plan))
-          (t (let ((topics (topics-called name)))
+          (t (let ((topics (topics-named name)))
                (if topics
                    (mapc #'write-topic topics)
-                   (write-help (line-to-help-with name))))))))
+                   (write-help (find-line-for-help name))))))))
 
-(defun line-to-help-with (name)
+(defun find-line-for-help (name)
   "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE if there is none."
   (handler-bind ((bad-line (lambda (condition)
                              (reject-line "~A APROPOS ~(~A~) searches all names."
@@ -62,50 +62,52 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
     (:general)
     "List the commands of the prompt and of the robot, or describe NAME: a command, plan, parameter,
 place type, attribute, value, error code, name of Lisp ..."
-  (if name (write-help-on name) (write-main-menu)))
+  (if name (write-help-about name) (write-main-menu)))
 
 (define-line "MENU-BIN" (session) (:general)
     "List the commands of storage bins."
-  (write-menu (lines-of :storage-bin)))
+  (write-menu (lines-in-family :storage-bin)))
 
 (define-line "MENU-CAMERA" (session) (:general)
     "List the commands of cameras."
-  (write-menu (lines-of :camera)))
+  (write-menu (lines-in-family :camera)))
 
 (define-line "MENU-HAND" (session) (:general)
     "List the commands of hands."
-  (write-menu (lines-of :hand)))
+  (write-menu (lines-in-family :hand)))
 
 ;;; Searching.
 
-(defparameter *most-topics* 40
+(defparameter *largest-topic-count* 40
   "The largest number of topics that APROPOS lists for a word that is only in their descriptions.")
 
-(defun topics-with (word)
+(defun topics-matching (word)
   "Return two lists: the topics with WORD in their names, and those with WORD only in their
 descriptions."
   (flet ((in-p (text) (search word text :test #'char-equal)))
     (let ((topics (all-topics)))
       (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)
               (remove-if-not (lambda (topic)
-                               (and (not (in-p (topic-name topic))) (in-p (topic-words topic))))
+                               (and (not (in-p (topic-name topic)))
+                                    (in-p (topic-description topic))))
                              topics)))))
 
 (defun write-topics (topics)
   (dolist (topic topics)
-    (put-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic) (topic-title topic)
-                                (one-line (topic-words topic)))
-                        *text-width*))))
+    (write-trimmed-line "~A" (cut (format nil "  ~24A ~13A ~A" (topic-name topic)
+                                          (topic-title topic)
+                                          (one-line (topic-description topic)))
+                                  *text-width*))))
 
 (define-line "APROPOS" (session (word :rest "a word, or a part of one"))
     (:general)
     "List everything with WORD in its name, then with WORD in its description: lines, plans,
 parameters, place types, attributes, error codes, names of Lisp. HELP shows the whole description."
-  (multiple-value-bind (named others) (topics-with word)
-    (let ((more (- (length others) *most-topics*)))
+  (multiple-value-bind (named others) (topics-matching word)
+    (let ((more (- (length others) *largest-topic-count*)))
       (unless (or named others) (reject-line "No name or description contains ~A." word))
       (write-topics named)
       (when others
         (format t "~:[In the description~;Also in the description~]:~%" named)
-        (write-topics (subseq others 0 (min *most-topics* (length others)))))
+        (write-topics (subseq others 0 (min *largest-topic-count* (length others)))))
       (when (plusp more) (format t "  and ~D more.~%" more)))))

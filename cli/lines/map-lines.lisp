@@ -16,11 +16,11 @@ terminal."
 
 ;;; Which part, and which layers.
 
-(defun words-of-map ()
+(defun words-for-map-line ()
   "Return the words that MAP accepts: names of layers, as for MAP and as for PICTURE, and LEGEND."
   (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
-(defun word-meant (text words line takes)
+(defun complete-word (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
 BAD-LINE if there is none. TAKES is a format control that describes what LINE takes; its argument
 is WORDS."
@@ -30,11 +30,11 @@ is WORDS."
                    (nearest-name text words) takes (list words)))
     (make-keyword word)))
 
-(defun number-typed (text)
+(defun parse-typed-number (text)
   (let ((datum (ignore-errors (values (read-data-from-string text 0)))))
     (and (realp datum) (integer-if-whole datum))))
 
-(defun map-part (numbers)
+(defun map-region-options (numbers)
   "Return the options of TEXT-MAP for NUMBERS, a typed radius or region, or none."
   (case (length numbers)
     (0 '())
@@ -56,10 +56,10 @@ is WORDS."
   "Return the options of TEXT-MAP for TEXT, the words typed after MAP."
   (loop with takes = "a radius, or LEFT TOP RIGHT BOTTOM, and ~{~A~#[~; or ~:;, ~]~}"
         for word in (split-words (or text ""))
-        for number = (number-typed word)
+        for number = (parse-typed-number word)
         if number collect number into numbers
-        else collect (text-layer-name (word-meant word (words-of-map) "MAP" takes)) into words
-        finally (return (append (map-part numbers)
+        else collect (text-layer-name (complete-word word (words-for-map-line) "MAP" takes)) into words
+        finally (return (append (map-region-options numbers)
                                 (list :layers (remove :legend words)
                                       :only-legend (and (member :legend words) t))))))
 
@@ -76,13 +76,13 @@ room for LINES-BELOW lines below."
                                           :paint (and (console-colored-p console) #'paint)
                                           options)))))))
 
-(define-choices :map-words (mapcar #'string-downcase (words-of-map)))
+(define-choices :map-words (mapcar #'string-downcase (words-for-map-line)))
 
 (define-line "MAP" (session (what :map-words
                                   "a radius or LEFT TOP RIGHT BOTTOM; names of layers; LEGEND"
                                   :optional))
     (:seeing
-     (format nil "Shown if named: ~:{~A (~(~A~))~:^, ~}."
+     (format nil "Layers shown if you name them: ~:{~A (~(~A~))~:^, ~}."
              (loop for name in (text-layers)
                    collect (list name (layer-title (picture-layer-name name))))))
     "Show the world as characters: all of it, a radius around the robot, or a region.
@@ -95,93 +95,97 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
 ;;; meanwhile are shown afterwards, the last line of them at once. Elsewhere the maps follow one
 ;;; another.
 
-(defconstant +frame-seconds+ 0.1d0 "The shortest time for which a map is shown, in seconds.")
-(defconstant +usual-rate+ 20 "The ticks per second that WATCH shows in a run without a rate.")
+(defconstant +shortest-frame-seconds+ 0.1d0
+  "The shortest time for which a map is shown, in seconds.")
+(defconstant +default-watch-rate+ 20
+  "The ticks per second that WATCH shows in a run without a rate.")
 
 (defun time-passes-p (session simulation)
   (and (live-p simulation)
        (null (session-trial session))
        (not (paused-p simulation))))
 
-(defun idle-here-p (session simulation)
+(defun idle-in-session-p (session simulation)
   "True if SIMULATION, the run of SESSION, passes no ticks until a command or change is requested."
   (and (time-passes-p session simulation) (idle-p simulation)))
 
-(defun pass-tick (session simulation)
-  "Pass a tick of SIMULATION. If its clock passes the ticks, wait for the next tick, or until
-SIMULATION is idle."
+(defun pass-or-await-tick (session simulation)
+  "Pass a tick of SIMULATION. If the clock of SIMULATION passes ticks, wait for the next tick, or
+until SIMULATION is idle."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
     (await-test (lambda ()
                   (or (>= (simulation-tick simulation) goal)
-                      (idle-here-p session simulation))))))
+                      (idle-in-session-p session simulation))))))
 
 ;;; One after the other.
 
 (defun print-maps (session simulation count options)
   (loop repeat count
-        until (or (simulation-over simulation) (idle-here-p session simulation))
-        do (pass-tick session simulation)
+        until (or (simulation-over simulation) (idle-in-session-p session simulation))
+        do (pass-or-await-tick session simulation)
            (format t "Tick ~D.~%~A" (simulation-tick simulation) (map-text session options))
            (finish-output))
-  (when (idle-here-p session simulation) (format t "~A~%" (time-text session simulation))))
+  (when (idle-in-session-p session simulation)
+    (format t "~A~%" (time-description session simulation))))
 
 ;;; In place.
 
-(defun screen-p (session)
+(defun can-redraw-in-place-p (session)
   "True if SESSION has a terminal on which maps can be redrawn in place and keys can be read."
   (and (can-poll-input-p session)
        (terminal-stream-p (session-input session))
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
 
-(defun frame (session simulation options)
+(defun screen-text (session simulation options)
   "Return the text for the screen: the map, and below the map the time and the last message."
   (let ((columns (1- (terminal-size session)))
-        (said (last-held-back (session-console session))))
+        (said (last-held-back-line (session-console session))))
     (format nil "~A~A A key ends this.~%~A" (map-text session options 2)
-            (time-text session simulation)
+            (time-description session simulation)
             (subseq said 0 (min columns (length said))))))
 
-(defun frame-seconds (session simulation)
+(defun seconds-between-maps (session simulation)
   "Return the number of seconds between two maps of SIMULATION."
   (let ((rate (simulation-rate simulation)))
     (if (time-passes-p session simulation)
-        +frame-seconds+
-        (/ 1d0 (if (and (realp rate) (plusp rate)) rate +usual-rate+)))))
+        +shortest-frame-seconds+
+        (/ 1d0 (if (and (realp rate) (plusp rate)) rate +default-watch-rate+)))))
 
-(defun watch-screen (session simulation count options)
+(defun watch-until-key (session simulation count options)
   "Show maps of SIMULATION in place until a key is pressed, a program breaks or the run is over.
 With COUNT, stop also after COUNT ticks or when the run is idle; without COUNT, when a line was
 typed. Return true if a key was pressed."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
-        do (write-at-once (over-screen (frame session simulation options)) console)
+        do (write-at-once (overwrite-screen-code (screen-text session simulation options)) console)
         until (or (if end
-                      (or (>= (simulation-tick simulation) end) (idle-here-p session simulation))
+                      (or (>= (simulation-tick simulation) end)
+                          (idle-in-session-p session simulation))
                       (typed-ahead-p (session-input session)))
                   (simulation-over simulation)
                   (session-breaks session))
-        do (when (octets-within-p (source-of (session-input session))
-                                  (frame-seconds session simulation))
+        do (when (octets-within-p (source-stream (session-input session))
+                                  (seconds-between-maps session simulation))
              (return t))
-           (unless (time-passes-p session simulation) (pass-tick session simulation))))
+           (unless (time-passes-p session simulation) (pass-or-await-tick session simulation))))
 
 (defun watch-in-place (session simulation count options)
   ;; The key that has ended it does not begin a line.
   (when (handler-case (call-with-screen
-                       (lambda () (watch-screen session simulation count options))
+                       (lambda () (watch-until-key session simulation count options))
                        (session-console session))
           (user-interrupt () nil))
     (discard-key (session-input session)))
-  (format t "~A~%" (time-text session simulation)))
+  (format t "~A~%" (time-description session simulation)))
 
 ;;; The line.
 
-(defun take-count (text)
+(defun split-off-count (text)
   "Return the number at the beginning of TEXT, or NIL, and the rest of TEXT."
   (let* ((words (split-words (or text "")))
-         (count (and words (number-typed (first words)))))
+         (count (and words (parse-typed-number (first words)))))
     (when (and count (not (whole-p count 1)))
       (reject-line "WATCH cannot show ~A ticks. Give a whole number, from 1 to 1e9." count))
     (values count (format nil "~{~A~^ ~}" (if count (rest words) words)))))
@@ -192,7 +196,7 @@ typed. Return true if a key was pressed."
          (reject-line "In a trial, time passes between lines only. Use STEP and MAP to see each ~
                        tick."))
         (count)
-        ((not (screen-p session))
+        ((not (can-redraw-in-place-p session))
          (reject-line "No key can end WATCH here. WATCH n shows n ticks."))
         ((not (time-passes-p session simulation))
          (reject-line "Time stands still here. WATCH n lets n ticks pass.~@[ RESUME ~
@@ -206,9 +210,9 @@ nothing happens any more. A key or Control-C ends WATCH. Words after the number 
 Where time stands still, WATCH 20 lets 20 ticks pass. Lines pasted meanwhile are read afterwards; if
 no number was given, they end WATCH."
   (check-run-not-over)
-  (multiple-value-bind (count rest) (take-count what)
+  (multiple-value-bind (count rest) (split-off-count what)
     (let ((simulation (current-simulation)) (options (map-options rest)))
       (check-watchable session simulation count)
-      (if (screen-p session)
+      (if (can-redraw-in-place-p session)
           (watch-in-place session simulation count options)
           (print-maps session simulation count options)))))

@@ -5,7 +5,7 @@
 ;;; A rewind replaces the running plans. The prompt drops the old ones without a message and waits
 ;;; for the new ones, also when the rewind comes from Lisp.
 
-(defun forget-jobs (old new)
+(defun forget-plan-jobs (old new)
   "Stop reporting to prompts how the plans of the run OLD end, because the run NEW replaces OLD."
   (declare (ignore new))
   (dolist (job (with-lock (*plan-jobs-lock*)
@@ -13,14 +13,14 @@
     (setf (plan-job-forgotten-p job) t
           (session-after-rewind (plan-job-session job)) #'adopt-plans)))
 
-(attend *rewind-hooks* forget-jobs)
+(attend *rewind-hooks* forget-plan-jobs)
 
 (defun check-rewindable (session)
   (check-run-not-over)
   (when (session-trial session)
     (reject-line "A trial cannot be rewound. TRIAL starts it again, at tick 0.")))
 
-(defun rewind-and-tell (session ticks)
+(defun rewind-and-report (session ticks)
   (let ((tick (- (simulation-tick *simulation*) ticks)))
     (rewind ticks)
     ;; No session waits for commands that are in progress again.
@@ -30,7 +30,7 @@
     (tell-other-sessions session *simulation*
                          (format nil "Another prompt has rewound the run to tick ~D.~%" tick))
     (format t "~A~@[ Plans under way: ~{~A~^, ~}.~]~%"
-            (time-text session *simulation* tick) (mapcar #'task-label (plans)))))
+            (time-description session *simulation* tick) (mapcar #'task-label (plans)))))
 
 (define-line "REWIND" (session (n tick-span "how far"))
     (:running)
@@ -38,7 +38,7 @@
 tick. Later ticks are discarded; the journal records the rewind. Continuations waiting for a
 command, such as that of GO-TO, receive :INTERRUPT."
   (check-rewindable session)
-  (rewind-and-tell session n))
+  (rewind-and-report session n))
 
 (define-line "REWIND-TO" (session (tick count "the tick to go back to"))
     (:running)
@@ -46,7 +46,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (check-rewindable session)
   (let ((now (simulation-tick *simulation*)))
     (unless (<= tick now) (reject-line "This run is only at tick ~D." now))
-    (rewind-and-tell session (- now tick))))
+    (rewind-and-report session (- now tick))))
 
 ;;;; TRIAL
 
@@ -61,7 +61,7 @@ that."
         (items-with-prefix (string-upcase start) (mapcar #'experiment-name (all-experiments))
                            #'string))))
 
-(defun experiment-meant (name)
+(defun resolve-experiment (name)
   "Return the experiment named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
   (let ((names (experiment-names name)))
     (cond ((null names)
@@ -70,7 +70,7 @@ that."
           ((rest names) (reject-ambiguous name names))
           (t (find-experiment (first names))))))
 
-(defun condition-meant (experiment text)
+(defun resolve-condition (experiment text)
   "Return the condition of EXPERIMENT for TEXT: a number, counted from 1, or a part of its name."
   (find-condition experiment (or (ignore-errors (parse-integer text)) text)))
 
@@ -79,31 +79,33 @@ that."
 (defun write-experiments ()
   (if (all-experiments)
       (dolist (experiment (all-experiments))
-        (write-filled (whole-sentence (experiment-text experiment)) 27
+        (write-filled (whole-sentence (experiment-description experiment)) 27
                       (format nil "  ~(~A~)" (experiment-name experiment))))
       (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
 
-(defun write-conditions (experiment)
+(defun write-experiment-conditions (experiment)
   (format t "~(~A~), ~D trials of each condition by default:~%" (experiment-name experiment)
           (experiment-trials experiment))
   (loop for condition in (experiment-conditions experiment)
         for number from 1
-        do (put-line "  ~3D  ~A" number (condition-name condition))))
+        do (write-trimmed-line "  ~3D  ~A" number (condition-name condition))))
 
 (defun open-trial-name (trial)
   (format nil "trial ~D of ~(~A~), ~A" (open-trial-number trial)
           (experiment-name (open-trial-experiment trial))
           (condition-name (open-trial-condition trial))))
 
-(defun say-here (session control &rest arguments)
+(defun write-fitted-line (session control &rest arguments)
   "Format CONTROL with ARGUMENTS, and write the text as lines that fit the window of SESSION."
-  (format t "~&~A~%" (fitted (apply #'format nil control arguments) (session-console session))))
+  (format t "~&~A~%" (fit-to-window (apply #'format nil control arguments)
+                                    (session-console session))))
 
 (defun write-open-trial (session trial)
-  (say-here session "~@(~A~).~%~A" (open-trial-name trial) (time-text session *simulation*))
+  (write-fitted-line session "~@(~A~).~%~A" (open-trial-name trial)
+                     (time-description session *simulation*))
   (when (open-trial-changed trial)
-    (say-here session "Since tick ~D this is no longer the experiment's run."
-              (open-trial-changed trial))))
+    (write-fitted-line session "Since tick ~D this is no longer the experiment's run."
+                       (open-trial-changed trial))))
 
 ;;; Its end.
 
@@ -113,27 +115,30 @@ that."
                 collect (list name (case value ((t) "yes") ((nil) "no") (:none "none")
                                      (t (format-briefly nil "~A" value)))))))
 
-(defun write-result (session trial result)
-  (say-here session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]" (result-ticks result)
-            (result-outcome result)
-            (and (string/= "" (result-reason result)) (result-reason result))
-            (let ((text (measures-text trial result))) (and (string/= "" text) text)))
+(defun write-trial-result (session trial result)
+  (write-fitted-line session "The trial is over at tick ~D: ~A~@[ (~A)~].~@[ ~A.~]"
+                     (result-ticks result)
+                     (result-outcome result)
+                     (and (string/= "" (result-reason result)) (result-reason result))
+                     (let ((text (measures-text trial result))) (and (string/= "" text) text)))
   (when (string/= "" (result-error result))
-    (say-here session "Its error: ~A" (complaint-text (result-error result))))
+    (write-fitted-line session "The error of the trial: ~A"
+                       (short-error-text (result-error result))))
   (when (open-trial-changed trial)
-    (say-here session "This is not the experiment's result: the run was changed at tick ~D."
-              (open-trial-changed trial))))
+    (write-fitted-line session
+                       "This is not the experiment's result: the run was changed at tick ~D."
+                       (open-trial-changed trial))))
 
-(defun read-after-end (session trial result parts row)
+(defun read-lines-after-trial (session trial result parts row)
   "After the end of TRIAL with RESULT, read lines of SESSION until a line leaves the trial. ROW is
 the stored row to compare with RESULT, or NIL; PARTS are the parts of the row's fingerprint."
   (setf (open-trial-result trial) result)
   (pause-trial trial)
   (call-outside-trial (lambda ()
                         (show-messages session)
-                        (write-result session trial result)
+                        (write-trial-result session trial result)
                         (when row
-                          (say-here session
+                          (write-fitted-line session
                                     "~:[The result is as in its row.~;~
                                      ~:*The result differs from its row: ~{~A~^; ~}.~]"
                                     (row-differences (open-trial-experiment trial) result parts row
@@ -142,7 +147,7 @@ the stored row to compare with RESULT, or NIL; PARTS are the parts of the row's 
 
 ;;; Going there, and out again.
 
-(defun pause-soon (session trial restart)
+(defun pause-at-next-tick (session trial restart)
   "Pause TRIAL at its next tick. Until then, continue the interrupted code by RESTART."
   (pause-trial trial)
   (setf (open-trial-interrupted-p trial) t)
@@ -151,13 +156,13 @@ the stored row to compare with RESULT, or NIL; PARTS are the parts of the row's 
   (finish-output (session-console session))
   (invoke-restart restart))
 
-(defun call-pausable (session trial function)
+(defun call-with-pause-on-interrupt (session trial function)
   "Call FUNCTION. While ticks pass in TRIAL, Control-C at the terminal of SESSION pauses the trial
 at the next tick. A second Control-C before that tick leaves the trial."
   (flet ((pause-or-leave (condition)
            (let ((restart (find-restart 'go-on condition)))
              (if (and restart (session-terminal-p session) (not (open-trial-interrupted-p trial)))
-                 (pause-soon session trial restart)
+                 (pause-at-next-tick session trial restart)
                  (setf (open-trial-left-p trial) t)))))
     (handler-bind ((user-interrupt #'pause-or-leave))
       (funcall function))))
@@ -173,9 +178,9 @@ at the next tick. A second Control-C before that tick leaves the trial."
     (run-again experiment condition number
                :journal t
                :gate (make-trial-gate session trial)
-               :then (lambda (result) (read-after-end session trial result parts row)))))
+               :then (lambda (result) (read-lines-after-trial session trial result parts row)))))
 
-(defun call-with-others-paused (function)
+(defun call-with-run-paused (function)
   "Call FUNCTION, while the current live simulation, if any, is paused."
   (let ((simulation *simulation*))
     (if (and simulation (live-p simulation) (not (paused-p simulation)))
@@ -189,27 +194,28 @@ at the next tick. A second Control-C before that tick leaves the trial."
     (setf (session-trial session) trial)
     (unwind-protect
          (prog1 (catch 'left-trial
-                  (call-pausable session trial (lambda () (run-open-trial session trial)))
+                  (call-with-pause-on-interrupt session trial
+                                                (lambda () (run-open-trial session trial)))
                   #'values)
            (setf left-p t))
       (setf (session-trial session) nil)
-      (drop-jobs session)
+      (abandon-jobs session)
       (import-robot-names (current-robot-names))
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
 
-(defun drop-jobs (session)
+(defun abandon-jobs (session)
   (dolist (job (shiftf (session-jobs session) '()))
     (when (plan-job-p job) (close-job job))))
 
-(defun go-to-trial (session trial)
+(defun open-trial-in-session (session trial)
   (flet ((enter ()
-           (say-here session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let time ~
+           (write-fitted-line session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let ~ time
                               pass, TRIAL OFF leaves it."
                      (open-trial-name trial)
                      (trial-seed (open-trial-experiment trial) (open-trial-number trial))
                      (experiment-limit (open-trial-experiment trial)))
            (unless (can-poll-input-p session) (setf (open-trial-rate trial) :free))
-           (funcall (call-with-others-paused (lambda () (enter-trial session trial))))))
+           (funcall (call-with-run-paused (lambda () (enter-trial session trial))))))
     (call-outside-trial session #'enter)))
 
 (defun leave-trial (session)
@@ -235,12 +241,14 @@ which trial the prompt is in."
         ((null name) (write-experiments))
         ((and (string-equal name "off") (null condition)) (leave-trial session))
         ((null number)
-         (let ((experiment (experiment-meant name)))
-           (when condition (condition-meant experiment condition))
-           (write-conditions experiment)))
-        (t (let ((experiment (experiment-meant name)))
-             (go-to-trial session (make-open-trial experiment (condition-meant experiment condition)
-                                                   number directory))))))
+         (let ((experiment (resolve-experiment name)))
+           (when condition (resolve-condition experiment condition))
+           (write-experiment-conditions experiment)))
+        (t (let ((experiment (resolve-experiment name)))
+             (open-trial-in-session session
+                                    (make-open-trial experiment
+                                                     (resolve-condition experiment condition)
+                                                     number directory))))))
 
 (define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
@@ -259,7 +267,7 @@ opens one of them."
 ;;; stands still meanwhile. As with a trial, the line that enters a fork runs until another line
 ;;; leaves it.
 
-(defun read-in-fork (session)
+(defun read-lines-in-fork (session)
   (format (session-console session)
           "~&In a fork, at tick ~D. STEP lets time pass, FORK OFF leaves it.~@[ Plans under way: ~
            ~{~A~^, ~}.~]~%"
@@ -275,18 +283,18 @@ meanwhile."
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))
     (unwind-protect (catch 'left-fork
-                      (call-in-fork fork (lambda () (read-in-fork session))))
-      (drop-jobs session)
+                      (call-in-fork fork (lambda () (read-lines-in-fork session))))
+      (abandon-jobs session)
       (setf (session-jobs session) jobs
             (session-forks session) depth))))
 
-(defun go-to-fork (session seed)
+(defun continue-in-fork (session seed)
   "Run SESSION in a fork of the current run until a line leaves the fork; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
     (tell-other-sessions session run
                          (format nil "Another prompt is in a fork of the run, which is paused.~%"))
-    (unwind-protect (call-with-others-paused (lambda () (enter-fork session fork)))
+    (unwind-protect (call-with-run-paused (lambda () (enter-fork session fork)))
       (tell-other-sessions
        session run
        (format nil "The fork is left; the run ~:[continues~;is still paused~].~%" (paused-p run)))
@@ -294,7 +302,7 @@ meanwhile."
       (release-fork fork)
       (unless (session-over-p session)
         (format (session-console session) "~&Back from the fork. ~A~%"
-                (time-text session *simulation*))))))
+                (time-description session *simulation*))))))
 
 (define-line "FORK" (session (seed :off "OFF, or an integer: the seed of the copy"
                                    :optional))
@@ -304,10 +312,10 @@ With SEED, the copy has other random numbers. The run itself is paused. FORK OFF
 and returns to the run, which has not changed."
   (check-run-not-over)
   (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
-        ((null seed) (go-to-fork session nil))
+        ((null seed) (continue-in-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is not in a fork."))
          (throw 'left-fork t))
-        (t (go-to-fork session (or (ignore-errors (parse-integer seed))
-                                   (reject-line "The seed of a fork is an integer, not ~A."
-                                                seed))))))
+        (t (continue-in-fork session (or (ignore-errors (parse-integer seed))
+                                         (reject-line "The seed of a fork is an integer, not ~A."
+                                                      seed))))))

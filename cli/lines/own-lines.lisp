@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-(defun alias-circle (name text)
+(defun alias-cycle (name text)
   "Return the cycle of aliases that arises if NAME becomes an alias of TEXT: a list that begins and
-ends with NAME. NIL if there is no cycle."
+ends with NAME. Return NIL if there is no cycle."
   (loop with aliases = (acons name (list text) *aliases*)
         for word = name then (split-line (second alias))
         for alias = (assoc word aliases :test #'string-equal)
@@ -16,7 +16,7 @@ ends with NAME. NIL if there is no cycle."
 (defun define-alias (name text)
   "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, if TEXT does not begin with a
 command, or if aliases would form a cycle."
-  (let ((circle (alias-circle name text)) (expansion (expand-alias text)))
+  (let ((circle (alias-cycle name text)) (expansion (expand-alias text)))
     (cond ((find name (all-line-names) :test #'string=)
            (reject-line "~A is a command already; choose another name for the alias." name))
           (circle
@@ -46,7 +46,7 @@ command, or if aliases would form a cycle."
 too."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
-(defun switch-setting (name word)
+(defun parse-switch (name word)
   "Return true if WORD, typed after the line NAME, is ON, NIL if WORD is OFF. Signals BAD-LINE for
 another word."
   (cond ((string-equal word "on") t)
@@ -57,11 +57,11 @@ another word."
     (:general)
     "Show messages from commands issued by plans and programs, too; with OFF, only messages from
 your own commands. Without SETTING, tell whether ECHO is on."
-  (when setting (setf (session-quiet-p session) (not (switch-setting "ECHO" setting))))
+  (when setting (setf (session-quiet-p session) (not (parse-switch "ECHO" setting))))
   (format t "Messages from commands of plans and programs are ~:[~;not ~]shown.~%"
           (session-quiet-p session)))
 
-(defun check-time-passes (session cmd jobs inbox)
+(defun check-not-waiting-for-resume (session cmd jobs inbox)
   "Signal BAD-LINE if a command that SESSION has issued by the line CMD waits for RESUME. Such a
 command is a job of JOBS, or a waiting request that is not in the list INBOX."
   (when (and (waits-for-resume-p session)
@@ -69,34 +69,34 @@ command is a job of JOBS, or a waiting request that is not in the list INBOX."
                  (some #'issued-outside-plans-p (set-difference (waiting-requests) inbox))))
     (reject-line "Time stands still: ~A runs once, after RESUME, and is not repeated." cmd)))
 
-(defun await-repetition (session cmd jobs inbox)
+(defun await-repeated-line (session cmd jobs inbox)
   "Wait for the end of JOBS, which SESSION has issued by the line CMD, and of commands that Lisp has
 issued. Signals BAD-LINE if one waits for RESUME. INBOX lists the requests that waited before CMD."
-  (check-time-passes session cmd jobs inbox)
+  (check-not-waiting-for-resume session cmd jobs inbox)
   (await-jobs session jobs)
   ;; For what Lisp has issued, too.
   (unless (waits-for-resume-p session)
     (await-requests (lambda (request) (lisp-asker-p (request-asker request)))))
-  (check-time-passes session cmd jobs inbox))
+  (check-not-waiting-for-resume session cmd jobs inbox))
 
-(defun repeat-once (session cmd)
+(defun run-repeated-line (session cmd)
   "Run the line CMD, and wait for the commands that the line issues, unless SESSION is in a trial."
   (let ((before (session-jobs session)) (inbox (waiting-requests)))
     (run-text session cmd)
     (unless (session-trial session)
-      (await-repetition session cmd
-                        (remove-if (lambda (job) (member job before))
-                                   (session-jobs session))
-                        inbox))))
+      (await-repeated-line session cmd
+                           (remove-if (lambda (job) (member job before))
+                                      (session-jobs session))
+                           inbox))))
 
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
-    "Run the command CMD NUM times, each time after the one before has completed. In a trial, do not
-wait."
+    "Run the command CMD NUM times, each time after the one before has completed. In a trial,
+commands do not wait for each other."
   (loop repeat num
         until (session-over-p session)
-        do (repeat-once session cmd)))
+        do (run-repeated-line session cmd)))
 
 (define-line "QUIT" (session)
     (:general)

@@ -4,10 +4,10 @@
 
 ;;; A picture shows the default layers, and those whose names are typed.
 
-(defun picture-word (text line)
+(defun picture-layer-for-word (text line)
   "Return the layer for TEXT, a word typed after LINE. TEXT is the name of a layer of MAP or
 PICTURE, or BARE, which omits the default layers, or the beginning of such a word."
-  (picture-layer-name (word-meant text
+  (picture-layer-name (complete-word text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
                            line "a file, a scale, and words: ~{~A~^, ~}")))
@@ -16,9 +16,9 @@ PICTURE, or BARE, which omits the default layers, or the beginning of such a wor
   "Return the options of SAVE-PICTURE for TEXT, the words typed after LINE and the name of the
 file."
   (loop for word in (split-words (or text ""))
-        for number = (number-typed word)
+        for number = (parse-typed-number word)
         if number collect number into numbers
-        else collect (picture-word word line) into words
+        else collect (picture-layer-for-word word line) into words
         finally (when (rest numbers)
                   (reject-line "~A takes one number, the scale; not ~{~A~^ ~}." line numbers))
                 (return (list :scale (first numbers)
@@ -42,8 +42,8 @@ file."
 and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES."
      "Pixels per cell: from 1 to 256. By default graphics-scale* if that was set, else a number
 from 4 to 40 for which the map has at most 900 x 700 pixels."
-     (format nil "Shown by default, except with BARE: ~A." (layers-text *picture-layers*))
-     (format nil "Shown if named: ~A."
+     (format nil "Layers shown by default, except with BARE: ~A." (layers-text *picture-layers*))
+     (format nil "Layers shown if you name them: ~A."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
                                      (picture-layers)))))
     "Save a picture of the world as it is now in FILE, replacing it."
@@ -67,7 +67,7 @@ saves the film even if definitions have changed since the run began."
     (flet ((save (*frame-hook*)
              (apply #'save-animation nil (path-called file)
                     :anyway (/= (length words) (length others)) options)))
-      (format t "~A~%" (native-name (call-telling-ticks
+      (format t "~A~%" (native-name (call-showing-progress
                                      #'save session (simulation-tick (current-simulation))))))))
 
 ;;;; Windows
@@ -76,7 +76,7 @@ saves the film even if definitions have changed since the run began."
 ;;; program's second core, for --window, has it already; the first one, and a Lisp of the user's,
 ;;; load it when a window is opened.
 
-(defun call-or-say (function trouble)
+(defun call-or-reject (function trouble)
   "Call FUNCTION, which compiles and loads libraries, with Lisp's standard syntax and without
 output. If FUNCTION signals an error, signal BAD-LINE with TROUBLE, a format control whose argument
 is the text of the error."
@@ -89,21 +89,22 @@ is the text of the error."
     (error (condition)
       (reject-line trouble (one-line (condition-text condition))))))
 
-(defun load-windows (quicklisp-p)
+(defun load-window-system (quicklisp-p)
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
-    (call-or-say #'ars-magna.clx:load-by-quicklisp
-                 "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then say ~
+    (call-or-reject #'ars-magna.clx:load-by-quicklisp
+                 "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then ~
+                     type
                   WINDOW again."))
-  (call-or-say (lambda () (asdf:load-system "ars-magna/clim"))
+  (call-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
                "No window: McCLIM was found, but cannot be loaded: ~A"))
 
 ;; Read when this file is loaded, so that a saved program has it with it.
-(defparameter *how-to-get-windows*
+(defparameter *mcclim-installation-text*
   (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
   "A text that tells how to install McCLIM.")
 
-(defun ensure-windows ()
+(defun ensure-window-system ()
   "Load the code that opens windows, if needed. Signals BAD-LINE without X server, McCLIM or a
 working CLX."
   (unless *display-opener*
@@ -115,20 +116,20 @@ working CLX."
       (uiop:symbol-call :ars-magna.build :configure))
     (let ((found-p (ars-magna.clx:find-library "mcclim/looks")))
       (unless (or found-p (find-package :quicklisp) (ars-magna.clx:quicklisp-file))
-        (write-string *how-to-get-windows*)
+        (write-string *mcclim-installation-text*)
         (reject-line "No window: McCLIM is not installed. See above how to install it."))
       (let ((trouble (ars-magna.clx:clx-trouble)))
         (when trouble (reject-line "No window: ~A" trouble)))
       (format t "Loading McCLIM; the first time this takes some minutes.~%")
       (finish-output)
-      (load-windows (not found-p)))))
+      (load-window-system (not found-p)))))
 
 ;;;; WINDOW
 
-(defun robot-at-work-called (name)
+(defun find-running-robot (name)
   "Return the robot named NAME of this run or of another live run. Signals BAD-LINE if there is
 none."
-  (let* ((name (robot-called name))
+  (let* ((name (find-robot-named name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)
                     (find-robot name nil)))
@@ -137,7 +138,7 @@ none."
              (not (simulation-over simulation))
              (or (eq simulation *simulation*) (live-p simulation)))
         robot
-        (reject-elsewhere name))))
+        (reject-robot-elsewhere name))))
 
 (define-line "WINDOW" (session (name :robot-name "the robot; the one commanded if left out"
                                      :optional))
@@ -145,46 +146,47 @@ none."
     "Open a window that shows the robot NAME in its world and takes commands, or raise its open
 window. Windows need McCLIM; if McCLIM is not installed, a message says how to install it. You may
 close the window at any time. The window closes by itself when the run is over."
-  (let ((robot (if name (robot-at-work-called name) (session-robot))))
-    (ensure-windows)
+  (let ((robot (if name (find-running-robot name) (session-robot))))
+    (ensure-window-system)
     (open-display robot)
     (format t "The window of ~A is open.~%" (robot-name robot))))
 
 (define-line "DISPLAY" (session) (:seeing)
     "Show the robot and its world in a window, as WINDOW does."
   (let ((robot (session-robot)))
-    (ensure-windows)
+    (ensure-window-system)
     (open-display robot)))
 
 ;;;; Maps in files
 
-(defun free-middle (map)
+(defun free-point-near-middle (map)
   "Return the point nearest to the middle of MAP where a robot can stand, as a list (x y), or NIL."
   (let ((point (nearest-free-point map (list (/ (map-width map) 2) (/ (map-height map) 2)))))
     (and point (list (pt-x point) (pt-y point)))))
 
-(defun tell-imported (map report)
+(defun describe-imported-map (map report)
   "Print a description of MAP from REPORT, as IMPORT-MAP returns it, and tell how to use the map."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
     (format t "~(~A~): ~D by ~D cells of ~A m~:[~; (a cell is 1 m for the robot)~], ~D free, ~
                ~D occupied, ~D unknown; ~D walls.~%"
-            (map-name map) width height (amount-text cell) (/= 1 cell) free occupied unknown walls)
+            (map-name map) width height (plain-number-text cell) (/= 1 cell)
+            free occupied unknown walls)
     (format t "For a robot there: (defrobot NAME (~(~A~) (~:[X Y~;~:*~{~,1F~^ ~}~]) 0)), and then ~
                WORLD ~2:*~(~A~).~%"
-            (map-name map) (free-middle map))))
+            (map-name map) (free-point-near-middle map))))
 
 (define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
     "Make a map, named like FILE, of the occupancy grid in FILE and the image that FILE names. In
 the simulator each cell is one metre wide, whatever its real size: GO 5 m drives through five
 cells."
-  (multiple-value-call #'tell-imported (import-map file)))
+  (multiple-value-call #'describe-imported-map (import-map file)))
 
 (define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
     (:seeing)
   "Write the walls of the robot's map to FILE, as an occupancy grid for ROS's map_server, and an
 image in PGM beside FILE. Maps saved under the same names are replaced, but no other files. IMPORT
-reads such files."
+reads both files."
   (multiple-value-bind (description image)
       (export-map (world-map (robot-world (session-robot))) file)
     (format t "~A~%~A~%" (native-name description) (native-name image))))

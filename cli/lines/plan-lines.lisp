@@ -4,23 +4,23 @@
 
 ;;; Which plan is meant.
 
-(defun plan-called (name)
+(defun find-plan-named (name)
   "Return the plan procedure named NAME, a string: the user's own, or else the newest in any
-package. NIL if there is none."
+package. Return NIL if there is no such plan."
   (handler-case (find-procedure (or (find-symbol (string-upcase name)) name))
     (unknown-name () nil)))
 
 (defun plan-names ()
   (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
-(defun plan-meant (name)
+(defun resolve-plan (name)
   "Return the plan procedure named NAME, or the only one whose name begins with NAME. Signals
 BAD-LINE."
   (let ((candidates (items-with-prefix (string-upcase name) (plan-names) #'string)))
-    (cond ((plan-called name))
+    (cond ((find-plan-named name))
           ((null candidates) (reject-unknown-name "plan" name (plan-names) "PLAN lists all plans."))
           ((rest candidates) (reject-ambiguous name candidates))
-          (t (plan-called (string (first candidates)))))))
+          (t (find-plan-named (string (first candidates)))))))
 
 (define-choices :plan (plan-names))
 
@@ -30,7 +30,7 @@ BAD-LINE."
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
 ;; A plan that another plan of its author calls is a part, and not listed.
-(defun parts-of-plans ()
+(defun called-plans ()
   "Return the plans that are called by other plans of the same package."
   (loop for plan in (all-procedures)
         append (loop for part in (called-procedures plan)
@@ -40,9 +40,9 @@ BAD-LINE."
                        collect part)))
 
 (defun write-plan-menu ()
-  (let ((parts (parts-of-plans)))
+  (let ((parts (called-plans)))
     (dolist (name (plan-names))
-      (let ((plan (plan-called (string name))))
+      (let ((plan (find-plan-named (string name))))
         (unless (member plan parts)
           (write-filled (whole-sentence (plan-documentation plan)) 27
                         (format nil "  ~A" name))))))
@@ -55,7 +55,7 @@ BAD-LINE."
 
 ;;; Starting them.
 
-(defun begin-job (job plan arguments)
+(defun start-plan-job (job plan arguments)
   (with-lock (*plan-jobs-lock*) (push job *plan-jobs*))
   (handler-bind ((error (lambda (condition)
                           (close-job job)
@@ -65,20 +65,20 @@ BAD-LINE."
                                          (procedure-name plan) arguments (plan-usage plan))))))
     (setf (plan-job-task job) (apply #'begin-plan plan arguments))))
 
-(defun send-plan (session plan arguments)
+(defun start-plan-in-session (session plan arguments)
   (let ((job (make-plan-job (procedure-name plan) session (current-simulation))))
     (check-run-not-over)
     (setf (session-failure session) nil)
     (pushnew (procedure-name plan) (session-plans session))
     (let ((task (let ((*robot-to-drive* #'session-robot))
-                  (begin-job job plan arguments))))
+                  (start-plan-job job plan arguments))))
       (push job (session-jobs session))
       (note-plan-of-line (session-account session) task)
       (when (live-p (plan-job-simulation job)) (start-watching-plan job))
       (unless (waits-for-commands-p session)
         (format t "Plan ~D is under way: ~(~A~).~%" (task-serial task) (procedure-name plan))))))
 
-(defun read-data (text line)
+(defun read-typed-data (text line)
   (loop with position = (skip-blanks text 0)
         until (= position (length text))
         collect (multiple-value-bind (datum end) (read-datum text position line)
@@ -92,22 +92,23 @@ BAD-LINE."
     "List all plans, or run the plan NAME with ARGS on the robot. In a live run the prompt returns
 at once, otherwise when the plan has ended."
   (if name
-      (send-plan session (plan-meant name) (read-data (or args "") (find-line "PLAN")))
+      (start-plan-in-session session (resolve-plan name)
+                             (read-typed-data (or args "") (find-line "PLAN")))
       (write-plan-menu)))
 
 ;;; Those under way.
 
-(defun call-reading-plan (name function)
+(defun call-in-plan-package (name function)
   "Call FUNCTION, which returns text with forms of the plan named NAME. Return the text with few
 package prefixes, as an author of the plan would write the forms."
-  (let* ((plan (plan-called (string name)))
+  (let* ((plan (find-plan-named (string name)))
          (*package* (if plan (symbol-package (procedure-name plan)) (user-package)))
          (*print-pretty* nil)
          (text (funcall function)))
     (dolist (prefix '("ars-user::" "ars-worlds::" "ars-worlds:") text)
-      (setf text (without prefix text)))))
+      (setf text (remove-word prefix text)))))
 
-(defun without (word text)
+(defun remove-word (word text)
   "Return TEXT with all occurrences of WORD removed, ignoring case."
   (with-output-to-string (out)
     (loop for start = 0 then (+ end (length word))
@@ -120,21 +121,21 @@ package prefixes, as an author of the plan would write the forms."
 ended has failed, tell where and why it failed."
   (let ((plans (plans)))
     (if plans
-        (write-string (call-reading-plan (task-name (first plans))
-                                         (lambda ()
-                                           (with-output-to-string (out) (print-plans out)))))
+        (write-string (call-in-plan-package (task-name (first plans))
+                                            (lambda ()
+                                              (with-output-to-string (out) (print-plans out)))))
         (format t "No plan is under way. PLAN lists the plans that there are.~%")))
   (when (session-failure session)
     (destructuring-bind (failure name) (session-failure session)
       (let ((*message-queue* (make-message-queue)))
         (format t "The last plan failed: ~A~&"
-                (call-reading-plan name (lambda ()
-                                          (report-failure failure)
-                                          (message-text (first (take-messages))))))))))
+                (call-in-plan-package name (lambda ()
+                                             (report-failure failure)
+                                             (message-text (first (take-messages))))))))))
 
 (define-line "STOP-PLAN" (session (n count "the number of a running plan" :optional))
     (:planning)
-    "End the plan N, or all running plans. Commands that ended plans gave the robot are
+    "End the plan N, or all running plans. Commands that these plans gave to the robot are
 interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (or (find n (plans) :key #'task-serial)
@@ -143,12 +144,12 @@ interrupted."
 
 ;;; PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and why.
 
-(defun tree-text (which)
+(defun task-tree-text (which)
   "Return the full stacks and variables of WHICH, a task or a plan runner with plans, as text."
   (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
                     unless (task-parent task) return task)))
-    (call-reading-plan (task-name plan)
-                       (lambda () (with-output-to-string (out) (print-tasks which out t))))))
+    (call-in-plan-package (task-name plan)
+                          (lambda () (with-output-to-string (out) (print-tasks which out t))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show all details of the running plans, or of the task N and its parts: each task's stack and
@@ -158,13 +159,13 @@ variables, what it waits for and since when; and which task owns which valve."
                  (let ((which (cond ((null (plans)) nil)
                                     (n (task-numbered n runner))
                                     (t runner))))
-                   (and which (tree-text which)))))))
+                   (and which (task-tree-text which)))))))
     (cond (text (write-string (visible text)))
           ((null (plans)) (reject-line "No plan is under way."))
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
 
 (defun task-why-text (n)
-  (call-reading-plan
+  (call-in-plan-package
    (let ((plan (first (plans)))) (and plan (task-name plan)))
    (lambda ()
      (with-output-to-string (out)
@@ -193,7 +194,7 @@ or in Lisp (setf *trace-plans* t), before the plan starts."
   (call-with-plans-in-use
    (lambda (runner) (and runner (mapcar #'task-serial (all-tasks runner))))))
 
-(defun task-meant (text)
+(defun resolve-task (text)
   "Return the running task with the number TEXT. Signals BAD-LINE."
   (unless (plans) (reject-line "No plan is under way."))
   (let ((number (ignore-errors (parse-integer text))))
@@ -202,35 +203,35 @@ or in Lisp (setf *trace-plans* t), before the plan starts."
        (or (and number (task-numbered number runner))
            (reject-line "No task ~A is under way. PLANS shows which are." text))))))
 
-(defun task-text (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
+(defun task-number-and-label (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
 
 (define-line "END-TASK" (session (n :task-number "the number of a running task")) (:planning)
     "End the task N of a plan and its subtasks. The task evaporates, as when its parent no longer
-needs a task. A stepped task ends without another stop. Commands that the task gave the robot are
+needs a task. A stepped task ends without another stop. Commands that the task gave to the robot are
 interrupted. STOP-PLAN ends whole plans."
-  (let ((task (task-meant n)))
+  (let ((task (resolve-task n)))
     (step-task task nil)
     (end-plan task)
-    (format t "Task ~A ends.~%" (task-text task))))
+    (format t "Task ~A ends.~%" (task-number-and-label task))))
 
 (define-line "STEP-TASK" (session (n :task-number "the number of a running task")
                                   (off :off "OFF ends stepping" :optional))
     (:planning)
     "Single-step the task N and its subtasks: stop before each expression and ask for STEP, NEXT,
 OUT or CONTINUE. OFF ends stepping. Without a terminal or window, each stop is only a message."
-  (let ((task (task-meant n)) (on-p (null off)))
+  (let ((task (resolve-task n)) (on-p (null off)))
     (unless (or on-p (string-equal off "off"))
       (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
     (step-task task on-p)
-    (format t "Task ~A ~:[continues without stopping~;stops when it continues~].~%" (task-text task)
-            on-p)))
+    (format t "Task ~A ~:[continues without stopping~;stops when it continues~].~%"
+            (task-number-and-label task) on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
     "Trace what plans do from now on, including running plans, for WHY, PLAN-TIMELINE and the
 window's timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell whether plans
 are traced."
   (when switch
-    (let ((on-p (switch-setting "TRACE-PLANS" switch)))
+    (let ((on-p (parse-switch "TRACE-PLANS" switch)))
       ;; A plan may hold the lock of all plans: then none is asked, and nothing changes.
       (call-with-plans-in-use
        (lambda (runner)

@@ -2,15 +2,15 @@
 
 (in-package :ars-magna.cli)
 
-(defun live-simulation ()
-  "Return the current simulation. Signals BAD-LINE if it is not live."
+(defun current-live-simulation ()
+  "Return the current simulation. Signals BAD-LINE if the simulation is not live."
   (check-run-not-over)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
       (reject-line "Time passes here only as commands need it. STEP lets ticks pass."))
     simulation))
 
-(defun time-text (session simulation &optional (tick (simulation-tick simulation)))
+(defun time-description (session simulation &optional (tick (simulation-tick simulation)))
   "Return a text with TICK, a tick of SIMULATION, the run of SESSION, and how time passes in that
 run."
   (format nil "Tick ~D, ~A." tick
@@ -29,28 +29,28 @@ run."
   (let ((simulation (current-simulation)))
     (if (session-trial session)
         (pause-trial (session-trial session))
-        (progn (pause (live-simulation))
+        (progn (pause (current-live-simulation))
                ;; The tick in progress ends first.
                (asking (simulation))))
-    (format t "~A~%" (time-text session simulation))))
+    (format t "~A~%" (time-description session simulation))))
 
-(defun resume-here (session)
+(defun resume-run (session)
   "Resume the run of SESSION. If its clock was stopped, start the clock again."
   (check-run-not-over)
   (let ((simulation (current-simulation)))
-    (cond ((or (live-p simulation) (headless-p simulation)) (resume (live-simulation)))
+    (cond ((or (live-p simulation) (headless-p simulation)) (resume (current-live-simulation)))
           (t (start-clock simulation :rate (or (simulation-rate simulation) *default-rate*)
                                      :real (eq :real (simulation-thinking simulation)))
-             (format t "~A~%" (time-text session simulation))))))
+             (format t "~A~%" (time-description session simulation))))))
 
 (define-line "RESUME" (session) (:running)
     "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run the
 trial to its end."
   (if (session-trial session)
       (resume-trial (session-trial session))
-      (resume-here session)))
+      (resume-run session)))
 
-(defun step-here (session count)
+(defun step-run (session count)
   "Pass COUNT ticks of the run of SESSION, and print the tick. If not all of the ticks have passed,
 also print how time passes."
   (check-run-not-over)
@@ -59,14 +59,14 @@ also print how time passes."
     (step-ticks count simulation)
     (if (await-test (lambda () (>= (simulation-tick simulation) goal)))
         (format t "Tick ~D.~%" (simulation-tick simulation))
-        (format t "~A~%" (time-text session simulation)))))
+        (format t "~A~%" (time-description session simulation)))))
 
 (define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-trial session)
       (step-trial (session-trial session) (or n 1))
-      (step-here session (or n 1))))
+      (step-run session (or n 1))))
 
 (defun parse-rate (text)
   "Return the rate in TEXT: a number or :FREE. Signals BAD-LINE for another text."
@@ -77,7 +77,7 @@ also print how time passes."
             rate
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
-(defun later-rate-text (session simulation)
+(defun rate-after-resume-text (session simulation)
   "If SIMULATION, the run of SESSION, is paused, return as text the rate at which RESUME continues;
 else return NIL."
   (let ((trial (session-trial session)))
@@ -92,9 +92,9 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
     (when x
       (if (session-trial session)
           (set-trial-rate (session-trial session) (parse-rate x))
-          (set-rate (parse-rate x) (live-simulation))))
-    (format t "~A~@[ RESUME continues at ~A.~]~%" (time-text session simulation)
-            (and x (later-rate-text session simulation)))))
+          (set-rate (parse-rate x) (current-live-simulation))))
+    (format t "~A~@[ RESUME continues at ~A.~]~%" (time-description session simulation)
+            (and x (rate-after-resume-text session simulation)))))
 
 (define-line "SEED" (session (n integer "the seed"))
     (:running)
@@ -103,21 +103,21 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
 
 ;;; Parameters.
 
-(defun setting-text (value)
+(defun parameter-value-text (value)
   (if (and (realp value) (or (zerop value) (<= 1d-3 (abs value) 1d6)))
-      (amount-text value)
+      (plain-number-text value)
       (princ-to-string value)))
 
 (defun parameter-text (parameter)
   (let ((value (parameter-value parameter))
         (default (parameter-default parameter)))
     (format nil "~30A ~8A ~A~:[ (default ~A)~;~]" (parameter-name parameter)
-            (setting-text value) (parameter-unit parameter)
-            (value-equal value default) (setting-text default))))
+            (parameter-value-text value) (parameter-unit parameter)
+            (value-equal value default) (parameter-value-text default))))
 
-(defun parameters-like (name)
-  "Return the parameters named NAME, with or without the star. If there are none, return those whose
-names begin with NAME, or else those whose names contain NAME."
+(defun parameters-matching (name)
+  "Return the parameters named NAME, with or without the star. If there are none, return the
+parameters whose names begin with NAME, or else those whose names contain NAME."
   (flet ((called (test)
            (loop for parameter in (all-parameters)
                  when (funcall test (string-downcase name) (parameter-name parameter))
@@ -132,19 +132,19 @@ names begin with NAME, or else those whose names contain NAME."
         do (unless (equal group (parameter-group parameter))
              (setf group (parameter-group parameter))
              (format t "~A~%" group))
-           (put-line "  ~A" (parameter-text parameter))))
+           (write-trimmed-line "  ~A" (parameter-text parameter))))
 
 (defun write-parameter (parameter)
-  (put-line "~A" (parameter-text parameter))
+  (write-trimmed-line "~A" (parameter-text parameter))
   (format t "~A~%" (parameter-sentence parameter)))
 
 (define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
                                (value :rest "its new value" :optional))
     (:running)
     "List all parameters, or those with NAME in their names, or set one to VALUE."
-  (let ((parameters (parameters-like (or name ""))))
+  (let ((parameters (parameters-matching (or name ""))))
     (cond ((rest parameters)
-           (when value (reject-line "~A is a part of several names. Type more of it." name))
+           (when value (reject-line "~A is a part of several names. Type more of the name." name))
            (list-parameters parameters))
           (t (let ((parameter (or (first parameters) (find-parameter name))))
                (when value
@@ -156,7 +156,7 @@ names begin with NAME, or else those whose names contain NAME."
 
 ;;; Journals.
 
-(defun tick-text (tick digest)
+(defun tick-and-state-text (tick digest)
   (format nil "tick ~D, state ~16,'0X~%" tick digest))
 
 (define-line "SAVE-JOURNAL" (session (file :file "the name of a file"))
@@ -168,25 +168,25 @@ names begin with NAME, or else those whose names contain NAME."
           (values (save-journal (path-called file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
-      (format t "~A: ~A" (native-name path) (tick-text tick digest)))))
+      (format t "~A: ~A" (native-name path) (tick-and-state-text tick digest)))))
 
-(defun anyway-p (word)
+(defun parse-anyway (word)
   "True if WORD is ANYWAY, NIL if WORD is NIL. Signals BAD-LINE for another word."
   (cond ((null word) nil)
         ((string-equal word "anyway") t)
         (t (reject-line "REPLAY takes a file, then ANYWAY or nothing, not ~A." word))))
 
-(defun call-telling-ticks (function session end)
+(defun call-showing-progress (function session end)
   "Call FUNCTION, which processes ticks up to END, and return its values. The argument of FUNCTION
 is a function of a tick that shows the progress at the terminal of SESSION."
   (let ((progress (and (session-terminal-p session)
                        (make-progress-line (session-console session)))))
     (flet ((tell (tick)
-             (note-progress progress "Tick ~D of ~D. Control-C stops it." tick end)))
+             (note-progress progress "Tick ~D of ~D. Control-C cancels." tick end)))
       (unwind-protect (funcall function #'tell)
         (when progress (end-progress progress))))))
 
-(defun replay-showing (session journal anyway)
+(defun replay-with-progress (session journal anyway)
   "Repeat the run of JOURNAL, and show the progress. Return the last tick and the digest of the
 state."
   (flet ((repeat (tell)
@@ -195,7 +195,7 @@ state."
                              :anyway anyway
                              :observer (lambda (simulation)
                                          (funcall tell (simulation-tick simulation))))))
-    (call-telling-ticks #'repeat session (journal-end journal))))
+    (call-showing-progress #'repeat session (journal-end journal))))
 
 (define-line "REPLAY" (session (file :file "the name of a file that SAVE-JOURNAL wrote")
                                (anyway :token "the word ANYWAY" :optional))
@@ -203,5 +203,5 @@ state."
     "Repeat the run recorded in FILE, in a separate world, and show the tick and state at its end.
 ANYWAY repeats the run even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
-      (replay-showing session (load-journal (path-called file)) (anyway-p anyway))
-    (format t "~A: ~A" file (tick-text tick digest))))
+      (replay-with-progress session (load-journal (path-called file)) (parse-anyway anyway))
+    (format t "~A: ~A" file (tick-and-state-text tick digest))))

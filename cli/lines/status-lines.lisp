@@ -13,10 +13,10 @@
 
 ;; As reading 203 says.
 (defun write-bin (bin)
-  (put-line "~2D ~9A ~7A ~4,1F  ~{~A~^ ~}"
+  (write-trimmed-line "~2D ~9A ~7A ~4,1F  ~{~A~^ ~}"
               (format nil "~2A" (storage-bin-index bin))
               (if (storage-bin-closed-p bin) "Closed" "Open")
-              (amount-text (storage-bin-capacity bin))
+              (plain-number-text (storage-bin-capacity bin))
               (remaining-capacity bin)
               (storage-bin-contents bin)))
 
@@ -26,16 +26,16 @@
   (write-parts "BIN STATUS TOTAL-CAP CURRENT-CAP CONTENTS" #'write-bin #'robot-bins))
 
 (defun write-camera (camera)
-  (put-line "~4A ~,2F ~3A~6,2F ~@[~A ~]~@[Tracking ~A~]"
+  (write-trimmed-line "~4A ~,2F ~3A~6,2F ~@[~A ~]~@[Tracking ~A~]"
               (camera-index camera)
               (camera-field-of-view camera)
               (camera-resolution camera)
               (hundredths (camera-angle camera))
-              (location-text camera)
+              (part-location-text camera)
               (when (camera-tracks camera)
                 (let ((designator (designator-status (camera-tracks camera))))
-                  (format nil "~A designator @ ~A" (kind-text designator)
-                          (bearing-text designator))))))
+                  (format nil "~A designator @ ~A" (designator-kind-text designator)
+                          (designator-bearing-text designator))))))
 
 (define-line "CAMERAS" (session)
     (:seeing)
@@ -43,11 +43,11 @@
   (write-parts "CAMERA FIELD RES ANGLE" #'write-camera #'robot-cameras))
 
 (defun write-hand (hand)
-  (put-line "~6A ~7A ~14A ~@[~A~]"
+  (write-trimmed-line "~6A ~7A ~14A ~@[~A~]"
               (hand-index hand)
-              (amount-text (hand-strength hand))
+              (plain-number-text (hand-strength hand))
               (or (hand-holding hand) "")
-              (location-text hand)))
+              (part-location-text hand)))
 
 (define-line "HANDS" (session)
     (:seeing)
@@ -63,32 +63,33 @@
 (defun write-views (cameras)
   (loop for camera in cameras
         for start = "View:  " then "          "
-        do (put-line "~ACamera ~D: ~:[~;TRACK ~]~{~,2F~^ ~}" start
-                     (getf camera :number) (getf camera :tracks) (getf camera :view))))
+        do (write-trimmed-line "~ACamera ~D: ~:[~;TRACK ~]~{~,2F~^ ~}" start
+                               (getf camera :number) (getf camera :tracks) (getf camera :view))))
 
 (defun write-designator (designator)
-  (put-line "~D ~A @ ~A" (getf designator :number) (kind-text designator)
-            (bearing-text designator))
+  (write-trimmed-line "~D ~A @ ~A" (getf designator :number) (designator-kind-text designator)
+                      (designator-bearing-text designator))
   (let ((data (getf designator :data)))
     (if (consp (first data))
         (write-descriptor data)
-        (put-line "  ~{~:(~A~)~^ ~}" data))))
+        (write-trimmed-line "  ~{~:(~A~)~^ ~}" data))))
 
-(defun entry-text (entry control)
+(defun command-entry-text (entry control)
   "Return as text ENTRY, an element of :UNDER-WAY or :INTERRUPTED: its part, then CONTROL
 formatted."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
 ;; While nothing is in progress, these lines are left out, as in the manual's session.
-(defun write-ownership (status)
+(defun write-commands-in-progress (status)
   (loop for entry in (getf status :under-way)
-        do (put-line "~19A~A" "Under way:" (entry-text entry "~(~A~), for ~A")))
+        do (write-trimmed-line "~19A~A" "Under way:" (command-entry-text entry "~(~A~), for ~A")))
   (loop for entry in (getf status :interrupted)
-        do (put-line "~19A~A" "Interrupted:"
-                     (entry-text entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
+        do (write-trimmed-line "~19A~A" "Interrupted:"
+                               (command-entry-text
+                                entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
 
-(defun thinking-text (status)
+(defun thinking-cost-text (status)
   "Return as text what thinking costs, according to STATUS, or NIL for the default."
   (let ((mode (getf status :thinking)))
     (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
@@ -105,20 +106,20 @@ formatted."
   (write-views (getf status :cameras))
   ;; Parts of the user's own kinds, with their state and memory.
   (dolist (sensor (getf status :sensors))
-    (put-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
+    (write-trimmed-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
   (format t "~19A~A~%" "Place:" (getf status :place))
-  (write-ownership status)
-  (let ((thinking (thinking-text status)))
+  (write-commands-in-progress status)
+  (let ((thinking (thinking-cost-text status)))
     (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
-(defun write-standstill (session simulation)
+(defun write-if-no-ticks-pass (session simulation)
   "If SIMULATION, the live run of SESSION, passes no ticks now, print why."
   (when (and (live-p simulation)
              (or (paused-p simulation) (idle-p simulation))
              (null (session-trial session)))
-    (format t "~19A~A~%" "Time:" (time-text session simulation))))
+    (format t "~19A~A~%" "Time:" (time-description session simulation))))
 
 (define-line "STATUS" (session)
     (:seeing)
@@ -127,11 +128,11 @@ turning speed, what its cameras see now, the last place sensed, its designators,
 progress and who issued them, the last interruption, and the cost of thinking if that was changed.
 A line tells if no ticks pass now. In Lisp: (status)."
   (let ((robot (session-robot)))
-    (while-still (or (report-status session robot)
+    (while-still (or (report-status-object session robot)
                      (progn (write-status (status robot))
-                            (write-standstill session (current-simulation)))))))
+                            (write-if-no-ticks-pass session (current-simulation)))))))
 
-(defun where-text (thing)
+(defun thing-place-text (thing)
   (let ((location (thing-location thing)))
     (if (eq location :floor)
         (format nil "@ (~,2F,~,2F)" (thing-x thing) (thing-y thing))
@@ -144,8 +145,8 @@ A line tells if no ticks pass now. In Lisp: (status)."
   (let ((world (robot-world (session-robot))))
     (while-still
       (do-things (thing world)
-        (put-line "~A ~A" thing (where-text thing))
-        (write-descriptor (thing-attributes thing) #'amount-text)))))
+        (write-trimmed-line "~A ~A" thing (thing-place-text thing))
+        (write-descriptor (thing-attributes thing) #'plain-number-text)))))
 
 ;;; Putting the robot somewhere.
 
@@ -168,32 +169,33 @@ point is inside a wall."
 ;;; In Lisp NIL is nothing, false or the empty list, and a list may be a property list or not. So
 ;;; the kinds of such values are listed here by key.
 
-(defparameter *kinds-of-keys*
+(defparameter *json-kinds-of-keys*
   '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
     (:lists :view :contents :slots :data)
     (:truths :live :closed))
   "Lists (kind key...): keys of (status) whose values JSON shows as arrays of objects, as arrays, or
 as true or false.")
 
-(defun arrays-for-lists (value)
+(defun lists-to-arrays (value)
   (if (and (consp value) (null (cdr (last value))))
-      (map 'vector #'arrays-for-lists value)
+      (map 'vector #'lists-to-arrays value)
       value))
 
 (defun value-for-json (key value)
-  (case (first (find-if (lambda (kind) (member key (rest kind))) *kinds-of-keys*))
+  (case (first (find-if (lambda (kind) (member key (rest kind))) *json-kinds-of-keys*))
     (:objects (map 'vector #'object-for-json value))
     (:truths (if value t :false))
-    (:lists (if value (arrays-for-lists value) #()))
-    (t (if (eq key :failed) (object-for-json value) (arrays-for-lists value)))))
+    (:lists (if value (lists-to-arrays value) #()))
+    (t (if (eq key :failed) (object-for-json value) (lists-to-arrays value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with its values converted, so that WRITE-JSON writes them as *KINDS-OF-KEYS* says."
+  "Return PLIST with its values converted, so that WRITE-JSON writes them as *JSON-KINDS-OF-KEYS*
+says."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))
 
-(defun report-status (session robot)
+(defun report-status-object (session robot)
   "If SESSION reports objects, report the status of ROBOT, whose world stands still, as an object
 and return true."
   (let ((account (session-account session)))

@@ -7,22 +7,22 @@
 
 ;;; Descriptions.
 
-(defun place-type-words (type)
+(defun place-type-description (type)
   (format nil "PLACE senses whether the robot is in such a place~:[; PLACE-DESIG 0 ~(~A~) searches ~
                for one, and takes another place for it with a probability of ~A~;, but no camera ~
                finds such places~]."
           (place-type-invisible-p type) (place-type-name type)
-          (amount-text (place-type-confusion type))))
+          (plain-number-text (place-type-confusion type))))
 
-(defun attribute-words (attribute)
+(defun attribute-description (attribute)
   (format nil "~:[A number~;One of ~:*~{~(~A~)~^, ~}~]. ~@[A reading is right with a probability ~
                of ~A. ~]Seen without being looked for with a ~
                probability of ~A.~@[ Sensed more often when these are looked ~
                for: ~{~(~S~)~^, ~}.~]"
           (attribute-domain attribute)
           (and (eq :discrete (attribute-kind attribute))
-               (amount-text (attribute-success attribute)))
-          (amount-text (attribute-noticed attribute))
+               (plain-number-text (attribute-success attribute)))
+          (plain-number-text (attribute-noticed attribute))
           (attribute-supporters attribute)))
 
 (defun attribute-values ()
@@ -31,39 +31,39 @@
         append (loop for value in (attribute-domain attribute)
                      unless (member value '(t nil)) collect (list value attribute))))
 
-(defun value-title (value)
+(defun value-kind (value)
   (format nil "~(~S~)" (attribute-name (second value))))
 
-(defun value-words (value)
+(defun value-description (value)
   (destructuring-bind (value attribute) value
     (format nil "OBJ-DESIG 1 non-local ((~A ~A)) searches for such things."
             (text-as-typed (attribute-name attribute)) (text-as-typed value))))
 
-(defun substance-words (substance)
+(defun substance-description (substance)
   (format nil "A camera reads ~A where a wall or thing consists of this substance, unless the wall ~
                or thing has a value of its own."
-          (amount-text (substance-parameter (substance-name substance)))))
+          (plain-number-text (substance-parameter (substance-name substance)))))
 
-(defun kicker-words (kicker)
-  (format nil "Runs on each tick with a probability of ~A on each thing that has it.~@[ ~A~]"
-          (amount-text (kicker-prob kicker))
+(defun kicker-description (kicker)
+  (format nil "Runs on each tick with a probability of ~A on each thing with this kicker.~@[ ~A~]"
+          (plain-number-text (kicker-prob kicker))
           (documentation (kicker-name kicker) 'function)))
 
-(defun manipulation-words (manipulation)
+(defun manipulation-description (manipulation)
   (format nil "Type ~{MANIPULATE ~A~^ or ~}."
           (manipulation-usages manipulation)))
 
-(defun map-words (map)
+(defun map-description (map)
   (format nil "~D by ~D cells.~@[ WORLD ~(~A~) goes there.~]" (map-width map) (map-height map)
           (and (robot-names-in-map map) (map-name map))))
 
-(defun robot-words (blueprint)
+(defun robot-description (blueprint)
   (format nil "Lives in ~(~A~)." (blueprint-map blueprint)))
 
-(defun experiment-text (experiment)
+(defun experiment-description (experiment)
   (or (experiment-documentation experiment) "Not documented."))
 
-(defun codes-and-commands ()
+(defun error-codes-with-commands ()
   "Return lists (code command...) for all error codes."
   (let ((table '()))
     (dolist (command (all-commands) (nreverse table))
@@ -73,39 +73,39 @@
               (setf (rest known) (append (rest known) (list command)))
               (push (list code command) table)))))))
 
-(defun code-name (entry) (error-code-keyword (first entry)))
+(defun error-code-topic-name (entry) (error-code-keyword (first entry)))
 
-(defun code-words (entry)
+(defun error-code-description (entry)
   (destructuring-bind (code . commands) entry
-    (format nil "~A Passed to the continuations of ~{~(~A~)~^, ~}." (code-text code)
+    (format nil "~A Passed to the continuations of ~{~(~A~)~^, ~}." (error-code-explanation code)
             (mapcar #'command-name commands))))
 
-(defun code-text (code)
+(defun error-code-explanation (code)
   "Return a text that tells what CODE, an error code of a command, means and what to try."
   (let ((keyword (error-code-keyword code)))
     (if (error-code-meaning keyword)
         (format nil "~A~@[ ~A~]" (error-code-meaning keyword) (error-code-remedy keyword))
         (format nil "~@[~A.~]" (and (stringp (error-code-text code)) (error-code-text code))))))
 
-(defun codes-of-all ()
+(defun common-error-codes ()
   '(:interrupt))
 
-(defun code-of-all-words (keyword)
+(defun common-error-code-description (keyword)
   (format nil "~A ~A Passed to the continuation of any command."
           (error-code-meaning keyword) (error-code-remedy keyword)))
 
 ;;; Restarts, which a debugger offers.
 
-(defun restart-words (name)
+(defun restart-description (name)
   (format nil "~A In Lisp: (invoke-restart '~(~A~))." (restart-documentation name) name))
 
 ;;; Names in a separate system.
 
-(defun names-elsewhere ()
+(defun fiveam-names ()
   "Return the names that the system ars-magna/fiveam defines; NIL if that system is loaded."
   (unless (find-package :ars-fiveam) '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")))
 
-(defun elsewhere-words (name)
+(defun fiveam-name-description (name)
   (format nil "ARS-FIVEAM:~A comes with (asdf:load-system \"ars-magna/fiveam\"), for tests." name))
 
 ;;; Names of Lisp.
@@ -117,7 +117,7 @@
                            when text collect text)
                      :test #'string= :from-end t))
 
-(defun lisp-names ()
+(defun documented-names ()
   "Return the documented names of the simulator, the worlds and the user, sorted, without
 parameters."
   (let ((names '()))
@@ -129,17 +129,17 @@ parameters."
                      (remove-if-not #'documentation-texts names))
           #'string<)))
 
-(defun lisp-title (symbol)
+(defun lisp-name-kind (symbol)
   (cond ((member symbol (all-constructs) :test #'string=) "construct")
         ((macro-function symbol) "macro")
         ((fboundp symbol) "function")
         ((boundp symbol) "variable")
         (t "type")))
 
-(defun lisp-words (symbol)
+(defun lisp-name-description (symbol)
   (format nil "~{~A~^~%~}" (documentation-texts symbol)))
 
-(defun typed-name (symbol)
+(defun name-as-typed (symbol)
   "Return SYMBOL as users type it: with a package prefix unless it is accessible in ARS-USER."
   (if (eq symbol (find-symbol (symbol-name symbol) (user-package)))
       (symbol-name symbol)
@@ -147,13 +147,13 @@ parameters."
 
 (defun call-text (symbol)
   (let ((*package* (or (symbol-package symbol) *package*)) (*print-pretty* nil))
-    (format nil "(~(~A~{ ~S~}~))" (typed-name symbol)
+    (format nil "(~(~A~{ ~S~}~))" (name-as-typed symbol)
             (ldiff (lambda-list-of symbol) (member '&aux (lambda-list-of symbol))))))
 
 (defun write-lisp-topic (symbol)
-  (format t "~A, ~A~%" symbol (lisp-title symbol))
+  (format t "~A, ~A~%" symbol (lisp-name-kind symbol))
   (when (fboundp symbol) (write-filled (call-text symbol) 2))
-  (write-paragraphs (lisp-words symbol) 2))
+  (write-paragraphs (lisp-name-description symbol) 2))
 
 (defun write-paragraphs (text indent)
   "Write TEXT, indented by INDENT columns. Lines that begin with a blank are kept, others are
@@ -167,7 +167,7 @@ filled."
               while line
               do (cond ((or (string= line "") (blank-p (char line 0)))
                         (end-paragraph)
-                        (put-line "~VA~A" indent "" line))
+                        (write-trimmed-line "~VA~A" indent "" line))
                        (t (push line paragraph)))))
       (end-paragraph))))
 
@@ -177,22 +177,22 @@ filled."
   '(("line" all-lines line-name line-sentence write-help)
     ("plan" all-procedures procedure-name plan-documentation write-plan-help)
     ("parameter" all-parameters parameter-name parameter-sentence write-parameter)
-    ("place type" all-place-types place-type-name place-type-words)
-    ("attribute" all-attributes attribute-name attribute-words)
-    (value-title attribute-values first value-words)
-    ("substance" all-substances substance-name substance-words)
-    ("kicker" all-kickers kicker-name kicker-words)
-    ("manipulation" all-manipulations manipulation-name manipulation-words)
+    ("place type" all-place-types place-type-name place-type-description)
+    ("attribute" all-attributes attribute-name attribute-description)
+    (value-kind attribute-values first value-description)
+    ("substance" all-substances substance-name substance-description)
+    ("kicker" all-kickers kicker-name kicker-description)
+    ("manipulation" all-manipulations manipulation-name manipulation-description)
     ("clause of maps" all-clause-kinds clause-kind-name clause-kind-usage)
-    ("map" all-maps map-name map-words)
-    ("robot" all-blueprints blueprint-name robot-words)
-    ("experiment" all-experiments experiment-name experiment-text)
-    ("error code" codes-and-commands code-name code-words)
-    ("error code" codes-of-all identity code-of-all-words)
-    ("restart" all-restarts identity restart-words)
-    ("subject" all-subjects first subject-words)
-    ("name of a library" names-elsewhere identity elsewhere-words)
-    (lisp-title lisp-names identity lisp-words write-lisp-topic))
+    ("map" all-maps map-name map-description)
+    ("robot" all-blueprints blueprint-name robot-description)
+    ("experiment" all-experiments experiment-name experiment-description)
+    ("error code" error-codes-with-commands error-code-topic-name error-code-description)
+    ("error code" common-error-codes identity common-error-code-description)
+    ("restart" all-restarts identity restart-description)
+    ("subject" all-subjects first subject-description)
+    ("name of a library" fiveam-names identity fiveam-name-description)
+    (lisp-name-kind documented-names identity lisp-name-description write-lisp-topic))
   "Lists (title lister name description [writer]), one for each kind of topic. LISTER is a function
 that returns all objects of the kind. NAME, DESCRIPTION and WRITER are functions of an object; the
 last prints its help. TITLE is a text or a function of an object.")
@@ -213,26 +213,26 @@ last prints its help. TITLE is a text or a function of an object.")
   (let ((title (first (topic-kind topic))))
     (if (stringp title) title (funcall title (topic-object topic)))))
 
-(defun topic-words (topic)
+(defun topic-description (topic)
   (funcall (fourth (topic-kind topic)) (topic-object topic)))
 
-(defun bare-name (name)
+(defun name-without-marks (name)
   "Return NAME in upper case, without colons, stars and quotes: RED for :red, MAX-SPEED for
 max-speed*."
   (string-trim ":*'()" (string-upcase name)))
 
-(defun topics-called (name)
-  (let ((name (bare-name name)))
+(defun topics-named (name)
+  (let ((name (name-without-marks name)))
     (remove-duplicates (remove name (all-topics)
-                               :key (lambda (topic) (bare-name (topic-name topic)))
+                               :key (lambda (topic) (name-without-marks (topic-name topic)))
                                :test-not #'string=)
-                       :key #'topic-words :test #'equal :from-end t)))
+                       :key #'topic-description :test #'equal :from-end t)))
 
 (defun write-topic (topic)
   (let ((writer (fifth (topic-kind topic))))
     (cond (writer (funcall writer (topic-object topic)))
           (t (format t "~A, ~A~%" (topic-name topic) (topic-title topic))
-             (write-filled (topic-words topic) 2)))))
+             (write-filled (topic-description topic) 2)))))
 
 (defmethod choices ((type (eql :topic)) session typed)
   (append (choices :command session typed)
@@ -267,4 +267,4 @@ numeric).")
 
 (defun all-subjects () *subjects*)
 
-(defun subject-words (subject) (one-line (second subject)))
+(defun subject-description (subject) (one-line (second subject)))

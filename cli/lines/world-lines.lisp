@@ -2,16 +2,16 @@
 
 (in-package :ars-magna.cli)
 
-(defun start-robot (session robot-name)
+(defun start-world-of-robot (session robot-name)
   (cond ((session-trial session)
-         (call-outside-trial session (lambda () (start-robot session robot-name))))
-        ((not (and *simulation* (headless-p *simulation*))) (start-live session robot-name))
+         (call-outside-trial session (lambda () (start-world-of-robot session robot-name))))
+        ((not (and *simulation* (headless-p *simulation*))) (start-live-run session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         ((plusp (session-forks session))
          (reject-line "A fork has one world. FORK OFF leaves the fork."))
         (t (reject-line "This prompt is in a headless simulation, which has one world."))))
 
-(defun end-run-left (old)
+(defun end-abandoned-run (old)
   (unless (simulation-over old)
     (end-simulation old "the prompt has gone elsewhere")))
 
@@ -19,24 +19,24 @@
   "End the run OLD, which SESSION has left for the run of ROBOT. Move the other prompts of OLD to
 the run of ROBOT, too."
   (setf (gethash old *replaced-runs*) (list (robot-simulation robot) (robot-name robot)))
-  (end-run-left old)
+  (end-abandoned-run old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
     (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
       (when simulation (announce-run other simulation name)))))
 
-(defun start-live (session robot-name)
+(defun start-live-run (session robot-name)
   "End the run of SESSION, and start a run of the world of ROBOT-NAME at tick 0 and the same rate."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
     ;; A run at tick 0 would continue instead of starting again.
-    (when (member robot-name (current-robot-names)) (end-run-left old))
+    (when (member robot-name (current-robot-names)) (end-abandoned-run old))
     (let ((robot (simulator robot-name :display nil
                                        :rate (if old (simulation-rate old) *default-rate*))))
       (when old (end-replaced-run session old robot))
       (when (display-wanted-p session) (announce-display robot '()))
       (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
-(defun robot-among (names name)
+(defun choose-robot (names name)
   "Return the one of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
       (or (find name names :test #'same-name-p)
@@ -49,19 +49,20 @@ the run of ROBOT, too."
     "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. The
 present run ends."
   (if name
-      (start-robot session (robot-among (robot-names-in-world name) robot))
+      (start-world-of-robot session (choose-robot (robot-names-in-world name) robot))
       (write-worlds)))
 
-(defun robot-called (name)
+(defun find-robot-named (name)
   (or (find name (robot-names) :test #'same-name-p)
       (reject-unknown-name "robot" name (robot-names) "ROBOT lists those of this world.")))
 
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
     (multiple-value-bind (x y) (robot-position robot)
-      (put-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y (eq robot (session-robot))))))
+      (write-trimmed-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y
+                          (eq robot (session-robot))))))
 
-(defun reject-elsewhere (name)
+(defun reject-robot-elsewhere (name)
   "Signal BAD-LINE with a text that tells how to get to the robot NAME in another world."
   (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at tick 0, ~
                 and ends this run."
@@ -71,10 +72,10 @@ present run ends."
     (:seeing)
     "List the robots of this world, or command its robot NAME from now on. WORLD leads to other
 worlds and their robots."
-  (let ((name (and name (robot-called name))))
+  (let ((name (and name (find-robot-named name))))
     (cond ((null name) (list-robots))
           ((member name (current-robot-names))
            (import-robot-names (current-robot-names))
            (setf *prompt-robot* name)
            (note-robot-commanded))
-          (t (reject-elsewhere name)))))
+          (t (reject-robot-elsewhere name)))))

@@ -6,12 +6,12 @@
 
 ;;; Parameters.
 
-(defparameter *effects-of-cleaning*
+(defparameter *parameter-kind-texts*
   '((:noise . "`clean-simulation` takes it out") (:delay . "a delay") (:limit . "a limit")
     (:setting . "a setting"))
   "Pairs (kind . text) that describe the kinds of parameters.")
 
-(defun number-words (value)
+(defun shortest-number-text (value)
   ;; A double-float made from a single-float is written like the single-float, which has fewer
   ;; digits.
   (let ((value (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
@@ -24,15 +24,15 @@
           (prin1-to-string value)))))
 
 (defun parameter-facts (parameter)
-  `(("Default" ,(format nil "~A ~A" (number-words (parameter-default parameter))
+  `(("Default" ,(format nil "~A ~A" (shortest-number-text (parameter-default parameter))
                         (parameter-unit parameter)))
     ("Range" ,(describe-type (parameter-type parameter)))
-    ("Kind" ,(rest (assoc (parameter-kind parameter) *effects-of-cleaning*)))))
+    ("Kind" ,(rest (assoc (parameter-kind parameter) *parameter-kind-texts*)))))
 
 (defun parameter-entries ()
   (loop for parameter in (all-parameters)
         for symbol = (parameter-symbol parameter)
-        when (packages-showing symbol)
+        when (packages-exporting symbol)
           collect (make-entry :name (parameter-name parameter) :chapter :parameters :symbol symbol
                               :section (parameter-group parameter)
                               :use (parameter-name parameter)
@@ -42,13 +42,13 @@
 
 ;;; Definitions by name. The files of the simulator's own definitions are not recorded with them.
 
-(defun entries-of (kind function)
+(defun make-entries (kind function)
   "Return the entries that FUNCTION makes from name, object and file of each definition of KIND in
 the project. The file is NIL if it is not known."
   (loop for (name object source) in (all-definitions kind)
         for name-of-file = (and source
                                 (not (eq :own source))
-                                (project-name (native-name source)))
+                                (project-file-name (native-name source)))
         for file = (and name-of-file
                         (not (starts-with-subseq "tests/" name-of-file))
                         name-of-file)
@@ -61,13 +61,13 @@ the project. The file is NIL if it is not known."
                                 (attribute-domain attribute))))
    (if (eq :discrete (attribute-kind attribute))
        (list (list "Read rightly" (format nil "with probability ~A, close by"
-                                          (number-words (attribute-success attribute)))))
+                                          (shortest-number-text (attribute-success attribute)))))
        (list (list "Error" (format nil "deviation ~A close by, up to ~A times larger far away"
-                                   (number-words (attribute-base attribute))
-                                   (number-words (attribute-max-mult attribute))))))
+                                   (shortest-number-text (attribute-base attribute))
+                                   (shortest-number-text (attribute-max-mult attribute))))))
    (list (list "Noticed unasked"
                (format nil "with probability ~A~@[; more often with ~(~{~S~^, ~}~)~]"
-                       (number-words (attribute-noticed attribute))
+                       (shortest-number-text (attribute-noticed attribute))
                        (attribute-supporters attribute))))))
 
 (defun attribute-entry (name attribute file)
@@ -81,7 +81,8 @@ the project. The file is NIL if it is not known."
 (defun substance-entry (name substance file)
   (make-entry :name (string-downcase name) :chapter :substances
               :use (format nil "(:substance ~(~A~))" name)
-              :facts (list (list "Viewed as" (number-words (substance-parameter substance))))
+              :facts (list (list "Viewed as"
+                                 (shortest-number-text (substance-parameter substance))))
               :text "A substance of walls and things; see DEFSUBSTANCE and CAMERA-VIEW."
               :file (or file "src/world/substances.lisp")))
 
@@ -90,8 +91,9 @@ the project. The file is NIL if it is not known."
               :use (string-downcase name)
               :facts (list (list "Rank" (format nil "~:R of the types that fit"
                                                 (1+ (place-type-rank type))))
-                           (list "Confusion" (format nil "~A, the chance of a false designator"
-                                                     (number-words (place-type-confusion type))))
+                           (list "Confusion"
+                                 (format nil "~A, the chance of a false designator"
+                                         (shortest-number-text (place-type-confusion type))))
                            (list "Seen" (if (place-type-invisible-p type)
                                             "not by cameras" "by cameras, too")))
               :text (format nil "A place type, which ROBOT-PLACE senses; see DEF-PLACE-TYPE.")
@@ -100,13 +102,15 @@ the project. The file is NIL if it is not known."
 (defun kicker-entry (name kicker file)
   (make-entry :name (string-downcase name) :chapter :kickers
               :use (format nil "(:kickers (~(~A~)))" name) :symbol name
-              :facts (list (list "Probability" (format nil "~A a tick"
-                                                       (number-words (kicker-prob kicker)))))
-              :text (or (first-text name) "A kicker of the shipped worlds; see DEFKICKER.")
+              :facts (list (list "Probability"
+                                 (format nil "~A a tick"
+                                         (shortest-number-text (kicker-prob kicker)))))
+              :text (or (documentation-or-nil name)
+                        "A kicker of the shipped worlds; see DEFKICKER.")
               :file file))
 
-(defun first-text (name)
-  (let ((text (text-of-symbol name)))
+(defun documentation-or-nil (name)
+  (let ((text (symbol-documentation name)))
     (and (string/= "" text) text)))
 
 (defun manipulation-use (name method)
@@ -130,24 +134,24 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
               :use (string-downcase name) :symbol name
               :facts (list (list "Size" (format nil "~D x ~D cells" (map-width map)
                                                 (map-height map))))
-              :text (or (first-text name) "A map; see DEFMAP.") :file file))
+              :text (or (documentation-or-nil name) "A map; see DEFMAP.") :file file))
 
 (defun robot-entry (name blueprint file)
   (declare (ignore blueprint))
   (let ((robot (find-robot name)))
     (make-entry :name (string-downcase name) :chapter :robots :section "Robots"
                 :use (string-downcase name) :symbol name
-                :facts (list (list "Map" (in-code (map-name (world-map (robot-world robot)))))
+                :facts (list (list "Map" (code-markup (map-name (world-map (robot-world robot)))))
                              (list "Parts" (format nil "~R camera~:P, ~R hand~:P, ~R storage bin~:P"
                                                    (length (robot-cameras robot))
                                                    (length (robot-hands robot))
                                                    (length (robot-bins robot)))))
-                :text (or (first-text name) "A robot; see DEFROBOT.") :file file)))
+                :text (or (documentation-or-nil name) "A robot; see DEFROBOT.") :file file)))
 
 (defun plan-entry (name procedure file)
   (make-entry :name (string-downcase name) :chapter :plans :symbol name
-              :use (plain-use name (procedure-lambda-list procedure))
-              :text (text-of-symbol name) :file file))
+              :use (call-as-text name (procedure-lambda-list procedure))
+              :text (symbol-documentation name) :file file))
 
 (defun experiment-entry (name experiment file)
   (make-entry :name (string-downcase name) :chapter :experiments :symbol name
@@ -155,17 +159,17 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
               :text (or (experiment-documentation experiment) "") :file file))
 
 (defun shipped-entries ()
-  (append (entries-of 'attribute #'attribute-entry)
-          (entries-of 'substance #'substance-entry)
-          (entries-of 'place-type #'place-type-entry)
-          (entries-of 'map #'map-entry)
-          (entries-of 'robot #'robot-entry)
-          (entries-of 'kicker #'kicker-entry)
-          (entries-of 'manipulation #'manipulation-entry)
+  (append (make-entries 'attribute #'attribute-entry)
+          (make-entries 'substance #'substance-entry)
+          (make-entries 'place-type #'place-type-entry)
+          (make-entries 'map #'map-entry)
+          (make-entries 'robot #'robot-entry)
+          (make-entries 'kicker #'kicker-entry)
+          (make-entries 'manipulation #'manipulation-entry)
           ;; Plans that users call, without their parts.
-          (remove-if-not (lambda (entry) (packages-showing (entry-symbol entry)))
-                         (entries-of 'plan #'plan-entry))
-          (entries-of 'experiment #'experiment-entry)))
+          (remove-if-not (lambda (entry) (packages-exporting (entry-symbol entry)))
+                         (make-entries 'plan #'plan-entry))
+          (make-entries 'experiment #'experiment-entry)))
 
 ;;;; Names of Lisp
 
@@ -181,33 +185,34 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
                             "SET-KICKER" "PUT-KICKER" "REBUILD-MAP")
                      :test #'string=)))))
 
-(defun colour-p (symbol)
+(defun colour-name-p (symbol)
   (and (string= "ARS-MAGNA.CANVAS" (package-name (symbol-package symbol)))
        (boundp symbol)
        (typep (symbol-value symbol) '(or simple-vector (unsigned-byte 24)))
        (not (string= "GRAPHICS-SCALE*" (symbol-name symbol)))))
 
-(defparameter *words*
+(defparameter *plain-symbol-texts*
   '((("NUMERIC") "The domain of an attribute whose values are numbers; see DEFATTRIBUTE.")
     (("RED" "GREEN" "BLUE" "VIOLET" "LIGHTRED" "LIGHTGREEN" "LIGHTBLUE" "LIGHTVIOLET")
      "A value of the attribute :COLOR.")
     (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
-     "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept and ignore it (manual 3.1)."))
+     "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept such a name and ignore it (manual
+3.1)."))
   "Lists (names text): the descriptions of names that are only symbols.")
 
-(defun word-text (symbol)
+(defun plain-symbol-text (symbol)
   (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
-                   *words* :key #'first)))
+                   *plain-symbol-texts* :key #'first)))
 
 (defun restart-name-p (symbol)
   "True if SYMBOL is only the name of a restart."
-  (and (null (sorts-of-symbol symbol)) (null (word-text symbol))))
+  (and (null (symbol-kinds symbol)) (null (plain-symbol-text symbol))))
 
 (defun chapter-of-symbol (symbol)
   (cond ((member symbol (all-constructs)) :constructs)
         ((assoc symbol (all-fluent-variables)) :fluents)
         ((and (fboundp symbol) (starts-with-subseq "RPL-" (symbol-name symbol))) :plan-functions)
-        ((colour-p symbol) :colours)
+        ((colour-name-p symbol) :colours)
         ((or (and (find-class symbol nil) (subtypep symbol 'condition))
              (restart-name-p symbol))
          :conditions)
@@ -241,11 +246,12 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
     (make-entry :name (string-downcase symbol) :chapter chapter :symbol symbol
                 :section (section-of-symbol symbol chapter)
                 :use (if (fboundp symbol)
-                         (plain-use symbol (lambda-list-of symbol))
+                         (call-as-text symbol (lambda-list-of symbol))
                          (string-downcase symbol))
                 :facts (append (symbol-facts symbol)
                                (unless (member chapter '(:fluents :colours)) (value-facts symbol)))
-                :text (or (first-text symbol) (word-text symbol) (restart-text symbol))
+                :text (or (documentation-or-nil symbol) (plain-symbol-text symbol)
+                          (restart-text symbol))
                 :file (file-of-symbol symbol))))
 
 ;;; Which symbols.
@@ -257,31 +263,31 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
         (push symbol found)))
     (sort found #'string<)))
 
-(defun users-symbols ()
+(defun user-symbols ()
   "Return the symbols for users: public symbols, and the exports of ARS-WORLDS and ARS-FIVEAM."
   (remove-duplicates (append (public-symbols :ars) (public-symbols :nisp)
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
                      :from-end t))
 
-(defun named-elsewhere-p (symbol entries)
+(defun has-other-entry-p (symbol entries)
   "True if SYMBOL is only the name of a substance or place type in ENTRIES."
-  (and (null (sorts-of-symbol symbol))
+  (and (null (symbol-kinds symbol))
        (find (symbol-name symbol) entries :key #'entry-name :test #'string-equal)))
 
 (defun symbol-entries (others)
   (let ((told (let ((table (make-hash-table :test 'eq)))
                 (dolist (entry others table)
                   (when (entry-symbol entry) (setf (gethash (entry-symbol entry) table) t))))))
-    (loop for symbol in (users-symbols)
-          unless (or (gethash symbol told) (named-elsewhere-p symbol others))
+    (loop for symbol in (user-symbols)
+          unless (or (gethash symbol told) (has-other-entry-p symbol others))
             collect (symbol-entry symbol))))
 
 ;;; All.
 
 (defun all-entries ()
   "Return all entries of the reference, in the order of their chapters."
-  (let ((entries (append (mapcar #'command-entry (own-commands)) (error-entries)
-                         (mapcar #'line-entry (own-lines)) (parameter-entries)
+  (let ((entries (append (mapcar #'command-entry (simulator-commands)) (error-entries)
+                         (mapcar #'line-entry (simulator-lines)) (parameter-entries)
                          (shipped-entries))))
     (stable-sort (append entries (symbol-entries entries)) #'<
                  :key (lambda (entry)

@@ -59,28 +59,28 @@ it.")
 
 ;;; What is known of symbols.
 
-(defun project-name (path)
+(defun project-file-name (path)
   "Return PATH, a native file name, relative to the project's directory; NIL if it is outside."
-  (let ((root (native-name (root))))
+  (let ((directory (native-name (project-root))))
     (and path
-         (starts-with-subseq root path)
-         (subseq path (length root)))))
+         (starts-with-subseq directory path)
+         (subseq path (length directory)))))
 
 (defun file-of-symbol (symbol)
   "Return the name of the project's file in which SYMBOL is defined, or NIL."
-  (some #'project-name
+  (some #'project-file-name
         (append (when (fboundp symbol)
                   (list (function-file (or (macro-function symbol) (fdefinition symbol)))))
                 (mapcar #'first (files-besides-functions symbol)))))
 
-(defun plain-use (name lambda-list)
+(defun call-as-text (name lambda-list)
   "Return as text a call of the function or macro NAME with LAMBDA-LIST, without package prefixes."
   (let ((*print-case* :downcase) (*print-pretty* nil)
         (*package* (or (and (symbolp name) (symbol-package name)) *package*)))
     (format nil "(~A~{ ~A~})" (string-downcase name)
-            (mapcar #'unqualified-text (without-hidden lambda-list)))))
+            (mapcar #'unqualified-text (visible-parameters lambda-list)))))
 
-(defun without-hidden (lambda-list)
+(defun visible-parameters (lambda-list)
   "Return LAMBDA-LIST without its &whole, &environment and &aux parameters."
   (loop with rest = lambda-list
         while (consp rest)
@@ -90,10 +90,10 @@ it.")
         else collect item into items
         finally (return (append items (and rest (list '&rest rest))))))
 
-(defun text-of-symbol (symbol)
+(defun symbol-documentation (symbol)
   (format nil "~{~A~^~2%~}" (documentation-texts symbol)))
 
-(defun sorts-of-symbol (symbol)
+(defun symbol-kinds (symbol)
   (append (cond ((macro-function symbol) '("macro"))
                 ((not (fboundp symbol)) '())
                 ((typep (fdefinition symbol) 'generic-function) '("generic function"))
@@ -106,7 +106,7 @@ it.")
                   ((subtypep symbol 'condition) '("condition"))
                   (t '("type"))))))
 
-(defun packages-showing (symbol)
+(defun packages-exporting (symbol)
   "Return the names of the users' packages that export the name of SYMBOL."
   (loop for face in '("ARS" "NISP" "ARS-WORLDS" "ARS-FIVEAM")
         when (and (find-package face)
@@ -118,16 +118,16 @@ it.")
           collect face))
 
 (defun symbol-facts (symbol)
-  (let ((sorts (sorts-of-symbol symbol)) (packages (packages-showing symbol)))
+  (let ((sorts (symbol-kinds symbol)) (packages (packages-exporting symbol)))
     (append (when sorts (list (list "Is a" (format nil "~{~A~^, ~}" sorts))))
             (when packages (list (list "Package" (format nil "~{~A~^, ~}" packages)))))))
 
 ;;;; Commands
 
-(defun in-code (name)
+(defun code-markup (name)
   (format nil "`~(~A~)`" name))
 
-(defun heading-of (keyword)
+(defun heading-text (keyword)
   (let ((words (substitute #\Space #\- (string-downcase keyword))))
     (string-upcase words :end 1)))
 
@@ -147,49 +147,49 @@ it.")
   (list "Error codes"
         (format nil "~{~A, ~}~A"
                 (loop for code in (command-errors command)
-                      collect (in-code (format nil ":~A" (error-code-keyword code))))
-                (in-code ":interrupt"))))
+                      collect (code-markup (format nil ":~A" (error-code-keyword code))))
+                (code-markup ":interrupt"))))
 
 (defun plan-function-of (command)
   (multiple-value-bind (symbol status)
       (find-symbol (format nil "RPL-~A" (command-name command)) :nisp)
     (and (eq :external status) symbol)))
 
-(defun elsewhere-facts (command)
-  (append (list (list "At the prompt" (in-code (command-prompt-name command))))
+(defun prompt-and-plan-facts (command)
+  (append (list (list "At the prompt" (code-markup (command-prompt-name command))))
           (when (plan-function-of command)
-            (list (list "In plans" (in-code (plan-function-of command)))))
+            (list (list "In plans" (code-markup (plan-function-of command)))))
           (when (command-section command)
             (list (list "Cited" (format nil "Manual ~A" (command-section command)))))))
 
 (defun command-entry (command)
   (make-entry :name (string-downcase (command-name command)) :chapter :commands
-              :section (heading-of (command-family command)) :symbol (command-name command)
+              :section (heading-text (command-family command)) :symbol (command-name command)
               :use (format nil "(~(~A ~A~{ ~A~}~) [continuation])" (command-name command)
                            (spec-name (command-resource command))
                            (mapcar #'spec-name (command-parameters command)))
               :facts (append (argument-facts (cons (command-resource command)
                                                    (command-parameters command)))
                              (list (result-fact command) (error-fact command))
-                             (elsewhere-facts command))
+                             (prompt-and-plan-facts command))
               :text (format nil "~A The command takes effect in the next tick and returns nothing."
                             (command-documentation command))
               :file (file-of-symbol (command-name command))))
 
-(defun own-commands ()
+(defun simulator-commands ()
   "Return the simulator's own commands, without commands that users have defined."
-  (remove-if-not (lambda (command) (packages-showing (command-name command))) (all-commands)))
+  (remove-if-not (lambda (command) (packages-exporting (command-name command))) (all-commands)))
 
 ;;; Error codes.
 
-(defun error-called (keyword command)
+(defun find-error-code (keyword command)
   (find keyword (command-errors command) :key #'error-code-keyword))
 
 (defun error-entry (keyword commands)
-  (let* ((failing (remove-if-not (lambda (command) (error-called keyword command)) commands))
+  (let* ((failing (remove-if-not (lambda (command) (find-error-code keyword command)) commands))
          (messages (remove-duplicates
                     (loop for command in failing
-                          for text = (error-code-text (error-called keyword command))
+                          for text = (error-code-text (find-error-code keyword command))
                           when (stringp text) collect text)
                     :test #'string=)))
     (make-entry :name (format nil "~(~S~)" keyword) :chapter :error-codes
@@ -198,7 +198,7 @@ it.")
                              (list (list "Message" (format nil "~{~A~^; ~}." messages))))
                          ("Told by" ,(format nil "~{~A~^, ~}"
                                              (mapcar (lambda (command)
-                                                       (in-code (command-name command)))
+                                                       (code-markup (command-name command)))
                                                      failing))))
                 :text (format nil "~@[~A ~]~@[~A ~]The continuation of a command gets this code as ~
                                    its first argument."
@@ -212,7 +212,7 @@ interrupted by taking over its robot, camera, hand or bin, or that was in progre
 run (manual 3.1.1)."))
 
 (defun error-entries ()
-  (let* ((commands (own-commands))
+  (let* ((commands (simulator-commands))
          (keywords (remove-duplicates (loop for command in commands
                                             append (mapcar #'error-code-keyword
                                                            (command-errors command))))))
@@ -224,18 +224,19 @@ run (manual 3.1.1)."))
 
 (defun line-entry (line)
   (make-entry :name (string-downcase (line-name line)) :chapter :prompt
-              :section (heading-of (line-family line)) :use (usage line)
+              :section (heading-text (line-family line)) :use (usage line)
               :facts (append (when (line-full-name line)
                                (list (list "Stands for"
-                                           (in-code (line-full-name line)))))
+                                           (code-markup (line-full-name line)))))
                              (mapcar (lambda (slot) (list "" (line-parameter-help slot)))
                                      (line-parameters line))
                              (mapcar (lambda (detail) (list "" detail)) (line-details line)))
               :text (line-sentence line)
-              :file (project-name (function-file (line-action line)))))
+              :file (project-file-name (function-file (line-action line)))))
 
-(defun own-lines ()
+(defun simulator-lines ()
   "Return the prompt's own lines, without lines for commands that users have defined."
-  (let ((others (mapcar #'command-prompt-name (set-difference (all-commands) (own-commands)))))
+  (let ((others (mapcar #'command-prompt-name
+                        (set-difference (all-commands) (simulator-commands)))))
     (remove-if (lambda (line) (member (line-name line) others :test #'string-equal))
                (all-lines))))

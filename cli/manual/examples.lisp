@@ -33,20 +33,20 @@ be variables of the block. ID is the id of the heading above the block."
          (end (or (position-if #'name-end-p code :start start) (length code))))
     (string-downcase (subseq code start end))))
 
-(defun names-alone (tokens)
+(defun names-of-code-only (tokens)
   "Return the names in TOKENS, a heading or paragraph; NIL if TOKENS contain other text."
-  (flet ((code-p (token) (tag-called-p "code" token)))
-    (loop for part in (parts-of (rest (butlast tokens)) #'code-p)
-          if (code-p (first part)) collect (first-name (text-of part))
+  (flet ((code-p (token) (tag-named-p "code" token)))
+    (loop for part in (split-into-elements (rest (butlast tokens)) #'code-p)
+          if (code-p (first part)) collect (first-name (html-text part))
           else unless (string= "" (string-trim '(#\Space #\, #\Newline) (first part)))
             do (return nil))))
 
 (defun name-in-bold (tokens)
   "Return the name in TOKENS, a bold element; NIL if the element contains more than one piece of
 code."
-  (when (tag-called-p "code" (second tokens))
-    (multiple-value-bind (element left) (element-at (rest tokens))
-      (when (null (rest left)) (first-name (text-of element))))))
+  (when (tag-named-p "code" (second tokens))
+    (multiple-value-bind (element left) (split-element (rest tokens))
+      (when (null (rest left)) (first-name (html-text element))))))
 
 ;;; Names in blocks.
 
@@ -57,25 +57,25 @@ code."
          (package-p (and colon (< start colon))))
     (values (string-downcase (subseq text (if package-p (1+ colon) start) end)) end)))
 
-(defun text-end (text start)
+(defun string-or-comment-end (text start)
   "Return the end of the string or comment in TEXT that begins at START; NIL if none begins there."
   (case (char text start)
     (#\" (let ((end (position #\" text :start (1+ start)))) (if end (1+ end) (length text))))
     (#\; (or (position #\Newline text :start start) (length text)))))
 
-(defun map-names (function text)
+(defun call-with-each-name (function text)
   "Call FUNCTION with name, start and end of each name in TEXT, Lisp code, outside strings and
 comments."
   (loop with i = 0
         while (< i (length text))
-        do (let ((skipped (text-end text i)))
+        do (let ((skipped (string-or-comment-end text i)))
              (cond (skipped (setf i skipped))
                    ((or (name-end-p (char text i)) (char= #\# (char text i))) (incf i))
                    (t (multiple-value-bind (name end) (name-at text i)
                         (funcall function name i end)
                         (setf i end)))))))
 
-(defun call-p (name text start)
+(defun global-name-p (name text start)
   "True if NAME, in TEXT at START, cannot be a variable of TEXT: NAME is called or quoted, or looks
 like a name of the simulator."
   (or (find #\- name :start (min 1 (length name)))
@@ -83,15 +83,15 @@ like a name of the simulator."
       (char= #\: (char text start))
       (and (plusp start) (find (char text (1- start)) "('"))))
 
-(defun lisp-names (text &optional (test (constantly t)))
+(defun names-in-lisp (text &optional (test (constantly t)))
   "Return the names in TEXT, Lisp code, each once. TEST is a predicate of a name, TEXT and its
 start."
   (let ((names '()))
-    (map-names (lambda (name start end)
-                 (declare (ignore end))
-                 (when (funcall test name text start)
-                   (pushnew name names :test #'string=)))
-               text)
+    (call-with-each-name (lambda (name start end)
+                           (declare (ignore end))
+                           (when (funcall test name text start)
+                             (pushnew name names :test #'string=)))
+                         text)
     (nreverse names)))
 
 (defparameter *prompt* "Robot> " "The prompt before what is typed in a session.")
@@ -108,66 +108,67 @@ start."
   (let ((class (attribute-value "class" (second element))))
     (and class (starts-with-subseq "language-" class) (subseq class (length "language-")))))
 
-(defun example-in (element page heading names)
+(defun make-block-example (element page heading names)
   "Return an example of NAMES made from ELEMENT, a block of code on PAGE under HEADING, a list
 (level id text). NIL if ELEMENT is neither Lisp nor a session."
-  (let* ((text (text-of element))
+  (let* ((text (html-text element))
          (lisp-p (equal "lisp" (block-language element))))
     (when (or lisp-p (search *prompt* text))
       (make-example :page page :id (second heading) :heading (third heading) :text text
                     :lisp-p lisp-p :names names
-                    :words (if lisp-p (lisp-names text) (typed-names text))
-                    :calls (if lisp-p (lisp-names text #'call-p) '())))))
+                    :words (if lisp-p (names-in-lisp text) (typed-names text))
+                    :calls (if lisp-p (names-in-lisp text #'global-name-p) '())))))
 
-(defstruct (walk (:copier nil))
+(defstruct (example-search (:conc-name search-) (:constructor make-example-search) (:copier nil))
   "The state of a search for examples on PAGE. HEADING, a list (level id text), is the last heading.
-NAMES are the last names; USED-P is true if a block has followed these names. EXAMPLES are the
-examples found, the last first."
+NAMES are the last names that the page has introduced; USED-P is true if a block has followed these
+names. EXAMPLES are the examples found, the last first."
   (page nil :type page :read-only t)
   (heading '() :type list)
   (names '() :type list)
   (used-p nil :type boolean)
   (examples '() :type list))
 
-(defun take-names (walk names &key keep)
+(defun set-names (state names &key keep)
   "Let the following blocks be examples of NAMES. If KEEP, keep names that no block has followed
 yet."
   (when names
-    (setf (walk-names walk) (if (and keep (not (walk-used-p walk)))
-                                (append (walk-names walk) names)
-                                names)
-          (walk-used-p walk) nil)))
+    (setf (search-names state) (if (and keep (not (search-used-p state)))
+                                   (append (search-names state) names)
+                                   names)
+          (search-used-p state) nil)))
 
-(defun pass-heading (walk element)
-  (setf (walk-heading walk) (list (heading-level (first element))
-                                  (attribute-value "id" (first element))
-                                  (text-of element))
-        (walk-names walk) '()
-        (walk-used-p walk) nil)
-  (take-names walk (names-alone element)))
+(defun visit-heading (state element)
+  (setf (search-heading state) (list (heading-level (first element))
+                                     (attribute-value "id" (first element))
+                                     (html-text element))
+        (search-names state) '()
+        (search-used-p state) nil)
+  (set-names state (names-of-code-only element)))
 
-(defun pass-block (walk element)
-  (let ((example (example-in element (walk-page walk) (walk-heading walk) (walk-names walk))))
-    (setf (walk-used-p walk) t)
-    (when example (push example (walk-examples walk)))))
+(defun visit-block (state element)
+  (let ((example (make-block-example element (search-page state) (search-heading state)
+                                     (search-names state))))
+    (setf (search-used-p state) t)
+    (when example (push example (search-examples state)))))
 
 (defun names-in-bold (tokens)
   (loop for rest on tokens
-        for name = (and (tag-called-p "strong" (first rest))
-                        (name-in-bold (element-at rest)))
+        for name = (and (tag-named-p "strong" (first rest))
+                        (name-in-bold (split-element rest)))
         when name collect name))
 
 (defun examples-of-page (page)
   "Return the examples on PAGE, in order. Names in sequence share the blocks that follow."
-  (let ((walk (make-walk :page page :heading (list 1 "" (page-title page)))))
+  (let ((state (make-example-search :page page :heading (list 1 "" (page-title page)))))
     (flet ((wanted-p (token)
              (or (heading-level token) (member (tag-name token) '("p" "pre") :test #'equal))))
-      (dolist (part (parts-of (page-tokens page) #'wanted-p))
-        (cond ((heading-level (first part)) (pass-heading walk part))
-              ((tag-called-p "pre" (first part)) (pass-block walk part))
-              ((tag-called-p "p" (first part))
-               (take-names walk (or (names-alone part) (names-in-bold part)) :keep t)))))
-    (reverse (walk-examples walk))))
+      (dolist (part (split-into-elements (page-tokens page) #'wanted-p))
+        (cond ((heading-level (first part)) (visit-heading state part))
+              ((tag-named-p "pre" (first part)) (visit-block state part))
+              ((tag-named-p "p" (first part))
+               (set-names state (or (names-of-code-only part) (names-in-bold part)) :keep t)))))
+    (reverse (search-examples state))))
 
 (defun read-examples (pages)
   "Return all examples on PAGES."
@@ -178,7 +179,7 @@ yet."
 (defparameter *longest-example* 30
   "The largest number of lines of a block that is shown for a name which merely occurs there.")
 
-(defun words-of-kind (example kind)
+(defun names-of-kind (example kind)
   "Return the names in EXAMPLE of KIND: :TYPED at the prompt, :CALLED in Lisp, or :WRITTEN in Lisp."
   (ecase kind
     (:typed (if (example-lisp-p example) '() (example-words example)))
@@ -187,7 +188,7 @@ yet."
 
 (defun examples-for (name kind examples)
   "Return those of EXAMPLES that are about NAME, a string, and true. If there are none, return a
-list of the shortest example that has NAME among its WORDS-OF-KIND for KIND, and NIL."
+list of the shortest example that has NAME among its NAMES-OF-KIND for KIND, and NIL."
   (flet ((having (reader)
            (remove-if-not (lambda (example)
                             (member name (funcall reader example) :test #'string=))
@@ -195,7 +196,7 @@ list of the shortest example that has NAME among its WORDS-OF-KIND for KIND, and
     (let ((named (having #'example-names)))
       (if named
           (values named t)
-          (let ((using (having (lambda (example) (words-of-kind example kind)))))
+          (let ((using (having (lambda (example) (names-of-kind example kind)))))
             (values (and using
                          (list (first (sort (copy-list using) #'<
                                             :key (lambda (example)

@@ -58,14 +58,14 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
   "Lists (source file title part) of pages. All other README.md files are pages, too, and are titled
 by their headings.")
 
-(defun root () (asdf:system-relative-pathname "ars-magna" ""))
+(defun project-root () (asdf:system-relative-pathname "ars-magna" ""))
 
 (defun project-path (name)
-  (merge-pathnames (native-path name) (root)))
+  (merge-pathnames (native-path name) (project-root)))
 
-(defun found-readmes ()
+(defun find-readmes ()
   (sort (loop for folder in '("src/" "rpl/" "worlds/" "cli/" "tests/")
-              append (mapcar (lambda (path) (enough-namestring path (root)))
+              append (mapcar (lambda (path) (enough-namestring path (project-root)))
                              (directory (merge-pathnames "**/README.md" (project-path folder)))))
         #'string<))
 
@@ -75,7 +75,7 @@ README.md files."
   (let ((known (remove-if-not (lambda (name) (existing-path (project-path name)))
                               (mapcar #'first *known-pages*))))
     (append known (remove-if (lambda (name) (member name known :test #'string=))
-                             (found-readmes)))))
+                             (find-readmes)))))
 
 (defun known-page (source)
   (rest (assoc source *known-pages* :test #'string=)))
@@ -88,7 +88,7 @@ README.md files."
           ((starts-with-subseq "tests/" source) :inside)
           (t :guide))))
 
-(defun file-for (source)
+(defun html-file-name (source)
   "Return the name of the HTML file for the page SOURCE: src-run.html for src/run/README.md."
   (or (first (known-page source))
       (format nil "~A.html" (substitute #\- #\/ (subseq source 0 (search "/README.md" source))))))
@@ -103,15 +103,15 @@ README.md files."
          (char= #\h (char name 0))
          (digit-char-p (char name 1)))))
 
-(defun with-anchors (tokens)
+(defun add-anchors (tokens)
   "Return TOKENS with a unique id in each heading."
   (let ((counts (make-hash-table :test #'equal)))
     (loop for rest on tokens
           for token = (first rest)
           collect (if (heading-level token)
-                      (let* ((slug (slug (text-of (element-at rest))))
-                             (count (1- (incf (gethash slug counts 0)))))
-                        (with-attribute "id" (format nil "~A~[~:;-~:*~D~]" slug count) token))
+                      (let* ((id (heading-id (html-text (split-element rest))))
+                             (count (1- (incf (gethash id counts 0)))))
+                        (set-tag-attribute "id" (format nil "~A~[~:;-~:*~D~]" id count) token))
                       token))))
 
 (defun headings (tokens)
@@ -120,42 +120,42 @@ heading."
   (loop for rest on tokens
         for token = (first rest)
         when (and (heading-level token) (attribute-value "id" token))
-          collect (let* ((heading (element-at rest))
+          collect (let* ((heading (split-element rest))
                          (below (nthcdr (length heading) rest)))
                     (list (heading-level token)
                           (attribute-value "id" token)
-                          (text-of heading)
-                          (text-of (subseq below 0 (position-if #'heading-level below)))))))
+                          (html-text heading)
+                          (html-text (subseq below 0 (position-if #'heading-level below)))))))
 
 (defun mark-readings (tokens)
   "Return TOKENS, the page of readings, with an id such as reading-12 where each reading begins."
   (loop for (token next) on tokens
-        for number = (and (tag-called-p "strong" token) next
+        for number = (and (tag-named-p "strong" token) next
                           (parse-integer next :junk-allowed t))
         collect (if number
-                    (with-attribute "id" (format nil "reading-~D" number) token)
+                    (set-tag-attribute "id" (format nil "reading-~D" number) token)
                     token)))
 
 ;;; The usage texts together are one page.
 
-(defparameter *usages*
+(defparameter *usage-files*
   '(("ars-magna" "usage.txt") ("ars-magna experiment" "usage-experiment.txt")
     ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt"))
   "Lists (command file): the option --help of the command prints the file.")
 
-(defun markdown-of (source)
+(defun page-markdown (source)
   (if (string= source "cli/shell/usage.txt")
       (format nil "# Options of the command~%~%What `--help` prints.~%~%~
                    ~:{## ~A~%~%```text~%~A~%```~%~%~}"
-              (loop for (command file) in *usages*
+              (loop for (command file) in *usage-files*
                     collect (list command
                                   (file-text (project-path (format nil "cli/shell/~A" file))))))
       (file-text (project-path source))))
 
 (defun read-page (source)
-  (let* ((tokens (with-anchors (html-tokens (markdown-html (markdown-of source)))))
+  (let* ((tokens (add-anchors (html-tokens (markdown-html (page-markdown source)))))
          (first (find 1 (headings tokens) :key #'first)))
-    (make-page :source source :file (file-for source)
+    (make-page :source source :file (html-file-name source)
                :title (or (second (known-page source)) (third first) source)
                :tokens (if (string= source "src/readings.md") (mark-readings tokens) tokens))))
 

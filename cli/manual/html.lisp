@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.manual)
 
-(export '(escaped anchor html-tokens tag-p tag-name attribute-value))
+(export '(escape-html anchor html-tokens tag-p tag-name attribute-value))
 
-(defun escaped (text)
+(defun escape-html (text)
   "Return TEXT escaped for HTML, between tags or in an attribute's double quotes."
   (with-output-to-string (out) (write-xml-text text out)))
 
@@ -16,7 +16,7 @@
                     (string= (cdr entity) html :start2 position :end2 end))))
            *entities*))
 
-(defun unescaped (html)
+(defun unescape-html (html)
   "Return HTML, which has no tags, as text: with characters in place of entities."
   (with-output-to-string (out)
     (loop with i = 0
@@ -43,7 +43,7 @@ of an id needs escaping in addresses."
                  (write-char char out)
                  (format out "_~(~2,'0X~)" (char-code char))))))
 
-(defun slug (heading)
+(defun heading-id (heading)
   "Return the id of HEADING, a text, on its page. Sites that show Markdown make the same id."
   (substitute #\- #\Space
               (remove-if-not (lambda (char)
@@ -85,7 +85,7 @@ of an id needs escaping in addresses."
   (and (tag-p token)
        (subseq token 1 (position-if (lambda (char) (find char " >")) token))))
 
-(defun tag-called-p (name token)
+(defun tag-named-p (name token)
   (equal name (tag-name token)))
 
 (defun attribute-value (attribute tag)
@@ -94,40 +94,40 @@ of an id needs escaping in addresses."
          (start (search mark tag)))
     (when start
       (let ((start (+ start (length mark))))
-        (unescaped (subseq tag start (position #\" tag :start start)))))))
+        (unescape-html (subseq tag start (position #\" tag :start start)))))))
 
-(defun with-attribute (attribute value tag)
+(defun set-tag-attribute (attribute value tag)
   "Return TAG with its ATTRIBUTE set to VALUE."
   (let* ((mark (format nil " ~A=\"" attribute))
          (start (search mark tag))
          (end (if start
                   (1+ (position #\" tag :start (+ start (length mark))))
                   (position-if (lambda (char) (find char " />")) tag :start 1))))
-    (format nil "~A~A~A\"~A" (subseq tag 0 (or start end)) mark (escaped value)
+    (format nil "~A~A~A\"~A" (subseq tag 0 (or start end)) mark (escape-html value)
             (subseq tag end))))
 
-(defun element-at (tokens)
+(defun split-element (tokens)
   "Return the tokens of the first element in TOKENS, including its tags, and the remaining tokens."
   (let ((name (tag-name (first tokens))))
     (loop with depth = 0
           for rest on tokens
           for token = (first rest)
-          do (cond ((tag-called-p name token) (incf depth))
-                   ((tag-called-p (format nil "/~A" name) token) (decf depth)))
+          do (cond ((tag-named-p name token) (incf depth))
+                   ((tag-named-p (format nil "/~A" name) token) (decf depth)))
           collect token into element
           until (zerop depth)
           finally (return (values element (rest rest))))))
 
-(defun parts-of (tokens whole-p)
+(defun split-into-elements (tokens whole-p)
   "Divide TOKENS into lists: an element whose first tag satisfies WHOLE-P is a list, as is each
 other token."
   (loop with rest = tokens
         while rest
         collect (if (funcall whole-p (first rest))
-                    (multiple-value-bind (element left) (element-at rest)
+                    (multiple-value-bind (element left) (split-element rest)
                       (setf rest left)
                       element)
                     (list (pop rest)))))
 
-(defun text-of (tokens)
-  (unescaped (format nil "~{~A~}" (remove-if #'tag-p tokens))))
+(defun html-text (tokens)
+  (unescape-html (format nil "~{~A~}" (remove-if #'tag-p tokens))))

@@ -12,22 +12,22 @@ names in lower case to entries. FILES are the project's files to copy beside the
   (files '() :type list))
 
 (defun table-of-entries (entries)
-  "Return a hash table from names to ENTRIES. Of several entries with the same name, it has the
-first."
+  "Return a hash table from names to ENTRIES. Of several entries with the same name, the table has
+the first."
   (let ((table (make-hash-table :test #'equal)))
     (dolist (entry entries table)
       (unless (gethash (entry-key entry) table)
         (setf (gethash (entry-key entry) table) entry)))))
 
-(defun entry-called (name book)
+(defun find-entry-named (name book)
   (values (gethash (string-downcase name) (book-table book))))
 
-(defun page-of-source (source book)
+(defun find-page (source book)
   (find source (book-pages book) :key #'page-source :test #'string=))
 
 ;;; Addresses. Pages of the project refer to other pages, or to files that are copied.
 
-(defun without-dots (name)
+(defun resolve-dots (name)
   "Return NAME, a file name, with . and .. resolved."
   (let ((parts '()))
     (dolist (part (uiop:split-string name :separator "/"))
@@ -36,7 +36,7 @@ first."
             (t (push part parts))))
     (format nil "~{~A~^/~}" (reverse parts))))
 
-(defun copied-name (name)
+(defun copy-name (name)
   "Return the name of the manual's copy of the project's file NAME. If browsers cannot show the
 file, the copy has the type txt."
   (format nil "files/~A~:[.txt~;~]" name
@@ -46,12 +46,12 @@ file, the copy has the type txt."
   "Return the address of the manual's copy of the project's file NAME. If NAME is a directory,
 return the address of its page, or of the first page."
   (if (uiop:directory-exists-p (project-path (format nil "~A/" name)))
-      (let ((page (page-of-source (format nil "~A/README.md" name) book)))
+      (let ((page (find-page (format nil "~A/README.md" name) book)))
         (if page (page-file page) "index.html"))
       (progn (pushnew name (book-files book) :test #'string=)
-             (copied-name name))))
+             (copy-name name))))
 
-(defun new-address (address page book)
+(defun manual-address (address page book)
   "Return the address in the manual for ADDRESS, a link on PAGE in the project."
   (multiple-value-bind (file place) (let ((mark (or (position #\# address) (length address))))
                                       (values (subseq address 0 mark) (subseq address mark)))
@@ -59,72 +59,74 @@ return the address of its page, or of the first page."
           ((string= "" file) place)
           (t (let* ((source (page-source page))
                     (folder (subseq source 0 (or (position #\/ source :from-end t) 0)))
-                    (name (without-dots (format nil "~A/~A" folder file)))
-                    (other (page-of-source name book)))
+                    (name (resolve-dots (format nil "~A/~A" folder file)))
+                    (other (find-page name book)))
                (format nil "~A~A" (if other (page-file other) (file-address name book))
                        place))))))
 
 ;;; Links from names.
 
-(defun link (address html)
-  (format nil "<a href=\"~A\">~A</a>" (escaped address) html))
+(defun link-html (address html)
+  (format nil "<a href=\"~A\">~A</a>" (escape-html address) html))
 
-(defun linked-name (name html book)
-  (let ((entry (entry-called name book)))
-    (if entry (link (entry-address entry) html) html)))
+(defun link-name (name html book)
+  (let ((entry (find-entry-named name book)))
+    (if entry (link-html (entry-address entry) html) html)))
 
 (defparameter *chapters-of-lisp*
   '(:commands :parameters :definers :constructs :plan-functions :fluents :conditions :names :plans)
   "The chapters whose names are linked in Lisp code.")
 
-(defun linked-lisp (text book)
+(defun lisp-html (text book)
   "Return TEXT, Lisp code, as HTML with names linked to their entries."
   (with-output-to-string (out)
     (let ((done 0))
       (flet ((copy-to (end)
-               (write-string (escaped (subseq text done end)) out)
+               (write-string (escape-html (subseq text done end)) out)
                (setf done end)))
-        (map-names (lambda (name start end)
-                     (let ((entry (and (call-p name text start) (entry-called name book))))
-                       (when (and entry (member (entry-chapter entry) *chapters-of-lisp*))
-                         (copy-to start)
-                         (write-string (link (entry-address entry)
-                                             (escaped (subseq text start end)))
-                                       out)
-                         (setf done end))))
-                   text)
+        (call-with-each-name (lambda (name start end)
+                               (let ((entry (and (global-name-p name text start)
+                                                 (find-entry-named name book))))
+                                 (when (and entry (member (entry-chapter entry) *chapters-of-lisp*))
+                                   (copy-to start)
+                                   (write-string (link-html (entry-address entry)
+                                                            (escape-html (subseq text start end)))
+                                                 out)
+                                   (setf done end))))
+                             text)
         (copy-to (length text))))))
 
 ;;;; Links
 
 ;;; Pages of the guide.
 
-(defun linked-tokens (tokens page book)
+(defun link-tokens (tokens page book)
   "Return TOKENS, of PAGE, with links changed to addresses in the manual and names linked to
 entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
-    (loop for part in (parts-of tokens #'linked-p)
+    (loop for part in (split-into-elements tokens #'linked-p)
           for token = (first part)
-          append (cond ((and (tag-called-p "pre" token) (equal "lisp" (block-language part)))
-                        (list "<pre><code>" (linked-lisp (text-of part) book) "</code></pre>"))
-                       ((tag-called-p "pre" token) part)
-                       ((tag-called-p "code" token)
-                        (list (linked-name (first-name (text-of part)) (format nil "~{~A~}" part)
-                                           book)))
-                       ((tag-called-p "a" token) (linked-anchor part page book))
+          append (cond ((and (tag-named-p "pre" token) (equal "lisp" (block-language part)))
+                        (list "<pre><code>" (lisp-html (html-text part) book) "</code></pre>"))
+                       ((tag-named-p "pre" token) part)
+                       ((tag-named-p "code" token)
+                        (list (link-name (first-name (html-text part)) (format nil "~{~A~}" part)
+                                         book)))
+                       ((tag-named-p "a" token) (link-with-manual-address part page book))
                        (t (list (rewrite-picture-address token page book)))))))
 
-(defun linked-anchor (element page book)
+(defun link-with-manual-address (element page book)
   "Return the tokens of ELEMENT, a link on PAGE, with its address changed to the one in the manual."
-  (cons (with-attribute "href" (new-address (attribute-value "href" (first element)) page book)
-          (first element))
+  (cons (set-tag-attribute "href"
+                           (manual-address (attribute-value "href" (first element)) page book)
+                           (first element))
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
   "Return TOKEN. If TOKEN is a picture on PAGE, its address is changed to that of the manual's
 copy."
-  (if (tag-called-p "img" token)
-      (with-attribute "src" (new-address (attribute-value "src" token) page book) token)
+  (if (tag-named-p "img" token)
+      (set-tag-attribute "src" (manual-address (attribute-value "src" token) page book) token)
       token))
 
 ;;; Prose of docstrings: names are in capitals, or in backquotes where the manual adds text.
@@ -138,7 +140,7 @@ copy."
 to."
   (let ((number (parse-integer next :junk-allowed t)))
     (cond ((string-equal "reading" word)
-           (and number (page-of-source "src/readings.md" book)
+           (and number (find-page "src/readings.md" book)
                 (format nil "readings.html#reading-~D" number)))
           ((string-equal "manual" word)
            (and (or number (and (string/= "" next) (find (char next 0) "ABCDEF")))
@@ -162,19 +164,19 @@ to."
                 (or (and (some #'alpha-char-p name) (notany #'lower-case-p name))
                     (char= #\: (char name 0)))
                 (not (member name own :test #'string-equal)))
-           (format nil "~A~A" (linked-name name (escaped name) book)
-                   (escaped (subseq word (length name)))))
-          (t (escaped word)))))
+           (format nil "~A~A" (link-name name (escape-html name) book)
+                   (escape-html (subseq word (length name)))))
+          (t (escape-html word)))))
 
 (defun line-html (line book &optional own)
   "Return the HTML of LINE, prose without backquotes. OWN is as for WORD-HTML."
   (with-output-to-string (out)
     (loop for (gap word next-gap next) on (words-and-gaps line) by #'cddr
-          do (write-string (escaped gap) out)
+          do (write-string (escape-html gap) out)
              (when word
                (let ((address (and (equal " " next-gap) next (citation-address word next book))))
                  (write-string (if address
-                                   (link address (escaped word))
+                                   (link-html address (escape-html word))
                                    (word-html word book own))
                                out))))))
 
@@ -184,8 +186,8 @@ to."
     (loop for part in (uiop:split-string text :separator "`")
           for code-p = nil then (not code-p)
           do (write-string (if code-p
-                               (linked-name part (format nil "<code>~A</code>" (escaped part))
-                                            book)
+                               (link-name part (format nil "<code>~A</code>" (escape-html part))
+                                          book)
                                (line-html part book own))
                            out))))
 

@@ -98,8 +98,8 @@
     ("step-plan" "single step" "stepper" "step through")
     ("Checks in FiveAM" "unit test" "testing" "regression test" "assertion")
     ("In an editor" "emacs" "slime" "sly" "ide" "vim" "vscode" "editor"))
-  "Lists (name synonym...). A search for a synonym shows the entry or heading of that name first.
-Leave out a, an, the and my: the search ignores them.")
+  "Lists (name synonym...). A search for a synonym shows the entry or heading with the name first.
+Synonyms leave out a, an, the and my, because the search ignores these words.")
 
 (defstruct (row (:constructor make-row (name kind address sentence &optional (words "")))
                 (:copier nil))
@@ -111,7 +111,7 @@ searched as well as NAME."
   (sentence "" :type string :read-only t)
   (words "" :type string :read-only t))
 
-(defun words-of (text)
+(defun distinct-words (text)
   "Return the words of TEXT, each once, in lower case and without punctuation around them."
   (remove-duplicates
    (loop for word in (uiop:split-string (string-downcase text)
@@ -125,7 +125,7 @@ searched as well as NAME."
   (loop for (nil id text words) in (headings (page-tokens page))
         collect (make-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
                           (if (member (page-part page) '(:learning :guide))
-                              (format nil "~{~A~^ ~}" (words-of words))
+                              (format nil "~{~A~^ ~}" (distinct-words words))
                               ""))))
 
 (defun entry-row (entry)

@@ -6,12 +6,12 @@
 
 (defparameter *version* (asdf:component-version (asdf:find-system "ars-magna")))
 
-(defparameter *ways*
+(defparameter *top-links*
   '(("index.html" "Contents") ("introduction.html" "Introduction") ("tutorial.html" "Tutorial")
     ("reference.html" "Reference") ("names.html" "All names") ("about.html" "About"))
   "Lists (file title): the links at the top of each page.")
 
-(defun write-frame (out title body)
+(defun write-page-frame (out title body)
   "Write to OUT an HTML page with TITLE and BODY. The page uses only files in its own directory."
   (format out "<!DOCTYPE html>
 <html lang=\"en\">
@@ -35,7 +35,7 @@
 </body>
 </html>
 "
-          (escaped title) *ways* body *version*))
+          (escape-html title) *top-links* body *version*))
 
 (defun list-html (items)
   (format nil "<ul>~%~{<li>~A</li>~%~}</ul>~%" items))
@@ -48,37 +48,38 @@
         ""
         (format nil "<nav class=\"contents\">~%~A</nav>~%"
                 (list-html (loop for (nil id text) in headings
-                                 collect (link (format nil "#~A" id) (escaped text))))))))
+                                 collect (link-html (format nil "#~A" id) (escape-html text))))))))
 
 (defun write-guide-page (out page book)
-  (write-frame out (page-title page)
-               (format nil "~A~{~A~}~%<p class=\"source\">From <code>~A</code>.</p>"
-                       (contents-html page) (linked-tokens (page-tokens page) page book)
-                       (escaped (page-source page)))))
+  (write-page-frame out (page-title page)
+                    (format nil "~A~{~A~}~%<p class=\"source\">From <code>~A</code>.</p>"
+                            (contents-html page) (link-tokens (page-tokens page) page book)
+                            (escape-html (page-source page)))))
 
 ;;; The first page.
 
 (defun page-links (part book)
   (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
-                   collect (link (page-file page) (escaped (page-title page))))))
+                   collect (link-html (page-file page) (escape-html (page-title page))))))
 
 (defun chapters-in (book)
   (remove-if-not (lambda (chapter) (find chapter (book-entries book) :key #'entry-chapter))
                  (mapcar #'first *chapters*)))
 
-(defun entries-in (chapter book)
+(defun entries-in-chapter (chapter book)
   (remove chapter (book-entries book) :key #'entry-chapter :test-not #'eq))
 
 (defun chapter-links (book)
   (list-html (loop for chapter in (chapters-in book)
                    collect (format nil "~A (~D): ~A"
-                                   (link (chapter-file chapter) (escaped (chapter-title chapter)))
-                                   (length (entries-in chapter book))
-                                   (escaped (chapter-introduction chapter))))))
+                                   (link-html (chapter-file chapter)
+                                              (escape-html (chapter-title chapter)))
+                                   (length (entries-in-chapter chapter book))
+                                   (escape-html (chapter-introduction chapter))))))
 
 (defun write-first-page (out book)
-  (write-frame out "Contents"
-               (format nil "<h1>ARS MAGNA</h1>
+  (write-page-frame out "Contents"
+                    (format nil "<h1>ARS MAGNA</h1>
 <p>An abstract robot simulator for people who build reactive planners.</p>
 <h2 id=\"learn\">Learn</h2>~%~A
 <h2 id=\"guide\">Guide</h2>~%~A
@@ -86,33 +87,34 @@
 <h2 id=\"reference\">Reference</h2>~%~A
 <p>~A lists all names.</p>
 <h2 id=\"inside\">Inside</h2>~%~A"
-                       (page-links :learning book) (page-links :guide book)
-                       (page-links :examples book) (chapter-links book)
-                       (link "names.html" "All names")
-                       (format nil "~A~A" (page-links :inside book) (page-links :about book)))))
+                            (page-links :learning book) (page-links :guide book)
+                            (page-links :examples book) (chapter-links book)
+                            (link-html "names.html" "All names")
+                            (format nil "~A~A" (page-links :inside book)
+                                    (page-links :about book)))))
 
 ;;;; The reference
 
 (defun fact-html (fact book)
   (destructuring-bind (label text) fact
-    (format nil "~@[<strong>~A:</strong> ~]~A" (and (string/= "" label) (escaped label))
+    (format nil "~@[<strong>~A:</strong> ~]~A" (and (string/= "" label) (escape-html label))
             (prose-html text book))))
 
 ;;; Examples.
 
-(defun from-html (example)
-  (link (format nil "~A#~A" (page-file (example-page example)) (example-id example))
-        (escaped (format nil "~A: ~A" (page-title (example-page example))
-                         (example-heading example)))))
+(defun source-link-html (example)
+  (link-html (format nil "~A#~A" (page-file (example-page example)) (example-id example))
+             (escape-html (format nil "~A: ~A" (page-title (example-page example))
+                                  (example-heading example)))))
 
 (defun example-html (example book)
   (format nil "<pre class=\"example\"><code>~A</code></pre>~%<p class=\"from\">~A</p>~%"
           (if (example-lisp-p example)
-              (linked-lisp (example-text example) book)
-              (escaped (example-text example)))
-          (from-html example)))
+              (lisp-html (example-text example) book)
+              (escape-html (example-text example)))
+          (source-link-html example)))
 
-(defun shown-p (example named-p)
+(defun show-in-full-p (example named-p)
   "True if EXAMPLE is to be shown in full. NAMED-P is true if the example names its entry."
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
@@ -129,12 +131,12 @@
   (multiple-value-bind (examples named-p) (examples-of-entry entry (book-examples book))
     (format nil "~{~A~}"
             (loop for example in examples
-                  collect (if (shown-p example named-p)
+                  collect (if (show-in-full-p example named-p)
                               (example-html example book)
                               (format nil "<p class=\"from\">Used in ~A.</p>~%"
-                                      (from-html example)))))))
+                                      (source-link-html example)))))))
 
-(defparameter *about-examples*
+(defparameter *note-on-examples*
   "A link leads from each example to its page. Definitions that the example uses are further up on
 that page."
   "A note on examples, shown in each chapter of the reference.")
@@ -144,9 +146,9 @@ that page."
 (defun entry-html (entry book)
   (format nil "<section id=\"~A\">~%<h3>~A</h3>~%~@[<p class=\"use\"><code>~A</code></p>~%~]~A~A~A~
                ~@[<p class=\"from\">~A</p>~]~%</section>~%"
-          (anchor (entry-name entry)) (escaped (entry-name entry))
-          (and (string/= (entry-use entry) (entry-name entry)) (escaped (entry-use entry)))
-          (docstring-html (entry-text entry) book (lisp-names (entry-use entry)))
+          (anchor (entry-name entry)) (escape-html (entry-name entry))
+          (and (string/= (entry-use entry) (entry-name entry)) (escape-html (entry-use entry)))
+          (docstring-html (entry-text entry) book (names-in-lisp (entry-use entry)))
           (if (entry-facts entry)
               (list-html (mapcar (lambda (fact) (fact-html fact book)) (entry-facts entry)))
               "")
@@ -156,52 +158,54 @@ that page."
 (defun section-html (section entries book)
   (format nil "~@[~A~]~A~{~A~}"
           (and (string/= "" section)
-               (format nil "<h2 id=\"section-~A\">~A</h2>~%" (anchor section) (escaped section)))
+               (format nil "<h2 id=\"section-~A\">~A</h2>~%"
+                       (anchor section) (escape-html section)))
           (format nil "<p class=\"names\">~{~A~^, ~}</p>~%"
                   (mapcar (lambda (entry)
-                            (link (format nil "#~A" (anchor (entry-name entry)))
-                                  (escaped (entry-name entry))))
+                            (link-html (format nil "#~A" (anchor (entry-name entry)))
+                                       (escape-html (entry-name entry))))
                           entries))
           (mapcar (lambda (entry) (entry-html entry book)) entries)))
 
 (defun write-chapter (out chapter book)
-  (let ((entries (entries-in chapter book)))
-    (write-frame out (chapter-title chapter)
-                 (format nil "<h1>~A</h1>~%<p>~A</p>~%<p>~A</p>~%~{~A~}"
-                         (escaped (chapter-title chapter))
-                         (escaped (chapter-introduction chapter))
-                         (escaped *about-examples*)
-                         (loop for section in (remove-duplicates (mapcar #'entry-section entries)
-                                                                 :test #'string= :from-end t)
-                               collect (section-html
-                                        section
-                                        (remove section entries :key #'entry-section
-                                                                :test-not #'string=)
-                                        book))))))
+  (let ((entries (entries-in-chapter chapter book)))
+    (write-page-frame out (chapter-title chapter)
+                      (format nil "<h1>~A</h1>~%<p>~A</p>~%<p>~A</p>~%~{~A~}"
+                              (escape-html (chapter-title chapter))
+                              (escape-html (chapter-introduction chapter))
+                              (escape-html *note-on-examples*)
+                              (loop for section in (remove-duplicates
+                                                    (mapcar #'entry-section entries)
+                                                    :test #'string= :from-end t)
+                                    collect (section-html
+                                             section
+                                             (remove section entries :key #'entry-section
+                                                                     :test-not #'string=)
+                                             book))))))
 
 (defun write-reference (out book)
-  (write-frame out "Reference"
-               (format nil "<h1>Reference</h1>~%~A" (chapter-links book))))
+  (write-page-frame out "Reference"
+                    (format nil "<h1>Reference</h1>~%~A" (chapter-links book))))
 
 ;;; All names.
 
-(defun write-names (out book)
-  (write-frame out "All names"
-               (format nil "<h1>All names</h1>~%~A"
-                       (list-html
-                        (loop for entry in (sort (copy-list (book-entries book)) #'string<
-                                                 :key #'entry-key)
-                              collect (format nil "~A (~(~A~)): ~A"
-                                              (link (entry-address entry)
-                                                    (escaped (entry-name entry)))
-                                              (escaped (chapter-title (entry-chapter entry)))
-                                              (escaped (whole-sentence (entry-text entry)))))))))
+(defun write-list-of-names (out book)
+  (flet ((item (entry)
+           (format nil "~A (~(~A~)): ~A"
+                   (link-html (entry-address entry) (escape-html (entry-name entry)))
+                   (escape-html (chapter-title (entry-chapter entry)))
+                   (escape-html (whole-sentence (entry-text entry))))))
+    (write-page-frame out "All names"
+                      (format nil "<h1>All names</h1>~%~A"
+                              (list-html (mapcar #'item
+                                                 (sort (copy-list (book-entries book)) #'string<
+                                                       :key #'entry-key)))))))
 
 ;;;; The whole
 
 ;;; Files.
 
-(defun call-writing (function name directory)
+(defun call-with-manual-file (function name directory)
   (call-replacing-file function (merge-pathnames (native-path name) directory)))
 
 (defun copy-into (name source directory)
@@ -212,11 +216,11 @@ that page."
 
 (defun write-pages (book directory)
   (flet ((page (name writer &rest arguments)
-           (call-writing (lambda (out) (apply writer out (append arguments (list book))))
-                         name directory)))
+           (call-with-manual-file (lambda (out) (apply writer out (append arguments (list book))))
+                                  name directory)))
     (page "index.html" #'write-first-page)
     (page "reference.html" #'write-reference)
-    (page "names.html" #'write-names)
+    (page "names.html" #'write-list-of-names)
     (page "search-index.js" #'write-index)
     (dolist (page (book-pages book))
       (page (page-file page) #'write-guide-page page))
@@ -235,7 +239,7 @@ directory if it does not exist."
     (dolist (name '("style.css" "search.js"))
       (copy-into name (project-path (format nil "cli/manual/~A" name)) directory))
     (dolist (name (book-files book))
-      (copy-into (copied-name name) (project-path name) directory))
+      (copy-into (copy-name name) (project-path name) directory))
     (merge-pathnames "index.html" directory)))
 
 (defun main (directory)

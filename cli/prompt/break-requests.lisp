@@ -34,7 +34,7 @@
           (loop for restart in (break-request-restarts break-request)
                 for number from 0
                 collect (list number (plain-name (restart-name restart))
-                              (complaint-text (own-text restart))))))
+                              (short-error-text (own-text restart))))))
 
 (defun show-break (session break-request)
   "Show the condition and the restarts of BREAK-REQUEST in SESSION, and change its prompt to

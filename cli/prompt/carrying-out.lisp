@@ -150,7 +150,7 @@ evaluates, and the errors in files that it compiles."
   (let ((line (line-of-clause text form clause)))
     (when line
       (note-trouble-line (session-account session)
-                         (- (+ line (lines-typed (session-input session)))
+                         (- (+ line (count-of-lines-read (session-input session)))
                             (count #\Newline text)
                             1)))))
 
@@ -170,7 +170,7 @@ line read in SESSION."
   (let ((place (position +illegible+ text :start start :end end)))
     (when place
       (note-trouble-line (session-account session)
-                         (- (lines-typed (session-input session))
+                         (- (count-of-lines-read (session-input session))
                             (count #\Newline text :start place)))
       (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which replaces such bytes. ~
                     Write it in UTF-8."))))
@@ -220,10 +220,10 @@ line read in SESSION."
         (*asker* (asker-for (session-account session) :typed-p t)))
     (if (unbuffered-p line)
         (apply (line-action line) session arguments)
-        (write-string (fitted (printing-words ()
-                                (with-output-to-string (*standard-output*)
-                                  (apply (line-action line) session arguments)))
-                              (session-console session))))))
+        (write-string (fit-to-window (printing-words ()
+                                       (with-output-to-string (*standard-output*)
+                                         (apply (line-action line) session arguments)))
+                                     (session-console session))))))
 
 (defun evaluate-line (session text)
   "Evaluate TEXT as Lisp. Fit printed tables to the window of SESSION, if there is a window."
@@ -328,8 +328,9 @@ was running. Abort users' code that blocks the simulator, too."
     (report-with-line-number session (format nil "stopped~@[ in ~A~]." whose))
     (throw 'leave 130))
   (when *simulation* (abort-hog *simulation*))
-  (let ((console (session-console session)) (dropped (drop-waiting (session-input session))))
-    (answered console)
+  (let ((console (session-console session))
+        (dropped (discard-waiting-lines (session-input session))))
+    (note-answered console)
     (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped)
                   (ongoing-work-text session))))
 

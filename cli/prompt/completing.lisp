@@ -47,17 +47,17 @@ single completion.")
 ;;; Completing.
 
 (defun replace-typed (stream start string)
-  (let ((line (line-of stream)))
-    (multiple-value-call #'change-to stream
-      (inserted string
-                (uiop:strcat (subseq (drawn-line-text line) 0 start)
-                             (subseq (drawn-line-text line) (drawn-line-point line)))
-                start))))
+  (let ((line (drawn-line-of stream)))
+    (multiple-value-call #'replace-line-text stream
+      (insert-in-text string
+                      (uiop:strcat (subseq (drawn-line-text line) 0 start)
+                                   (subseq (drawn-line-text line) (drawn-line-point line)))
+                      start))))
 
 (defun complete (stream start texts after)
   "Replace the part of the line from START to the cursor by the longest common beginning of TEXTS,
 followed by AFTER if there is one text. If that adds nothing to the line, list TEXTS."
-  (let ((typed (subseq (typed-text-of stream) start (drawn-line-point (line-of stream))))
+  (let ((typed (subseq (text-being-typed stream) start (drawn-line-point (drawn-line-of stream))))
         (common (common-start texts)))
     (cond ((null (rest texts))
            (replace-typed stream start
@@ -70,10 +70,10 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
            (list-choices stream texts)
            (setf (edited-listed stream) texts)))))
 
-(define-key *actions* (:tab) (stream)
+(define-key *action-keys* (:tab) (stream)
   "Complete the word before the cursor."
-  (let ((line (line-of stream)))
-    (when (and *completer* (not *program-reads*))
+  (let ((line (drawn-line-of stream)))
+    (when (and *completer* (not *before-program-reads*))
       (multiple-value-bind (start texts after)
           (funcall *completer* (drawn-line-text line) (drawn-line-point line))
         (when texts (complete stream start texts after))))))

@@ -52,7 +52,8 @@ Signals BAD-LINE."
     (loop for call in (if start (nthcdr (1+ start) calls) calls)
           until (member (first call)
                         '(eval-quietly call-user-code call-until-error call-with-care))
-          do (put-line "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300))))))
+          do (write-trimmed-line
+              "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300))))))
 
 (defun debug-line (session break-request text)
   (flet ((says-p (word) (string-equal word (split-line text))))
@@ -251,7 +252,7 @@ program."
 
 (defun exit-for-unhandled (condition)
   "End this process, which is starting or ending, because nothing handles CONDITION."
-  (when (typep condition 'user-interrupt) (end-interrupted))
+  (when (typep condition 'user-interrupt) (exit-after-interrupts))
   (say-on-error-output (condition-text condition))
   (end-process 1))
 
@@ -261,7 +262,7 @@ program."
     (format nil "~:[Break~;Error~] in a thread~@[, ~A,~] that a program has started: ~A. ~
                  ~:[It continues~;That thread ends; everything else continues~]."
             serious-p (thread-name (current-thread))
-            (string-right-trim "." (complaint-text (condition-text condition))) serious-p)))
+            (string-right-trim "." (short-error-text (condition-text condition))) serious-p)))
 
 (defconstant +most-thread-errors+ 100
   "How many different errors in threads of programs are reported.")

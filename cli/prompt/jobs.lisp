@@ -135,7 +135,7 @@ Return true if no request is left that passes TEST."
        (null (session-trial session))
        (null (simulation-over *simulation*))
        (if (live-p *simulation*)
-           (and (or (session-patient-p session) (pasted-lines-left-p (session-input session)))
+           (and (or (session-patient-p session) (pasted-lines-waiting-p (session-input session)))
                 (not (paused-p *simulation*)))
            ;; A simulation stopped by STOP-SIMULATOR waits for RESUME.
            (or (session-patient-p session) (headless-p *simulation*)))))

@@ -127,8 +127,8 @@ are too many messages."
   (let ((account (listener-account listener)) (console (listener-console listener)))
     (unless (and (reports-objects-p account) (report-message account :error text))
       (write-fitted console "~A"
-                    (painted (format nil "*ERROR* -> ~A~%"
-                                     (complaint-text
+                    (paint-for-console (format nil "*ERROR* -> ~A~%"
+                                     (short-error-text
                                       (text-with-location account text
                                                           (faulty-line-number account))))
                              (message-color :error) console)))))
@@ -172,15 +172,15 @@ ended. Add file and line number to errors and warnings in a script."
   (let ((kind (if (from-program-p message) :others (message-kind message)))
         (text (with-output-to-string (text)
                 (write-message message text (full-message-text message listener)))))
-    (write-string (painted (visible text) (message-color kind) (listener-console listener)) out)))
+    (write-string (paint-for-console (visible text) (message-color kind) (listener-console listener)) out)))
 
 ;; As reading 197 says.
 (defun write-messages (messages listener)
   (let ((console (listener-console listener))
         (text (with-output-to-string (out)
                 (dolist (message messages) (write-painted message listener out)))))
-    (if (and (unanswered-p console) (eq (message-kind (first messages)) :message))
-        (write-after-prompt (fitted text console (console-prompt console)) console)
+    (if (and (prompt-unanswered-p console) (eq (message-kind (first messages)) :message))
+        (write-after-prompt (fit-to-window text console (console-prompt console)) console)
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)

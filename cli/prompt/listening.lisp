@@ -112,7 +112,7 @@ nothing if SESSION has lost its user."
 
 (defun show-if-pending (session)
   "Show the messages that SESSION has not shown when a tick ends."
-  (when (or (session-news-p session) (overwritten-p (session-console session)))
+  (when (or (session-news-p session) (prompt-overwritten-p (session-console session)))
     (show-messages session)))
 
 (defun observer-for (session)

@@ -113,7 +113,7 @@ read."
 
 (defun load-each-form (path)
   (let* ((text (file-text path))
-         (stream (text-stream text 0 (constantly nil)))
+         (stream (make-growing-text text 0 (constantly nil)))
          (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))

@@ -113,13 +113,13 @@ its pending requests."
   "Wait until a line is typed for SESSION, for SECONDS at most. Return true if a line was typed in
 time."
   (let ((console (session-console session)))
-    (unless (or (session-batch-p session) (unanswered-p console))
+    (unless (or (session-batch-p session) (prompt-unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
   (loop with end = (+ (seconds-now) seconds)
         for left = (- end (seconds-now))
         do (serve-other-threads)
         thereis (or (reader-lines (session-reader session))
-                    (typed-within-p (session-input session) (max 0 (min 0.05 left))))
+                    (typed-input-within-p (session-input session) (max 0 (min 0.05 left))))
         while (plusp left)))
 
 (defun begin-trial (session trial)
@@ -149,7 +149,7 @@ time."
 (defun report-trial-stop (session trial)
   "Report that the ticks which were to pass in TRIAL have passed, or were stopped."
   (when (shiftf (open-trial-interrupted-p trial) nil)
-    (answered (session-console session))
+    (note-answered (session-console session))
     (setf (open-trial-stepped-p trial) t))
   (when (and (zerop (open-trial-steps trial)) (shiftf (open-trial-stepped-p trial) nil))
     (when (open-trial-progress trial) (end-progress (shiftf (open-trial-progress trial) nil)))

@@ -29,7 +29,7 @@ because time stands still."
 
 (defun record-line-begun (session text)
   (note-line-begun (session-account session) (if (comment-p text) nil text)
-                   (lines-typed (session-input session)) (session-errors session)))
+                   (count-of-lines-read (session-input session)) (session-errors session)))
 
 (defun begin-without-comments (session text trouble)
   "Begin the line TEXT of SESSION, and return TEXT without comments between #| and |#. If the line
@@ -112,7 +112,7 @@ time stands still, report that the line waits."
 (defun call-with-streams (session function)
   (let* ((*standard-output* (session-console session))
          (*standard-input* (session-input session))
-         (*program-reads* (lambda () (report-program-input (session-account session))))
+         (*before-program-reads* (lambda () (report-program-input (session-account session))))
          (*completer* (lambda (text point) (completions-in session text point)))
          (*waits-while-paused-p* (session-terminal-p session))
          (*default-robot-function* #'session-robot)
@@ -167,7 +167,7 @@ input. The lines command the robot ROBOT-NAME of SIMULATION. Return SESSION."
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*forks-to-keep* t))
-    (handler-case (call-typing (lambda () (run-session session)) (session-input session))
+    (handler-case (call-with-typed-input (lambda () (run-session session)) (session-input session))
       ;; A message that came before the session was ready for it, or after.
       (user-interrupt () nil)))
   session)
@@ -182,7 +182,7 @@ whose user is lost: users of other sessions are asked when the session is over."
 
 (defun interrupt-session (session)
   "Act as Control-C in SESSION, from another thread: clear the typed line or end the running one."
-  (cond ((being-typed-p (session-input session)) (send-key (session-input session) :control-c))
+  (cond ((reading-line-p (session-input session)) (send-key (session-input session) :control-c))
         ((session-thread session)
          (interrupt-thread (session-thread session) #'interrupt-own-line)))
   (values))
@@ -203,7 +203,7 @@ Other sessions then get the questions of SESSION and the messages of its run. Re
 ahead, is not run."
   (setf (session-over-p session) t)
   (interrupt-session session)
-  (end-octets (typed-octets (session-input session))))
+  (end-queued-input (typed-octets (session-input session))))
 
 (defun enter-line (session text)
   "Enter TEXT as a line of SESSION; the line being typed stays."
@@ -213,4 +213,4 @@ ahead, is not run."
   "True if SESSION is running a line and not waiting for input."
   (and (session-thread session)
        (not (session-over-p session))
-       (not (being-typed-p (session-input session)))))
+       (not (reading-line-p (session-input session)))))

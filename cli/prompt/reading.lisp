@@ -32,14 +32,14 @@
 to BEFORE, the text that the line continues, or NIL."
   (let* ((line (progn
                  ;; Forms that span lines are kept whole.
-                 (unless before (keep-lines (session-input session)))
-                 (let ((*program-reads* nil)) (read-line (session-input session) nil))))
+                 (unless before (save-history (session-input session)))
+                 (let ((*before-program-reads* nil)) (read-line (session-input session) nil))))
          (first-p (and line (not (shiftf (reader-typed-p (session-reader session)) t))))
          ;; The first line may say what program runs a script.
          (line (cond ((and first-p (starts-with-subseq "#!" line)) "")
-                     (line (line-pasted line before)))))
+                     (line (without-pasted-prompt line before)))))
     (unless (or (null line) (and (null before) (answers-break-p session line)))
-      (remember-line (session-input session) line before))
+      (add-to-history (session-input session) line before))
     line))
 
 (defun read-input (session prompt &optional before)
@@ -48,7 +48,7 @@ is one. Show PROMPT, except in a batch. First wait for the commands of earlier l
 waits for commands."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session)
-                (and (unanswered-p console) (string= prompt (console-prompt console))))
+                (and (prompt-unanswered-p console) (string= prompt (console-prompt console))))
       (with-lock ((session-lock session)) (show-prompt console prompt)))
     (await-session-commands session)
     (let* ((given (pop (reader-lines (session-reader session))))
@@ -61,7 +61,7 @@ waits for commands."
                     (or given (reader-echo-p (session-reader session))))
                (show-answer console (visible line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
-                 (answered console)))
+                 (note-answered console)))
         (reset-line-error-counts (session-error-counts session))
         (reset-message-count session))
       line)))
@@ -117,7 +117,7 @@ long, return an outline and the condition LINE-TOO-LONG."
   (flet ((next-outline (text)
            (or (values (read-outline session text))
                (error 'end-of-file :stream (session-input session)))))
-    (handler-case (skip-forms (text-stream text start #'next-outline))
+    (handler-case (skip-forms (make-growing-text text start #'next-outline))
       (end-of-file ()))))
 
 (defun skip-unreadable-rest (condition session text start)
@@ -126,7 +126,8 @@ long, return an outline and the condition LINE-TOO-LONG."
     (line-too-long
      (skip-rest session (format nil "~A~%~A" text (line-outline condition)) start))
     ((or bad-line storage-condition end-of-file) nil)
-    (error (note-trouble-line (session-account session) (lines-typed (session-input session)))
+    (error (note-trouble-line (session-account session)
+                              (count-of-lines-read (session-input session)))
            (skip-rest session text start))))
 
 (defmacro skipping-rest ((session text start) &body body)
@@ -146,7 +147,7 @@ form."
   (flet ((read-more (text)
            (or (read-input session +continuation-prompt+ text)
                (reject-line "The form is not complete: ~A" (one-line text)))))
-    (let* ((stream (text-stream text start #'read-more))
+    (let* ((stream (make-growing-text text start #'read-more))
            (form (skipping-rest (session (grown-text stream) start)
                    (read-preserving-whitespace stream))))
       (values form

@@ -54,7 +54,7 @@ restarts with the same name, include only the innermost."
   "Return the text of CONDITION: on one line, except the stack of a plan that has stopped."
   (if (plan-break-p condition)
       (visible (condition-text condition))
-      (complaint-text (condition-text condition))))
+      (short-error-text (condition-text condition))))
 
 (defstruct (break-state (:copier nil))
   "The breaks that wait for the user of the prompt in THREAD. OWN is the break in THREAD itself, or
@@ -198,7 +198,7 @@ is over."
 (defun can-poll-input-p (session)
   "True if SESSION has a user at a terminal or window, and can check for typed input."
   (and (session-terminal-p session)
-       (typep (source-of (session-input session)) '(or descriptor-stream queued-octets))))
+       (typep (source-stream (session-input session)) '(or descriptor-stream queued-octets))))
 
 (defun display-wanted-p (session)
   "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY reports it."

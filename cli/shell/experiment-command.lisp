@@ -63,24 +63,24 @@
     (:until :slurm) (:until :missing) (:time-limit :missing))
   "Lists of keys of options that exclude each other.")
 
-(defun option-called (key)
+(defun option-with-key (key)
   (first (find key *experiment-options* :key #'second)))
 
-(defun check-together (options)
+(defun check-option-combination (options)
   "Signal USAGE-ERROR if OPTIONS cannot be combined."
   (flet ((given-p (key) (find key options :key #'first)))
     (loop for (option key . others) in *options-that-need-others*
           do (when (and (given-p key) (notany #'given-p others))
-               (reject-usage "~A needs ~{~A~^ or ~}." option (mapcar #'option-called others))))
+               (reject-usage "~A needs ~{~A~^ or ~}." option (mapcar #'option-with-key others))))
     (loop for keys in *options-that-exclude-others*
           for given = (remove-if-not #'given-p keys)
           do (when (rest given)
-               (reject-usage "~A and ~A do not go together." (option-called (first given))
-                             (option-called (second given)))))))
+               (reject-usage "~A and ~A do not go together." (option-with-key (first given))
+                             (option-with-key (second given)))))))
 
 ;;; Running here.
 
-(defun results-of (experiment options)
+(defun run-experiment-with-options (experiment options)
   (let ((directory (let ((out (option-value :out options)) (shard (option-value :shard options)))
                      (if shard (shard-directory out (car shard) (cdr shard)) out))))
     (when directory (ensure-results-directory directory))
@@ -94,27 +94,31 @@
            (let ((seconds (option-value :time-limit options)))
              (and seconds (list :time-limit seconds))))))
 
-(defun run-here (experiment options)
-  (let ((shard (option-value :shard options)) (trials (trials-of experiment options)))
+(defun run-in-this-process (experiment options)
+  (let ((shard (option-value :shard options)) (trials (trial-count experiment options)))
     (cond ((null shard)
-           (report-results (results-of experiment options) (option-value :plot options)))
-          ((trials-in-shard-p shard trials) (results-of experiment options))
-          (t (say "shard ~D of ~D has no trials: there are only ~D of each condition."
-                  (car shard) (cdr shard) trials)))
+           (report-results (run-experiment-with-options experiment options)
+                           (option-value :plot options)))
+          ((trials-in-shard-p shard trials) (run-experiment-with-options experiment options))
+          (t (print-notice "shard ~D of ~D has no trials: there are only ~D of each condition."
+                           (car shard) (cdr shard) trials)))
     0))
 
-(defun tell-stopped (command arguments options under-way)
+(defun report-interruption (command arguments options under-way)
   "Report that COMMAND with ARGUMENTS was interrupted, how many rows are kept, and how to continue.
 UNDER-WAY is a text about a trial that took long, or NIL."
   (let* ((out (option-value :out options))
          (rows (and out (ignore-errors (count-rows out)))))
     (if out
-        (say "stopped with ~D row~:P in ~A~@[; ~A~]. To continue:~%  ~A" (or rows 0) out under-way
-             (uiop:escape-sh-command (append (program-words) (list command) arguments)))
-        (say "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
+        (print-notice "stopped with ~D row~:P in ~A~@[; ~A~]. To continue:~%  ~A"
+                      (or rows 0) out under-way
+                      (uiop:escape-sh-command
+                       (append (program-command-line) (list command) arguments)))
+        (print-notice "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
-(defun call-stoppable (function command arguments options)
-  "Call FUNCTION, which runs COMMAND with ARGUMENTS. Return its exit status, or 130 if interrupted."
+(defun call-reporting-interruption (function command arguments options)
+  "Call FUNCTION, which runs COMMAND with ARGUMENTS. Return the exit status, or 130 after an
+interrupt."
   (let ((under-way nil))
     (flet ((look (condition)
              (declare (ignore condition))
@@ -125,45 +129,46 @@ UNDER-WAY is a text about a trial that took long, or NIL."
                               (lambda ()
                                 ;; The reader may have been stopped, too.
                                 (ignore-errors
-                                 (tell-stopped command arguments options under-way))
+                                 (report-interruption command arguments options under-way))
                                 130)))))
 
-(defun print-missing (experiment options)
+(defun print-missing-shards (experiment options)
   "Print, on one line, the numbers of the shards with missing rows."
-  (format t "~{~D~^ ~}~%" (missing-shards experiment (trials-of experiment options)
+  (format t "~{~D~^ ~}~%" (missing-shards experiment (trial-count experiment options)
                                           (option-value :shards options)
                                           (option-value :out options)))
   0)
 
-(defun conduct-experiment (experiment words options)
+(defun carry-out-experiment (experiment words options)
   "Run EXPERIMENT, named by the arguments WORDS, with OPTIONS. Return the exit status."
   (cond ((option-value :save-executable options)
          (save-program (option-value :save-executable options)))
-        ((option-value :missing options) (print-missing experiment options))
+        ((option-value :missing options) (print-missing-shards experiment options))
         ((option-value :parallel options)
-         (spread experiment words options "run.sh" "spread-parallel.sh" #'parallel-settings))
+         (run-by-script experiment words options "run.sh" "spread-parallel.sh" #'parallel-settings))
         ((option-value :slurm options)
-         (spread experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))
-        (t (run-here experiment options))))
+         (run-by-script experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))
+        (t (run-in-this-process experiment options))))
 
-(defun known-experiment (words)
+(defun experiment-from-words (words)
   "Return the experiment named by WORDS: a file or an experiment, and possibly one in the file."
-  (prog1 (apply #'experiment-called words)
+  (prog1 (apply #'experiment-named words)
     ;; A shell has no prompt to show warnings about definitions.
     (dolist (message (take-messages))
-      (say "~A" (complaint-text (message-text message))))))
+      (print-notice "~A" (short-error-text (message-text message))))))
 
 (defun experiment-command (arguments)
   (let* ((options (parse-options arguments :table *experiment-options* :others t))
          (words (option-values :other options)))
-    (check-together options)
+    (check-option-combination options)
     (unless (<= 1 (length words) 2)
       (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
                      most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
-                    words (experiment-words (all-experiments))))
+                    words (experiment-name-strings (all-experiments))))
     (when (option-value :save-executable options) (die-of-interrupts))
-    (call-stoppable (lambda () (conduct-experiment (known-experiment words) words options))
-                    "experiment" arguments options)))
+    (call-reporting-interruption
+     (lambda () (carry-out-experiment (experiment-from-words words) words options))
+     "experiment" arguments options)))
 
 ;;;; Tables
 
@@ -196,33 +201,33 @@ UNDER-WAY is a text about a trial that took long, or NIL."
     ("--workers" :workers parse-count) ("--out" :out parse-path) ("--quiet" :quiet nil))
   "The options of the command `compare`, in the format of *OPTIONS*.")
 
-(defun condition-word (word)
+(defun parse-condition (word)
   "Convert WORD to an argument of COMPARE-CONDITIONS: a condition's number, its name, or :ALL."
   (cond ((string-equal word "all") :all)
         ((and (plusp (length word)) (every #'digit-char-p word)) (parse-integer word))
         (t word)))
 
-(defun results-meant (words options)
+(defun results-from-words (words options)
   "Return the results named by WORDS: those in a directory, or those of an experiment, which is
 run."
   (if (and (null (rest words))
            (uiop:directory-exists-p (native-path-of-directory (first words)))
            (directories-with-rows (first words)))
       (read-results (first words))
-      (results-of (known-experiment words) options)))
+      (run-experiment-with-options (experiment-from-words words) options)))
 
-(defun comparison-wanted (words options)
+(defun make-comparison (words options)
   (let ((measure (option-values :measure options)) (factor (option-value :by options)))
     (if factor
-        (compare-levels (results-meant words options) factor
+        (compare-levels (results-from-words words options) factor
                         :against (option-value :against options) :measure measure)
         (destructuring-bind (first second &rest where) words
           (if where
-              (compare-conditions (results-meant where options)
-                                  (condition-word first) (condition-word second) :measure measure)
+              (compare-conditions (results-from-words where options)
+                                  (parse-condition first) (parse-condition second) :measure measure)
               (compare-results first second :measure measure))))))
 
-(defun check-words (words options)
+(defun check-compare-arguments (words options)
   (cond ((option-value :by options)
          (unless (<= 1 (length words) 2)
            (reject-usage "compare --by FACTOR takes a directory with results, or an experiment.")))
@@ -236,10 +241,10 @@ run."
 (defun compare-command (arguments)
   (let* ((options (parse-options arguments :table *compare-options* :others t))
          (words (option-values :other options)))
-    (check-words words options)
-    (call-stoppable
+    (check-compare-arguments words options)
+    (call-reporting-interruption
      (lambda ()
-       (let ((comparison (comparison-wanted words options)))
+       (let ((comparison (make-comparison words options)))
          (when (option-value :plot options)
            (apply #'save-comparison-picture comparison (option-value :plot options)
                   (when (option-value :measure options)

@@ -5,14 +5,14 @@
 ;;; A file is meant by its exact name, or without its type; a defined experiment, such as those of
 ;;; worlds/, by its name. The exact name of a file goes first, then an experiment.
 
-(defun experiment-words (experiments)
+(defun experiment-name-strings (experiments)
   (mapcar (lambda (experiment) (string-downcase (experiment-name experiment))) experiments))
 
-(defun experiment-among (name experiments)
+(defun find-experiment-in (name experiments)
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
-(defun experiments-of (file experiments)
-  "Return those of EXPERIMENTS that FILE itself defines. If it defines none, return all of
+(defun experiments-in-file (file experiments)
+  "Return those of EXPERIMENTS that FILE itself defines. If FILE defines none, return all of
 EXPERIMENTS, which files loaded by FILE define."
   (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
       experiments))
@@ -24,44 +24,45 @@ there are none."
   (let ((before (all-experiments)) (*standard-output* *error-output*))
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
       (finish-output *error-output*))
-    (or (experiments-of path (set-difference (all-experiments) before))
+    (or (experiments-in-file path (set-difference (all-experiments) before))
         (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
                      (native-name path)))))
 
 (defun reject-experiment (name known)
-  (reject-line "There is no experiment ~A.~@[ Did you mean ~A?~] Known: ~{~A~^, ~}."
-               name (nearest-name name (experiment-words known)) (experiment-words known)))
+  (let ((names (experiment-name-strings known)))
+    (reject-line "There is no experiment ~A.~@[ Did you mean ~A?~] Known: ~{~A~^, ~}."
+                 name (nearest-name name names) names)))
 
 (defun reject-file-or-experiment (name)
-  (let ((known (experiment-words (all-experiments))))
+  (let ((known (experiment-name-strings (all-experiments))))
     (reject-line "There is no file ~A, nor an experiment of that name.~@[ Did you mean ~A?~]~@[ ~
                   Known: ~{~A~^, ~}.~]"
                  name (nearest-name name known) known)))
 
-(defun only-experiment (file experiments)
+(defun single-experiment (file experiments)
   (if (rest experiments)
-      (reject-line "~A has several experiments: ~{~A~^, ~}. Say which, after the file."
-                   file (sort (experiment-words experiments) #'string<))
+      (reject-line "~A has several experiments: ~{~A~^, ~}. Name one after the file."
+                   file (sort (experiment-name-strings experiments) #'string<))
       (first experiments)))
 
-(defun experiments-called (word)
+(defun experiments-named (word)
   "Load the file WORD and return its experiments, or return a list of the experiment named WORD.
 Signals BAD-LINE if there is neither."
   (let* ((path (path-called word))
-         (known (experiment-among word (all-experiments)))
+         (known (find-experiment-in word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))
                    (and (not known) (existing-lisp-file word)))))
     (cond (file (load-experiments file))
           (known (list known))
           (t (reject-file-or-experiment word)))))
 
-(defun experiment-called (word &optional name)
+(defun experiment-named (word &optional name)
   "Return the experiment named by WORD, a file or an experiment. If the file has several
 experiments, NAME names the one to return. Signals BAD-LINE if there is no such experiment."
-  (let ((experiments (experiments-called word)))
-    (cond ((null name) (only-experiment word experiments))
-          ((experiment-among name experiments))
-          ((experiment-among name (all-experiments)))
+  (let ((experiments (experiments-named word)))
+    (cond ((null name) (single-experiment word experiments))
+          ((find-experiment-in name experiments))
+          ((find-experiment-in name (all-experiments)))
           (t (reject-experiment name experiments)))))
 
 (defun ensure-results-directory (name)

@@ -9,7 +9,7 @@
   "Lists (name function) of commands. The function takes the command's arguments, a list of strings,
 and returns the exit status. The file usage-NAME.txt describes the command.")
 
-(defun find-command-called (name)
+(defun find-shell-command (name)
   (or (find name *shell-commands* :key #'first :test #'string=)
       (reject-usage "There is no command ~A, nor a file of that name.~@[ Did you mean ~A?~] Known: ~
                      ~{~A~^, ~}."
@@ -17,16 +17,16 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
                     (nearest-name name (mapcar #'first *shell-commands*))
                     (mapcar #'first *shell-commands*))))
 
-(defun run-command-called (name arguments)
+(defun run-shell-command (name arguments)
   "Run the command NAME with ARGUMENTS. Return the exit status."
-  (let ((command (find-command-called name)) (*error-output* (text-output 2)))
+  (let ((command (find-shell-command name)) (*error-output* (text-output 2)))
     (unwind-protect (funcall (second command) arguments)
       ;; Lisp's own output, such as warnings, stays in the stream until then.
       (ignore-errors (finish-output *error-output*)))))
 
-(defun usage-of-command (name)
+(defun command-usage (name)
   "Return the usage text of the command NAME; the general usage text if NAME is not a command."
-  (or (text-called (format nil "usage-~A.txt" name)) (text-called "usage.txt")))
+  (or (shell-text (format nil "usage-~A.txt" name)) (shell-text "usage.txt")))
 
 ;;; The prompt.
 
@@ -37,30 +37,31 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
 
 (defparameter *default-world* "WATSON" "The default world of a prompt.")
 
-(defun first-robot (options)
+(defun robot-from-options (options)
   (let* ((robot (option-value :robot options))
          (world (option-value :world options (and (null robot) *default-world*)))
          (robots (and world (robot-names-in-world world))))
     (cond ((null robot) (first robots))
-          ((null world) (robot-called robot))
+          ((null world) (find-robot-named robot))
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
-(defun load-before (names)
+(defun load-files-before-prompt (names)
   "Load the Lisp files NAMES before the prompt starts. Signals USAGE-ERROR if a file cannot be
 loaded."
   (dolist (name names)
     (handler-case (load-lisp (find-lisp-file name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
-(defun robot-asked-for (session options)
+(defun find-robot-from-options (session options)
   "Return the name of the robot that OPTIONS ask for. If that robot is not defined, load the files
-of the option --load now, because they may define it. Signals USAGE-ERROR if they do not."
-  (handler-case (first-robot options)
+of the option --load now, because they may define it. Signals USAGE-ERROR if the robot is still not
+defined."
+  (handler-case (robot-from-options options)
     (bad-line (condition)
       (let ((files (shiftf (reader-files (session-reader session)) '())))
-        (cond (files (load-before files)
-                     (robot-asked-for session options))
+        (cond (files (load-files-before-prompt files)
+                     (find-robot-from-options session options))
               (t (reject-usage "~A --list lists the worlds and their robots."
                                (bad-line-text condition))))))))
 
@@ -82,14 +83,14 @@ WORLD has chosen to continue with, or NIL."
         for next = (run-headless session name seed)
         while next))
 
-(defun greet (session)
+(defun write-greeting (session)
   (let ((simulation (current-simulation)) (console (session-console session)))
-    (write-string (fitted (format nil "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%~
-                                       HELP lists the commands, QUIT leaves.~%"
-                                  (session-robot) (simulation-name simulation)
-                                  (simulation-seed simulation)
-                                  (rate-text (simulation-rate simulation)))
-                          console)
+    (write-string (fit-to-window (format nil "ARS MAGNA: ~A in ~A, seed ~D, ~A.~%~
+                                              HELP lists the commands, QUIT leaves.~%"
+                                         (session-robot) (simulation-name simulation)
+                                         (simulation-seed simulation)
+                                         (rate-text (simulation-rate simulation)))
+                                 console)
                   console)))
 
 (defun run-live (session robot-name options)
@@ -97,7 +98,7 @@ WORLD has chosen to continue with, or NIL."
                                 :display (or (option-value :window options)
                                              (display-wanted-p session))
          (when (option-value :seed options) (list :seed (option-value :seed options))))
-  (when (session-terminal-p session) (greet session))
+  (when (session-terminal-p session) (write-greeting session))
   (run-session session)
   ;; Without a terminal, the user has only the window.
   (when (and (option-value :window options)
@@ -105,19 +106,19 @@ WORLD has chosen to continue with, or NIL."
              *displays-waiter*)
     (funcall *displays-waiter*)))
 
-(defun plan-lines (options)
+(defun lines-for-plan-options (options)
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
 
-(defun standard-session (options)
+(defun make-session-from-options (options)
   "Return a session that carries out OPTIONS and then reads lines of a script or the standard input.
 Without a terminal, the session echoes its lines and waits for each command, so that the output is a
 transcript as in manual E. A batch with plans to run reads no lines from a terminal."
   (let* ((script (option-value :script options))
-         (objects (and (option-value :json options) (object-console)))
+         (objects (and (option-value :json options) (make-object-console)))
          (batch (or script objects (option-value :batch options)))
-         (input (if script (open-script script) (standard-input *standard-output* batch)))
+         (input (if script (open-script script) (make-standard-input *standard-output* batch)))
          (piped (not (typed-by-hand-p input)))
-         (lines (plan-lines options)))
+         (lines (lines-for-plan-options options)))
     (make-session :input (if (and batch lines (not piped)) (make-concatenated-stream) input)
                   :output (or objects *standard-output*) :batch batch
                   :account (when batch (make-account script objects))
@@ -126,7 +127,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
                   :patient (or batch piped) :echo (and piped (not batch))
                   :color (option-value :color options :auto))))
 
-(defun run-in-world (session robot-name options)
+(defun run-in-first-world (session robot-name options)
   ;; Messages about the world's definitions; a headless run has a separate queue of messages.
   (print-messages session (setf *definition-messages* (take-all-messages)))
   (let ((*forks-to-keep* t))
@@ -134,7 +135,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
         (run-batch session robot-name (option-value :seed options 0))
         (run-live session robot-name options))))
 
-(defun write-all-as-objects (session)
+(defun write-lisp-output-as-objects (session)
   "Write all output of Lisp, including that of users' threads, as JSON objects of SESSION."
   (let* ((console (session-console session))
          (both (make-two-way-stream (session-input session) console)))
@@ -143,39 +144,38 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
           *debug-io* both
           *terminal-io* both)))
 
-(defun check-window (options)
+(defun check-window-option (options)
   "Signal USAGE-ERROR if OPTIONS ask for a window where none can be shown."
   (when (option-value :window options)
     (when (and (or (option-value :batch options) (option-value :script options)
                    (option-value :json options))
                (null (option-value :rate options)))
-      (reject-usage "--window shows a live run. The run of a batch or script is live only with
---rate."))
-    (handler-case (ensure-windows)
+      (reject-usage "--window shows a live run. A batch or script has one only with --rate."))
+    (handler-case (ensure-window-system)
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
-(defun run-standard (session options)
-  (let ((robot-name (robot-asked-for session options)))
-    (when (option-value :json options) (write-all-as-objects session))
+(defun run-session-with-options (session options)
+  (let ((robot-name (find-robot-from-options session options)))
+    (when (option-value :json options) (write-lisp-output-as-objects session))
     (report-object (session-account session) "begin"
                    :program (format nil "ARS MAGNA ~A" *version*)
                    :robot (string-downcase robot-name)
                    :world (string-downcase (map-name (map-of-robot robot-name)))
                    :seed (option-value :seed options 0)
                    :rate (option-value :rate options))
-    (call-typing (lambda () (run-in-world session robot-name options))
-                 (session-input session))))
+    (call-with-typed-input (lambda () (run-in-first-world session robot-name options))
+                           (session-input session))))
 
 (defun run-prompt (options)
-  (check-window options)
-  (let ((session (standard-session options)))
-    (call-with-watchers session options (lambda () (run-standard session options)))
-    (report-end session
-                (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
+  (check-window-option options)
+  (let ((session (make-session-from-options options)))
+    (call-with-watchers session options (lambda () (run-session-with-options session options)))
+    (report-session-end session
+                        (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 
-(defun run-options (options)
+(defun run-with-options (options)
   (cond ((option-value :list options)
-         (load-before (option-values :load options))
+         (load-files-before-prompt (option-values :load options))
          (when (option-value :world options) (robot-names-in-world (option-value :world options)))
          (write-worlds)
          0)
@@ -195,49 +195,49 @@ command."
        (script-p (first (last arguments)))
        (ignore-errors (parse-options (butlast arguments)) t)))
 
-(defun run-script-with (script arguments)
+(defun run-script (script arguments)
   "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
   (let ((text (and (script-path script) (foreign-file-text (script-path script)))))
     (when text (reject-usage "~A" text)))
   (let ((options (list* (list :script script) (parse-options arguments))))
-    (prog1 (run-options options)
+    (prog1 (run-with-options options)
       (when (and (script-path script)
                  (null (option-value :world options))
                  (only-defines-p (script-path script)))
         (say-on-error-output
-         (format nil "~A only defines things. It was run as a script of lines; for the robot in ~
-                      it: ars-magna --world ~:*~A." script))))))
+         (format nil "~A only defines things. The file was run as a script of lines; to use its ~
+                      robot: ars-magna --world ~:*~A." script))))))
 
-(defun run-arguments (arguments)
+(defun run-with-arguments (arguments)
   "Run this program with ARGUMENTS, a list of strings. Return the status to exit with."
   (cond ((intersection arguments '("--help" "-h") :test #'string=)
-         (write-string (usage-of-command (first arguments)))
+         (write-string (command-usage (first arguments)))
          0)
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)
-        ((script-p (first arguments)) (run-script-with (first arguments) (rest arguments)))
+        ((script-p (first arguments)) (run-script (first arguments) (rest arguments)))
         ((script-last-p arguments)
-         (run-script-with (first (last arguments)) (butlast arguments)))
+         (run-script (first (last arguments)) (butlast arguments)))
         ((and arguments (not (option-p (first arguments))))
-         (run-command-called (first arguments) (rest arguments)))
-        (t (run-options (parse-options arguments)))))
+         (run-shell-command (first arguments) (rest arguments)))
+        (t (run-with-options (parse-options arguments)))))
 
 ;;; The process.
 
-(defun ending-reason (condition)
+(defun ending-message (condition)
   "Return the message of CONDITION on one line, with names as users write them."
   (let ((*package* (user-package)))
-    (complaint-text (ending-text condition))))
+    (short-error-text (ending-condition-text condition))))
 
-(defun give-reason (condition status)
+(defun report-ending (condition status)
   "Write the message of CONDITION to the error output, and return STATUS."
-  (ignore-errors (say-on-error-output (ending-reason condition)))
+  (ignore-errors (say-on-error-output (ending-message condition)))
   status)
 
 (defun call-for-status (function)
   "Call FUNCTION, which returns an exit status, and return that status. After an error or interrupt,
-report it and return the status for it."
+print a message and return the status for that case."
   (catch 'leave
     (handler-case
         (call-until-interrupted
@@ -245,21 +245,21 @@ report it and return the status for it."
          (lambda ()
            (say-on-error-output "stopped.")
            130))
-      (usage-error (condition) (give-reason condition 2))
+      (usage-error (condition) (report-ending condition 2))
       ((or error storage-condition) (condition)
         (regain-room condition)
-        (give-reason condition 1)))))
+        (report-ending condition 1)))))
 
-(defun deliver (console status)
+(defun finish-console (console status)
   "Write the pending output of CONSOLE. Return STATUS, or a status of at least 1 if writing failed."
   (finish-output console)
   (let ((trouble (console-trouble console)))
     (cond ((null trouble) status)
           ;; An output that is closed early is no error.
           ((search "Broken pipe" (own-text trouble)) (max 1 status))
-          (t (give-reason trouble (max 1 status))))))
+          (t (report-ending trouble (max 1 status))))))
 
-(defun call-fitting (function console)
+(defun call-fitting-tables (function console)
   "Call FUNCTION. If CONSOLE is on a terminal, tables that FUNCTION prints are made to fit the
 window."
   (if (terminal-stream-p (console-stream console))
@@ -267,13 +267,14 @@ window."
       (funcall function)))
 
 (defun run-process ()
-  (let ((console (standard-output)))
+  (let ((console (make-standard-console)))
     (setf *standard-output* console
           *trace-output* console)
-    (deliver console
-             (call-for-status
-              (lambda ()
-                (call-fitting (lambda () (run-arguments (process-arguments))) console))))))
+    (finish-console console
+                    (call-for-status
+                     (lambda ()
+                       (call-fitting-tables (lambda () (run-with-arguments (process-arguments)))
+                                            console))))))
 
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, then end the process. The
@@ -287,5 +288,5 @@ argument --probe only tests whether the core starts."
   (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~
                              return; at the prompt, QUIT leaves."))
   ;; An interrupt that still waits at the end is ignored.
-  (let ((*beginning* #'main))
+  (let ((*toplevel-function* #'main))
     (call-holding-interrupts (lambda () (end-process (run-process))))))

@@ -18,7 +18,7 @@
   (handler-case (parse-integer text)
     (error () (reject-usage "--seed takes an integer, not ~A." text))))
 
-(defun parse-pace (text)
+(defun parse-rate-option (text)
   (handler-case (parse-rate text)
     (bad-line ()
       (reject-usage "--rate takes a number of ticks per second, or free, not ~A." text))))
@@ -36,7 +36,7 @@
 
 (defparameter *options*
   '(("--world" :world identity) ("--robot" :robot identity) ("--seed" :seed parse-seed)
-    ("--rate" :rate parse-pace) ("--load" :load identity)
+    ("--rate" :rate parse-rate-option) ("--load" :load identity)
     ("--window" :window nil) ("--plan" :plan identity)
     ("--batch" :batch nil) ("--json" :json nil) ("--stop" :stop nil)
     ("--time-limit" :time-limit parse-seconds)
@@ -56,7 +56,7 @@ is optional, an empty value counts as left out.")
         (values (subseq argument 0 equals) (subseq argument (1+ equals)))
         (values argument nil))))
 
-(defun value-that-follows (option arguments table)
+(defun read-option-value (option arguments table)
   "Return the value of OPTION, an element of TABLE, and the remaining arguments. ARGUMENTS follow
 the option."
   (destructuring-bind (name key parser &optional optional) option
@@ -80,7 +80,7 @@ the option."
         (declare (ignore optional))
         (when (and value (null parser)) (reject-usage "~A takes no value." name))
         (multiple-value-bind (text left)
-            (if value (values value arguments) (value-that-follows option arguments table))
+            (if value (values value arguments) (read-option-value option arguments table))
           (values (list key (if parser (funcall parser text) t)) left))))))
 
 (defun parse-options (arguments &key (table *options*) others)
@@ -105,7 +105,7 @@ OTHERS is true, an argument that is not an option becomes (:other argument). Sig
 
 ;;; They are read when this file is loaded, so that a saved program has them with it.
 
-(defparameter *texts*
+(defparameter *shell-texts*
   (loop for name in '("usage.txt" "usage-experiment.txt" "usage-merge.txt" "usage-compare.txt"
                       "spread-parallel.sh" "spread-slurm.sh")
         collect (list name (file-text (asdf:system-relative-pathname
@@ -115,10 +115,10 @@ OTHERS is true, an argument that is not an option becomes (:other argument). Sig
 (defparameter *version* (asdf:component-version (asdf:find-system "ars-magna"))
   "The version of this program.")
 
-(defun text-called (name)
-  (second (assoc name *texts* :test #'string=)))
+(defun shell-text (name)
+  (second (assoc name *shell-texts* :test #'string=)))
 
-(defun with-settings (text settings)
+(defun insert-settings (text settings)
   "Return TEXT, of a script, with its mark @SETTINGS@ replaced by SETTINGS, lists (variable value
 comment)."
   (let ((mark "@SETTINGS@"))

@@ -12,17 +12,17 @@
 (defun open-script (name)
   "Return a stream of the lines of the script NAME; - is the standard input."
   (if (string= name "-")
-      (standard-input *standard-output* t)
+      (make-standard-input *standard-output* t)
       (make-instance 'typed-text
                      :octets (open (or (script-path name)
                                        (reject-usage "There is no script ~A." name))
                                    :external-format :latin-1))))
 
-(defun object-console ()
+(defun make-object-console ()
   "Return a console that writes its output as objects to the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
-(defun report-end (session status)
+(defun report-session-end (session status)
   "Report as an object that SESSION is over, with the exit STATUS. Return the status; if output has
 failed, at least 1."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
@@ -35,15 +35,16 @@ failed, at least 1."
 ;;; A thread looks now and then at what the session does, as another watches a live run
 ;;; (src/time/pacing.lisp).
 
-(defparameter *hog-patience* 3
+(defparameter *slow-call-seconds* 3
   "The time in seconds after which a batch reports a call of users' code that has not returned.")
 
-(defconstant +time-over+ 124 "The status to exit with at a time limit, as that of timeout(1).")
+(defconstant +time-limit-status+ 124
+  "The status to exit with at a time limit, as that of timeout(1).")
 
-(defparameter *grace* 3
+(defparameter *grace-seconds* 3
   "The time in seconds that a session has to end normally after its time limit.")
 
-(defun call-under-way (session calls)
+(defun running-code-text (session calls)
   "Return a text that names the users' code running in SESSION, as recorded in CALLS, or in its live
 run, and the number of calls begun so far. While a file is loaded, return only a text that names the
 form; NIL if there is nothing to name."
@@ -54,44 +55,45 @@ form; NIL if there is nothing to name."
 
 (defun watch-for-blocking-code (session calls ended)
   "Report users' code that blocks SESSION, as recorded in CALLS, until the semaphore ENDED is
-signalled. Code blocks if the same call is seen four times, a third of *HOG-PATIENCE* apart."
+signalled. Code counts as blocking if the same call is seen four times, a third of
+*SLOW-CALL-SECONDS* apart."
   (loop with seen = nil and looks = 0
-        until (wait-on-semaphore ended (/ *hog-patience* 3))
-        do (multiple-value-bind (whose count) (call-under-way session calls)
+        until (wait-on-semaphore ended (/ *slow-call-seconds* 3))
+        do (multiple-value-bind (whose count) (running-code-text session calls)
              (unless (eql count seen) (setf seen count looks 0))
              (when (and whose count (= 4 (incf looks)))
                (report-with-line-number
                 session
                 (format nil "~A has not returned for ~D s. Control-C ends ~
                              the batch, and so does the option --time-limit SECONDS."
-                        whose *hog-patience*))))))
+                        whose *slow-call-seconds*))))))
 
-(defun say-stopped (session whose reason)
+(defun report-stop (session whose reason)
   (report-with-line-number session (format nil "stopped~@[ in ~A~]: ~A." whose reason)))
 
-(defun end-at-limit (session calls thread seconds ended)
+(defun end-at-time-limit (session calls thread seconds ended)
   "End SESSION, which THREAD runs, after SECONDS, unless the semaphore ENDED is signalled before. If
 the session cannot be ended, end this process."
   (unless (wait-on-semaphore ended seconds)
-    (let ((whose (call-under-way session calls)) (said nil))
-      (flet ((say ()
+    (let ((whose (running-code-text session calls)) (said nil))
+      (flet ((report-once ()
                (unless (shiftf said t)
-                 (say-stopped session whose (format nil "the time limit of ~A s is over"
-                                                    (amount-text seconds))))))
+                 (report-stop session whose (format nil "the time limit of ~A s is over"
+                                                    (plain-number-text seconds))))))
         (interrupt-thread thread (lambda ()
                                    (allowing-interrupts
-                                     (say)
-                                     (throw 'leave +time-over+))))
-        (unless (wait-on-semaphore ended *grace*)
-          (say)
-          (end-process +time-over+))))))
+                                     (report-once)
+                                     (throw 'leave +time-limit-status+))))
+        (unless (wait-on-semaphore ended *grace-seconds*)
+          (report-once)
+          (end-process +time-limit-status+))))))
 
-(defun report-code-on-interrupt (session calls)
+(defun report-running-code-on-interrupt (session calls)
   "Make Control-C report the users' code running in SESSION, as recorded in CALLS, before it ends
 this process at once."
   (setf *before-ending-at-once*
         (lambda ()
-          (say-stopped session (call-under-way session calls) "Control-C was pressed again"))))
+          (report-stop session (running-code-text session calls) "Control-C was pressed again"))))
 
 (defun call-with-watchers (session options function)
   "Call FUNCTION, which runs SESSION. Without a terminal, report code that does not return. The time
@@ -100,11 +102,12 @@ limit of OPTIONS, if any, ends FUNCTION."
          (ended (make-semaphore "session ended"))
          (thread (current-thread)) (seconds (option-value :time-limit options)))
     (unless (session-terminal-p session)
-      (report-code-on-interrupt session calls)
+      (report-running-code-on-interrupt session calls)
       (start-thread (lambda () (watch-for-blocking-code session calls ended))
                     "watcher of the batch"))
     (when seconds
-      (start-thread (lambda () (end-at-limit session calls thread seconds ended)) "time limit"))
+      (start-thread (lambda () (end-at-time-limit session calls thread seconds ended))
+                    "time limit"))
     (unwind-protect (funcall function)
       (signal-semaphore ended)
       (signal-semaphore ended))))

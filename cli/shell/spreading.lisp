@@ -6,11 +6,12 @@
 ;;; is this program, with the user's file loaded: `./PROGRAM experiment NAME` runs an experiment in
 ;;; it, with the same fingerprints as here.
 
-(defvar *beginning* nil "The function that a saved copy of this program calls when it starts.")
+(defvar *toplevel-function* nil
+  "The function that a saved copy of this program calls when it starts.")
 
 (defvar *saved-by-user-p* nil "True in a program that a user has saved.")
 
-(defun program-words ()
+(defun program-command-line ()
   (list (or (and (not *saved-by-user-p*) (environment-value "ARS_MAGNA_PROGRAM"))
             (first (uiop:raw-command-line-arguments)))))
 
@@ -22,18 +23,18 @@
     (handler-case (progn (check-unprotected path)
                          (when (existing-path path) (delete-file path))
                          (sb-ext:save-lisp-and-die path :executable t :save-runtime-options t
-                                                        :toplevel *beginning*))
+                                                        :toplevel *toplevel-function*))
       (error (condition)
         (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
 
-(defun save-program-with (words name)
+(defun save-program-with-experiments (words name)
   "Save this program as the executable file NAME, with the experiments named by WORDS, a file or an
 experiment. Signals BAD-LINE if the program cannot be saved."
   ;; Saving ends the Lisp that does it; so another process does it.
   (let* ((new (format nil "~A.new" name))
-         (arguments (append (rest (program-words)) (list "experiment") words
+         (arguments (append (rest (program-command-line)) (list "experiment") words
                             (list "--save-executable" new))))
-    (unless (eql 0 (run-attached (first (program-words)) arguments))
+    (unless (eql 0 (run-attached (first (program-command-line)) arguments))
       (reject-line "~A could not be saved." name))
     (replace-file (native-path name) (native-path new))))
 
@@ -49,7 +50,7 @@ experiment. Signals BAD-LINE if the program cannot be saved."
   "Lists (script trials least): the number of trials in a shard, and the smallest number of
 shards.")
 
-(defconstant +most-shards+ 1000 "The largest number of shards by default.")
+(defconstant +default-largest-shard-count+ 1000 "The largest number of shards by default.")
 
 (defun default-shards (experiment trials script)
   "Return the default number of shards for SCRIPT, if EXPERIMENT has TRIALS trials of each
@@ -58,13 +59,13 @@ condition."
       (rest (assoc script *shards-of-scripts* :test #'string=))
     (min trials
          (clamp (ceiling (* trials (length (experiment-conditions experiment))) size)
-                least +most-shards+))))
+                least +default-largest-shard-count+))))
 
-(defun trials-of (experiment options)
+(defun trial-count (experiment options)
   (option-value :trials options (experiment-trials experiment)))
 
 (defun common-settings (experiment options script)
-  (let ((trials (trials-of experiment options)))
+  (let ((trials (trial-count experiment options)))
     `(("experiment" ,(string-downcase (experiment-name experiment)) "what is run")
       ("trials" ,trials "of each condition")
       ("shards" ,(or (option-value :shards options) (default-shards experiment trials script))
@@ -96,22 +97,22 @@ condition."
       (when there
         (let ((old (native-path (format nil "~A~~" (native-name path)))))
           (replace-file old path)
-          (say "~A was there with another text; that file is ~A now." (native-name path)
-               (native-name old))))
+          (print-notice "~A was there with another text; that file is ~A now." (native-name path)
+                        (native-name old))))
       (write-file-anew (lambda (out) (write-string text out)) path "the script"
                        :remedy "remove it, or give another directory"))
     path))
 
-(defun spread (experiment words options script template settings)
+(defun run-by-script (experiment words options script template settings)
   "Write SCRIPT, which runs EXPERIMENT, named by the arguments WORDS, on many processors, and run
 it. TEMPLATE is the template of the script, SETTINGS a function that returns its settings. Return
 the exit status."
   (let ((directory (ensure-results-directory (option-value :out options))))
     ;; Rows must not be replaced by a program that cannot continue them.
     (check-same-code experiment directory)
-    (save-program-with words (native-name (merge-pathnames "ars-magna" directory)))
+    (save-program-with-experiments words (native-name (merge-pathnames "ars-magna" directory)))
     (let ((path (write-script script
-                              (with-settings (text-called template)
+                              (insert-settings (shell-text template)
                                 (funcall settings experiment options directory))
                               directory)))
       (or (run-attached "sh" (list (native-name path)))

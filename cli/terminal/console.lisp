@@ -2,12 +2,13 @@
 
 (in-package :ars-magna.cli)
 
-(export '(console console-line console-asked-p wipe draw leave-line clear-screen fitted))
+(export '(console console-line console-asked-p erase-typed-line draw-typed-line finish-typed-line
+          clear-screen fit-to-window))
 
 ;;; Output of the simulator and of users' programs comes from other threads, at any time. The
 ;;; console keeps each write in one piece. It records when a prompt has been written over and must
-;;; be shown again. A terminal moves the cursor when the user presses Return; only ANSWERED tells
-;;; the console of that. Output that cannot be delivered is lost, and the program ends.
+;;; be shown again. A terminal moves the cursor when the user presses Return; only NOTE-ANSWERED
+;;; tells the console of that. Output that cannot be delivered is lost, and the program ends.
 ;;;
 ;;; While the prompt edits a line itself, that line is below all output, after the prompt. It is
 ;;; erased before output is written, and drawn again when the output is shown.
@@ -26,7 +27,7 @@
    (question :initform nil :accessor console-prompt)
    (asked-p :initform nil :accessor console-asked-p)
    (asking-told-p :initform nil :accessor console-asking-told-p)
-   (overwritten-p :initform nil :accessor console-overwritten-p)
+   (prompt-overwritten-p :initform nil :accessor console-overwritten-p)
    (trouble :initform nil :accessor console-trouble)
    (colored-p :initform nil :accessor console-colored-p)
    (held-back-p :initform nil :accessor console-held-back-p)
@@ -35,11 +36,12 @@
 returns columns and rows of the terminal's window, or NIL if there is no window. REST is the output
 since the last newline, if it is short. WRAPPED-P is true if REST fills a row and the cursor is in
 the next row. EDITED-P is true if the prompt edits typed lines. TYPED is the drawn-line being typed,
-or NIL. QUESTION is the prompt shown to the user, or NIL. OVERWRITTEN-P is true if output follows
-the prompt. ASKED-P is true while a program, not the prompt, reads typed input. ASKING-TOLD-P is
-true if the user has been told since the last prompt that a program reads. TROUBLE is the error of a
-failed write, :OVER after DISCARD-OUTPUT, or NIL. COLORED-P is true if messages and prompts have
-colours. While HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings, newest first."))
+or NIL. QUESTION is the prompt shown to the user, or NIL. PROMPT-OVERWRITTEN-P is true if output
+follows the prompt. ASKED-P is true while a program, not the prompt, reads typed input.
+ASKING-TOLD-P is true if the user has been told since the last prompt that a program reads. TROUBLE
+is the error of a failed write, :OVER after DISCARD-OUTPUT, or NIL. COLORED-P is true if messages
+and prompts have colours. While HELD-BACK-P is true, output is kept in HELD-BACK, a list of strings,
+newest first."))
 
 (setf (documentation 'console-line 'function)
       "Return the drawn-line that is being typed on the console, or NIL. Can be set."
@@ -77,7 +79,7 @@ thread is completed first."
   "Run BODY with STREAM bound to the stream of CONSOLE, while no other thread writes to CONSOLE."
   `(call-with-console (lambda (,stream) ,@body) ,console))
 
-(defun painted (text ink console)
+(defun paint-for-console (text ink console)
   (if (console-colored-p console) (paint text ink) text))
 
 (defmethod stream-line-column ((console console))
@@ -92,15 +94,15 @@ thread is completed first."
 
 ;;; Where the cursor is.
 
-(defun begin-row (console)
+(defun reset-row (console)
   (setf (console-column console) 0
         (console-rest console) ""
         (console-wrapped-p console) nil))
 
-(defun note-written (console string start end)
+(defun track-output (console string start end)
   (let ((newline (position #\Newline string :start start :end end :from-end t)))
     (when newline
-      (begin-row console)
+      (reset-row console)
       (setf start (1+ newline)))
     (incf (console-column console) (- end start))
     (setf (console-rest console)
@@ -108,7 +110,7 @@ thread is completed first."
               (concatenate 'string (console-rest console) (subseq string start end))
               ""))))
 
-(defun column-of-row (console)
+(defun cursor-column (console)
   "Return the cursor's column in the window of CONSOLE; 0 if the cursor is after the last column."
   (mod (if (string= "" (console-rest console))
            (console-column console)
@@ -117,22 +119,22 @@ thread is completed first."
 
 ;;; The line that is being typed.
 
-(defun call-in-window (function console stream)
+(defun call-with-line-and-window (function console stream)
   "Call FUNCTION with the line of CONSOLE, STREAM, and the numbers of columns and rows of the
 window."
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
-(defgeneric wipe (console stream)
+(defgeneric erase-typed-line (console stream)
   (:documentation "Erase the line being typed, if it is shown, and move the cursor to the end of the
 output above.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (drawn-line-shown line))
-        (call-in-window #'wipe-line console stream)
+        (call-with-line-and-window #'erase-drawn-line console stream)
         (unless (or (zerop (console-column console)) (console-wrapped-p console))
-          (format stream "~A~A" (cursor-up 1) (cursor-right (column-of-row console))))))))
+          (format stream "~A~A" (cursor-up-code 1) (cursor-right-code (cursor-column console))))))))
 
-(defgeneric draw (console stream)
+(defgeneric draw-typed-line (console stream)
   (:documentation "Draw the line being typed below the output, if there is such a line and it is not
 shown.")
   (:method ((console console) stream)
@@ -140,40 +142,40 @@ shown.")
       (when (and line (null (drawn-line-shown line)))
         (unless (or (zerop (console-column console)) (console-wrapped-p console))
           (terpri stream)
-          (setf (console-wrapped-p console) (zerop (column-of-row console))))
-        (call-in-window #'draw-line console stream)))))
+          (setf (console-wrapped-p console) (zerop (cursor-column console))))
+        (call-with-line-and-window #'draw-line console stream)))))
 
-(defgeneric leave-line (console stream)
+(defgeneric finish-typed-line (console stream)
   (:documentation "Leave the line being typed as it is; further output begins below.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
-      (wipe console stream)
+      (erase-typed-line console stream)
       (setf (drawn-line-point line) (length (drawn-line-text line)))
-      (draw console stream)
+      (draw-typed-line console stream)
       (when (plusp (drawn-line-column line)) (terpri stream)))))
 
-(defun change-line (console function)
+(defun change-typed-line (console function)
   "Call FUNCTION with the line being typed, if any, and draw the line again."
   (with-console (stream console)
     (when (console-line console)
-      (wipe console stream)
+      (erase-typed-line console stream)
       (funcall function (console-line console))
-      (draw console stream)
+      (draw-typed-line console stream)
       (finish-output stream))))
 
-(defun begin-line (console)
+(defun begin-typed-line (console)
   "Begin a line to type after the last output, unless a line is being typed already."
   (with-console (stream console)
     (unless (console-line console)
       (when (/= (console-column console) (length (console-rest console)))
-        (put-string (string #\Newline) console stream))
+        (write-or-hold-back (string #\Newline) console stream))
       (let ((prompt (console-rest console)))
         (setf (console-line console)
               (make-drawn-line :label prompt :shown (list prompt "" 0))))
       ;; The last output now belongs to the line. Under a shown line, it does not.
-      (begin-row console))
-    (wipe console stream)
-    (draw console stream)
+      (reset-row console))
+    (erase-typed-line console stream)
+    (draw-typed-line console stream)
     (finish-output stream)))
 
 (defun redraw-if-resized (console)
@@ -182,62 +184,62 @@ shown.")
     (when (and line
                (drawn-line-columns line)
                (/= (drawn-line-columns line) (values (funcall (console-window console)))))
-      (change-line console (constantly nil)))))
+      (change-typed-line console (constantly nil)))))
 
-(defun hide-line (console)
-  "Erase the line being typed. It is drawn again with the next output."
+(defun hide-typed-line (console)
+  "Erase the line being typed. The next output draws the line again."
   (with-console (stream console)
-    (wipe console stream)
+    (erase-typed-line console stream)
     (finish-output stream)))
 
 (defgeneric clear-screen (console stream)
   (:documentation "Clear the screen.")
   (:method ((console console) stream)
-    (write-string (window-cleared) stream)))
+    (write-string (clear-window-code) stream)))
 
 (defun clear-window (console)
   "Clear the window except for the line being typed."
-  (hide-line console)
+  (hide-typed-line console)
   (with-console (stream console)
     (clear-screen console stream)
-    (begin-row console)
-    (draw console stream)
+    (reset-row console)
+    (draw-typed-line console stream)
     (finish-output stream)))
 
-(defun end-line (console)
+(defun end-typed-line (console)
   "Leave what was typed as it is; further output begins below."
   (with-console (stream console)
-    (leave-line console stream)
+    (finish-typed-line console stream)
     (finish-output stream)
     (setf (console-line console) nil
           (console-prompt console) nil)
-    (begin-row console)))
+    (reset-row console)))
 
 ;;; Writing.
 
-(defun put-now (string console stream start end)
+(defun write-below-now (string console stream start end)
   "Write STRING from START to END to STREAM, the stream of CONSOLE. The line being typed must be
 erased."
   ;; The cursor is there already.
   (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
-    (begin-row console)
+    (reset-row console)
     (incf start))
   (write-string string stream :start start :end end)
-  (note-written console string start end)
+  (track-output console string start end)
   (unless (console-line console) (setf (console-overwritten-p console) t)))
 
-(defun put-string (string console stream &optional (start 0) (end (length string)))
+(defun write-or-hold-back (string console stream &optional (start 0) (end (length string)))
   "Write STRING from START to END to STREAM, the locked stream of CONSOLE. Keep STRING instead if
 CONSOLE holds back output."
   (cond ((= start end))
         ((console-held-back-p console) (hold-back (subseq string start end) console))
-        (t (wipe console stream)
-           (put-now string console stream start end))))
+        (t (erase-typed-line console stream)
+           (write-below-now string console stream start end))))
 
-(defun put-fresh (text console stream)
-  "Write TEXT like PUT-STRING, but at the beginning of a line."
-  (when (plusp (console-column console)) (put-string (string #\Newline) console stream))
-  (put-string text console stream))
+(defun write-on-new-line (text console stream)
+  "Write TEXT like WRITE-OR-HOLD-BACK, but at the beginning of a line."
+  (when (plusp (console-column console)) (write-or-hold-back (string #\Newline) console stream))
+  (write-or-hold-back text console stream))
 
 (defgeneric mirrors-of (console)
   (:documentation "Return the other consoles that show what this thread writes to CONSOLE."))
@@ -251,23 +253,24 @@ CONSOLE holds back output."
 
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
-    (put-string string console stream start (or end (length string))))
+    (write-or-hold-back string console stream start (or end (length string))))
   (call-with-mirrors (lambda (mirror) (write-string string mirror :start start :end end)) console)
   string)
 
 (defun write-fresh (text console)
   "Write TEXT to CONSOLE, at the beginning of a line and without output of other threads between."
-  (with-console (stream console) (put-fresh text console stream)))
+  (with-console (stream console) (write-on-new-line text console stream)))
 
 (defun write-after-prompt (text console)
   "Write TEXT after the prompt; if something has been typed after the prompt, write TEXT above it."
   (with-console (stream console)
     (let ((line (console-line console)))
-      (cond ((null line) (put-string text console stream))
-            ((string/= "" (drawn-line-text line)) (put-fresh text console stream))
-            (t (put-fresh (concatenate 'string (drawn-line-label line) text) console stream))))))
+      (cond ((null line) (write-or-hold-back text console stream))
+            ((string/= "" (drawn-line-text line)) (write-on-new-line text console stream))
+            (t (write-on-new-line (concatenate 'string (drawn-line-label line) text)
+                                  console stream))))))
 
-(defgeneric fitted (text console &optional label)
+(defgeneric fit-to-window (text console &optional label)
   (:documentation "Return TEXT for output after LABEL. If CONSOLE has a window, lines are broken
 between words to fit the window.")
   (:method (text (console console) &optional (label ""))
@@ -278,7 +281,7 @@ between words to fit the window.")
 (defun write-fitted (console control &rest arguments)
   "Format CONTROL with ARGUMENTS, break the lines to fit the window, and write the text at the
 beginning of a line of CONSOLE."
-  (write-fresh (fitted (apply #'format nil control arguments) console) console))
+  (write-fresh (fit-to-window (apply #'format nil control arguments) console) console))
 
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))
@@ -286,13 +289,13 @@ beginning of a line of CONSOLE."
 
 (defmethod stream-force-output ((console console))
   (with-console (stream console)
-    (draw console stream)
+    (draw-typed-line console stream)
     (force-output stream))
   (call-with-mirrors #'force-output console))
 
 (defmethod stream-finish-output ((console console))
   (with-console (stream console)
-    (draw console stream)
+    (draw-typed-line console stream)
     (finish-output stream))
   (call-with-mirrors #'finish-output console))
 
@@ -302,44 +305,44 @@ beginning of a line of CONSOLE."
   "Put PROMPT at the start of a line, or before the line that is being typed."
   (let ((typed (console-line console)))
     (cond ((not (null typed))
-           (wipe console stream)
+           (erase-typed-line console stream)
            (setf (drawn-line-label typed) prompt))
           ((console-edited-p console)
            (setf (console-line console) (make-drawn-line :label prompt)))
-          (t (put-fresh prompt console stream)))))
+          (t (write-on-new-line prompt console stream)))))
 
 (defun show-prompt (console prompt)
   (setf (console-asking-told-p console) nil)
   (with-console (stream console)
-    (put-prompt (painted prompt :bold console) console stream)
-    (draw console stream)
+    (put-prompt (paint-for-console prompt :bold console) console stream)
+    (draw-typed-line console stream)
     (finish-output stream)
     (setf (console-overwritten-p console) nil
           (console-prompt console) prompt)))
 
-(defun unanswered-p (console)
+(defun prompt-unanswered-p (console)
   "True if a prompt is shown and nothing has been written after it."
   (and (console-prompt console) (not (console-overwritten-p console))))
 
-(defun overwritten-p (console)
+(defun prompt-overwritten-p (console)
   "True if a prompt is shown and something has been written after it."
   (and (console-prompt console) (console-overwritten-p console)))
 
 (defun restore-prompt (console)
   "Show the prompt again if something was written after it, and flush the output."
-  (when (overwritten-p console)
+  (when (prompt-overwritten-p console)
     (show-prompt console (console-prompt console)))
   (finish-output console))
 
-(defun answered (console)
+(defun note-answered (console)
   "Record that the user has finished the line after the prompt."
-  (cond ((console-line console) (end-line console))
+  (cond ((console-line console) (end-typed-line console))
         (t (setf (console-prompt console) nil)
-           (unless (console-edited-p console) (begin-row console)))))
+           (unless (console-edited-p console) (reset-row console)))))
 
 (defun show-answer (console text)
   "Show TEXT as if the user had typed TEXT and pressed Return."
   (if (console-line console)
-      (change-line console (lambda (line) (setf (drawn-line-text line) text)))
+      (change-typed-line console (lambda (line) (setf (drawn-line-text line) text)))
       (format console "~A~%" text))
-  (answered console))
+  (note-answered console))

@@ -23,12 +23,12 @@ last" :writable))
 
 ;;; Rows.
 
-(defun shown-chars (label text)
+(defun displayed-chars (label text)
   "Return a list with the text to show for each character of LABEL, unchanged, and of TEXT."
   (append (map 'list #'string label)
           (map 'list (lambda (char) (visible (substitute #\Space #\Tab (string char)))) text)))
 
-(defun rows-of (label text point columns)
+(defun break-into-rows (label text point columns)
   "Break LABEL and TEXT into rows of at most COLUMNS. Return a list of lists (string end): END is
 :NEWLINE, or NIL for a full row or the last row. Also return the row and the column of POINT, a
 position in TEXT."
@@ -47,7 +47,7 @@ position in TEXT."
                (incf column width)
                (when (= column columns) (end-row nil))))
       (loop with widths = (columns-of-chars label)
-            for shown in (shown-chars label text)
+            for shown in (displayed-chars label text)
             for position from (- (length label))
             do (note-place position)
                (cond ((string= shown (string #\Newline)) (end-row :newline))
@@ -58,7 +58,7 @@ position in TEXT."
       (end-row nil))
     (values (nreverse rows) place-row place-column)))
 
-(defun window-on (rows place-row height)
+(defun visible-rows (rows place-row height)
   "Return those of ROWS around PLACE-ROW that fit into HEIGHT, and the number of rows before them."
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
@@ -66,8 +66,8 @@ position in TEXT."
 (defun rows-to-show (label text point columns height)
   "Return the rows of a line to show in a window of COLUMNS and HEIGHT, and the cursor's row and
 column."
-  (multiple-value-bind (rows row column) (rows-of label text point columns)
-    (multiple-value-bind (rows start) (window-on rows row height)
+  (multiple-value-bind (rows row column) (break-into-rows label text point columns)
+    (multiple-value-bind (rows start) (visible-rows rows row height)
       (values rows (- row start) column))))
 
 ;;; Drawing.
@@ -85,13 +85,15 @@ column."
   (with-accessors ((label drawn-line-label) (text drawn-line-text) (point drawn-line-point)) line
     (multiple-value-bind (rows row column) (rows-to-show label text point columns height)
       (write-rows rows stream)
-      (format stream "~A~C~A" (cursor-up (- (length rows) row 1)) #\Return (cursor-right column))
+      (format stream "~A~C~A" (cursor-up-code (- (length rows) row 1)) #\Return
+              (cursor-right-code column))
       (setf (drawn-line-column line) column
             (drawn-line-columns line) columns))
     (setf (drawn-line-shown line) (list label text point))))
 
-(defun wipe-line (line stream columns height)
+(defun erase-drawn-line (line stream columns height)
   "Erase LINE from the screen. Afterwards the cursor is where LINE began."
   (destructuring-bind (label text point) (shiftf (drawn-line-shown line) '())
-    (format stream "~A~C~A" (cursor-up (nth-value 1 (rows-to-show label text point columns height)))
-            #\Return (cleared-below))))
+    (format stream "~A~C~A"
+            (cursor-up-code (nth-value 1 (rows-to-show label text point columns height)))
+            #\Return (clear-below-code))))

@@ -76,54 +76,54 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 
 ;;; Moving the cursor, and erasing.
 
-(defun cursor-up (count)
+(defun cursor-up-code (count)
   (if (plusp count) (escape "~DA" count) ""))
 
-(defun cursor-right (count)
+(defun cursor-right-code (count)
   (if (plusp count) (escape "~DC" count) ""))
 
-(defun row-cleared ()
+(defun clear-row-code ()
   "Return the code that erases the rest of the row after the cursor."
   (escape "K"))
 
-(defun cleared-below ()
+(defun clear-below-code ()
   "Return the code that erases the rest of the screen after the cursor."
   (escape "J"))
 
-(defun window-cleared ()
+(defun clear-window-code ()
   "Return the code that erases everything and moves the cursor to the upper left."
   (format nil "~A~A" (escape "H") (escape "2J")))
 
 ;;; What is pasted.
 
-(defun paste-in-brackets (on)
+(defun paste-marking-code (on)
   "Return the code that makes a terminal mark pasted text, or no longer mark it if ON is NIL."
   (escape "?2004~:[l~;h~]" on))
 
-(defun paste-ended ()
+(defun paste-end-code ()
   "Return the code that a terminal sends after pasted text."
   (escape "201~~"))
 
 ;;; A separate screen, for output that is updated in place.
 
-(defun screen-begun ()
+(defun begin-screen-code ()
   "Return the code that saves the terminal's screen and shows an empty one without cursor."
   (format nil "~A~A~A" (escape "?1049h") (escape "?25l") (escape "2J")))
 
-(defun screen-ended ()
-  "Return the code that restores the cursor and the screen that SCREEN-BEGUN saved."
+(defun end-screen-code ()
+  "Return the code that restores the cursor and the screen that BEGIN-SCREEN-CODE saved."
   (format nil "~A~A" (escape "?25h") (escape "?1049l")))
 
-(defun over-screen (text)
+(defun overwrite-screen-code (text)
   "Return the code that overwrites the whole screen with the lines of TEXT."
   (with-output-to-string (out)
     (write-string (escape "H") out)
     (loop for start = 0 then (1+ end)
           for end = (position #\Newline text :start start)
-          do (format out "~A~A" (subseq text start end) (row-cleared))
+          do (format out "~A~A" (subseq text start end) (clear-row-code))
           when end do (format out "~C~%" #\Return)
           while end)
-    (write-string (cleared-below) out)))
+    (write-string (clear-below-code) out)))
 
 ;;;; Columns
 
@@ -151,8 +151,8 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 ;;; Long lines are broken between words.
 
 (defun breaking-point (line columns)
-  "Return the position of the blank at which to break LINE. The first part then has at most COLUMNS,
-if possible. NIL if LINE fits into COLUMNS or has no blank."
+  "Return the position of the blank at which to break LINE. The part before that blank has at most
+COLUMNS, if possible. NIL if LINE fits into COLUMNS or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line
@@ -173,16 +173,16 @@ gap after a label, as in \"Time:    Tick 0\", does not count."
                                        (position #\Space line :start (1+ colon) :test #'char/=))
                                   indent))))
 
-(defun pieces-of-line (line first columns)
+(defun break-line-at-blanks (line first columns)
   "Break LINE at blanks into lines of at most COLUMNS, the first of at most FIRST. Return the list
 of these lines. Further lines are indented like LINE."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))
         (cons (string-right-trim " " (subseq line 0 place))
-              (pieces-of-line (format nil "~VA~A" indent ""
-                                      (string-left-trim " " (subseq line place)))
-                              columns columns))
+              (break-line-at-blanks (format nil "~VA~A" indent ""
+                                            (string-left-trim " " (subseq line place)))
+                                    columns columns))
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
@@ -191,5 +191,5 @@ are already taken."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns
-        append (pieces-of-line line first columns) into all
+        append (break-line-at-blanks line first columns) into all
         finally (return (format nil "~{~A~^~%~}" all))))

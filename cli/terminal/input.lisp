@@ -18,7 +18,7 @@
   (:documentation "A typed line is too long. BEGINNING is its first part. OUTLINE is a shorter text
 with the same parentheses, quotes, comment marks and beginnings of words."))
 
-(defvar *program-reads* nil
+(defvar *before-program-reads* nil
   "A function to call before a user's program reads a typed line. NIL while the prompt reads.")
 
 (defclass typed-text (fundamental-character-input-stream)
@@ -33,12 +33,12 @@ with the same parentheses, quotes, comment marks and beginnings of words."))
 user types the text. COUNT is the number of lines read. FOLLOWED-P is true if more input was
 available when the last line was read."))
 
-(defun more-at-once-p (stream)
+(defun input-available-p (stream)
   "True if STREAM, a stream of octets, has more input that can be read without waiting."
   (handler-case (listen stream)
     (stream-error () nil)))
 
-(defgeneric lines-typed (stream)
+(defgeneric count-of-lines-read (stream)
   (:documentation "Return the number of lines that the prompt and programs have read from STREAM.")
   (:method (stream)
     (declare (ignore stream))
@@ -51,16 +51,16 @@ available when the last line was read."))
 (defmethod typed-by-hand-p ((stream stream))
   (interactive-stream-p stream))
 
-(defun outlining-p (char last)
+(defun outline-char-p (char last)
   "True if CHAR, which follows LAST, belongs to the outline of a line: Lisp punctuation, or the
 start of a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
     (or (mark-p char) (mark-p last) (char= char #\Newline)
         (and (blank-p last) (not (blank-p char))))))
 
-(defun read-octets (octets)
+(defun read-octet-line (octets)
   "Read a line from the stream OCTETS. Return the line with its newline, and true if it was too
-long. The end of such a line is only an outline."
+long. The end of a line that is too long is only an outline."
   (let* ((count 0)
          (line (with-output-to-string (out)
                  (handler-case
@@ -68,19 +68,20 @@ long. The end of such a line is only an outline."
                            for char = (read-char octets nil)
                            while char
                            do (when (or (<= count +longest-line-typed+)
-                                        (and (<= count +longest-outline+) (outlining-p char last)))
+                                        (and (<= count +longest-outline+)
+                                             (outline-char-p char last)))
                                 (write-char char out))
                               (incf count)
                            until (char= char #\Newline))
                    (stream-error () nil)))))
     (values line (< (1+ +longest-line-typed+) count))))
 
-(defun reject-length (octets)
+(defun reject-long-line (octets)
   "Signal LINE-TOO-LONG for a line with the outline OCTETS."
   (let ((outline (string-right-trim '(#\Newline) (decoded octets))))
     (error 'line-too-long
            :beginning (cut outline 60) :outline outline
-           :text (format nil "The line is longer than ~D bytes. Put what is in it into a file, and ~
+           :text (format nil "The line is longer than ~D bytes. Put its text into a file, and ~
                               (load \"FILE\")."
                          +longest-line-typed+))))
 
@@ -88,33 +89,33 @@ long. The end of such a line is only an outline."
   (:documentation "Return the next line typed into STREAM, with its newline if it has one; \"\" at
 the end of the input. Signals BAD-LINE if the line is too long.")
   (:method ((stream typed-text))
-    (multiple-value-bind (octets too-long-p) (read-octets (typed-octets stream))
-      (when too-long-p (reject-length octets))
+    (multiple-value-bind (octets too-long-p) (read-octet-line (typed-octets stream))
+      (when too-long-p (reject-long-line octets))
       ;; Some editors begin files with a byte order mark.
       (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
 
-(defun fill-line (stream)
+(defun ensure-unread-line (stream)
   "Read the next line of STREAM if the current line has been used up."
   (when (= (typed-position stream) (length (typed-line stream)))
-    (when *program-reads* (funcall *program-reads*))
+    (when *before-program-reads* (funcall *before-program-reads*))
     (setf (typed-position stream) 0
           (typed-line stream) "")
     (incf (typed-count stream))
     (setf (typed-line stream) (next-typed-line stream)
-          (typed-followed-p stream) (more-at-once-p (typed-octets stream)))))
+          (typed-followed-p stream) (input-available-p (typed-octets stream)))))
 
-(defun line-left-p (stream)
+(defun unread-line-p (stream)
   (< (typed-position stream) (length (typed-line stream))))
 
 (defmethod stream-read-line ((stream typed-text))
-  (fill-line stream)
+  (ensure-unread-line stream)
   (let* ((line (typed-line stream))
          (start (shiftf (typed-position stream) (length line)))
          (end (position #\Newline line :start start)))
     (values (subseq line start end) (null end))))
 
 (defmethod stream-read-char ((stream typed-text))
-  (fill-line stream)
+  (ensure-unread-line stream)
   (let ((position (typed-position stream)))
     (cond ((= position (length (typed-line stream))) :eof)
           (t (incf (typed-position stream))
@@ -131,7 +132,7 @@ the end of the input. Signals BAD-LINE if the line is too long.")
 
 (defgeneric typed-ahead-p (stream)
   (:documentation "True if STREAM has typed input that can be read without waiting.")
-  (:method ((stream typed-text)) (line-left-p stream)))
+  (:method ((stream typed-text)) (unread-line-p stream)))
 
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
@@ -148,22 +149,22 @@ the end of the input. Signals BAD-LINE if the line is too long.")
 
 ;;; Only streams of this process can be checked, without waiting, for typed input.
 
-(defun source-of (stream)
+(defun source-stream (stream)
   "Return the stream from which STREAM gets its input."
   (typecase stream
     (typed-text (typed-octets stream))
-    (synonym-stream (source-of (symbol-value (synonym-stream-symbol stream))))
+    (synonym-stream (source-stream (symbol-value (synonym-stream-symbol stream))))
     (t stream)))
 
 (defun terminal-stream-p (stream)
   "True if STREAM is on a terminal, as far as that can be found out."
-  (let ((source (source-of stream)))
+  (let ((source (source-stream stream)))
     (and (typep source 'descriptor-stream) (interactive-stream-p source))))
 
-(defun typed-within-p (stream seconds)
-  "Wait up to SECONDS for typed input in STREAM, or for its end. Return true if one of them came."
+(defun typed-input-within-p (stream seconds)
+  "Wait up to SECONDS for typed input in STREAM, or for its end. Return false if neither came."
   (or (and (typep stream 'typed-text) (typed-ahead-p stream))
-      (octets-within-p (source-of stream) seconds)))
+      (octets-within-p (source-stream stream) seconds)))
 
 ;;;; What another thread hands over
 
@@ -177,31 +178,31 @@ the end of the input. Signals BAD-LINE if the line is too long.")
    (octets :initform "" :accessor queued-string)
    (start :initform 0 :accessor queued-start)
    (over-p :initform nil :accessor queued-over-p))
-  (:documentation "An input stream of octets that other threads supply by REVISE-OCTETS. Reading
-waits for octets."))
+  (:documentation "An input stream of octets that other threads supply by CHANGE-UNREAD-OCTETS.
+Reading waits for octets."))
 
 (defun unread-octets (stream)
   (subseq (queued-string stream) (queued-start stream)))
 
-(defun leave-octets (stream octets)
+(defun set-unread-octets (stream octets)
   "Replace the unread octets of STREAM by OCTETS, a string. The lock of STREAM must be held."
   (setf (queued-string stream) octets
         (queued-start stream) 0))
 
-(defun revise-octets (stream function)
+(defun change-unread-octets (stream function)
   "Call FUNCTION with the unread octets of STREAM, a string, and replace them by the string that
 FUNCTION returns. No other thread reads from STREAM meanwhile."
   (with-lock ((queued-lock stream))
-    (leave-octets stream (funcall function (unread-octets stream))))
+    (set-unread-octets stream (funcall function (unread-octets stream))))
   (signal-semaphore (queued-ready stream))
   (values))
 
-(defun end-octets (stream)
+(defun end-queued-input (stream)
   (with-lock ((queued-lock stream)) (setf (queued-over-p stream) t))
   (signal-semaphore (queued-ready stream))
   (values))
 
-(defun next-queued (stream)
+(defun next-queued-octet (stream)
   "Return the next octet of STREAM, :EOF at the end, or NIL if no octet is available yet."
   (with-lock ((queued-lock stream))
     (cond ((listen stream) (prog1 (char (queued-string stream) (queued-start stream))
@@ -209,23 +210,23 @@ FUNCTION returns. No other thread reads from STREAM meanwhile."
           ((queued-over-p stream) :eof))))
 
 (defmethod stream-read-char-no-hang ((stream queued-octets))
-  (next-queued stream))
+  (next-queued-octet stream))
 
 (defmethod stream-read-char ((stream queued-octets))
-  (loop (let ((char (next-queued stream)))
+  (loop (let ((char (next-queued-octet stream)))
           (when char (return char)))
         (wait-on-semaphore (queued-ready stream))))
 
 (defmethod stream-unread-char ((stream queued-octets) char)
   (with-lock ((queued-lock stream))
-    (leave-octets stream (uiop:strcat (string char) (unread-octets stream))))
+    (set-unread-octets stream (uiop:strcat (string char) (unread-octets stream))))
   nil)
 
 (defmethod stream-listen ((stream queued-octets))
   (< (queued-start stream) (length (queued-string stream))))
 
 (defmethod stream-clear-input ((stream queued-octets))
-  (with-lock ((queued-lock stream)) (leave-octets stream ""))
+  (with-lock ((queued-lock stream)) (set-unread-octets stream ""))
   nil)
 
 (defmethod octets-within-p ((stream queued-octets) seconds)

@@ -24,7 +24,7 @@ remedy."
   :test #'string=
   :documentation "The message that replaces an error message which cannot be printed.")
 
-(defun ending-text (condition)
+(defun ending-condition-text (condition)
   "Return the message of CONDITION, which ends this process, or +UNPRINTABLE+."
   (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
 
@@ -33,32 +33,33 @@ remedy."
   (if (typep condition 'lock-violation)
       (let ((symbol (locked-symbol condition)))
         (if symbol
-            (format nil "~A is a name of ~A. Call yours otherwise, or begin with (shadow '~A)."
+            (format nil "~A is a name of the package ~A. Choose another name, or begin with ~
+                         (shadow '~A)."
                     symbol (package-name (symbol-package symbol)) symbol)
             (format-briefly nil "~A" condition)))
       (text-of-condition condition)))
 
 ;;; Lines.
 
-(defparameter *longest-complaint* 1000 "The largest number of characters of an error message to
-show.")
+(defparameter *longest-error-text* 1000
+  "The largest number of characters of an error message to show.")
 
-(defun complaint-text (text)
-  "Return TEXT, an error message, on one line of at most *LONGEST-COMPLAINT* characters."
-  (visible (cut (one-line (cut text (* 3 *longest-complaint*))) *longest-complaint*)))
+(defun short-error-text (text)
+  "Return TEXT, an error message, on one line of at most *LONGEST-ERROR-TEXT* characters."
+  (visible (cut (one-line (cut text (* 3 *longest-error-text*))) *longest-error-text*)))
 
 ;;;; Values
 
 ;;; As in the session of manual E: positions and angles have two decimals, readings one; truth is
 ;;; Yes and No; symbols are capitalised; four attributes go on a line.
 
-(defun amount-text (number)
+(defun plain-number-text (number)
   "Return NUMBER as text: an integer, or up to four decimals without zeros at the end."
   (if (= number (round number))
       (format nil "~D" (round number))
       (string-right-trim "0" (format nil "~,4F" number))))
 
-(defun reading-text (number)
+(defun sensor-reading-text (number)
   (format nil "~,1F" number))
 
 (defun value-text (value number-text)
@@ -73,7 +74,7 @@ numbers."
                                      collect (value-text element number-text))))
         (t (princ-to-string value))))
 
-(defun write-descriptor (descriptor &optional (number-text #'reading-text))
+(defun write-descriptor (descriptor &optional (number-text #'sensor-reading-text))
   "Write DESCRIPTOR, a list of lists (attribute value), four attributes to a line."
   (loop for rest = descriptor then (nthcdr 4 rest)
         while rest
@@ -81,30 +82,30 @@ numbers."
                    (loop for (key value) in rest repeat 4
                          collect (list key (value-text value number-text))))))
 
-(defun kind-text (designator)
+(defun designator-kind-text (designator)
   "Return the kind of DESIGNATOR, a property list from STATUS, as text, such as Local Object."
   (format nil "~:(~A ~A~)" (getf designator :type) (getf designator :of)))
 
-(defun bearing-text (designator)
+(defun designator-bearing-text (designator)
   "Return the distance and the angle of DESIGNATOR, a property list from STATUS, as text."
   (format nil "~,2F, ~,2F" (hundredths (getf designator :distance))
           (hundredths (getf designator :angle))))
 
-(defun location-text (part)
+(defun part-location-text (part)
   "Return a text that tells what PART is inside of, or NIL (manual E; reading 202)."
   (let ((location (part-location part)))
     (cond ((null location) nil)
           ((storage-bin-p location) "Located in storage-bin.")
           (t (format nil "Located in ~A." (location-name location))))))
 
-(defun put-line (control &rest arguments)
+(defun write-trimmed-line (control &rest arguments)
   "Write a line formatted from CONTROL and ARGUMENTS, without blanks at its end."
   (format t "~A~%" (string-right-trim " " (apply #'format nil control arguments))))
 
 (defun rate-text (rate)
   (if (eq rate :free)
       "as fast as it can"
-      (format nil "~A ticks a second" (amount-text rate))))
+      (format nil "~A ticks a second" (plain-number-text rate))))
 
 ;;; Running text.
 

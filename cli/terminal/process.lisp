@@ -34,10 +34,10 @@ in."
 (defvar *interrupts-while-ending* nil
   "The number of times Control-C was pressed while this process was ending; NIL before it ends.")
 
-(defconstant +patience-of-users+ 3
+(defconstant +interrupts-before-exit+ 3
   "The number of times Control-C must be pressed, while this process is ending, to end it at once.")
 
-(defun end-interrupted ()
+(defun exit-after-interrupts ()
   (say-on-error-output "stopped.")
   (end-process 130))
 
@@ -52,26 +52,27 @@ in."
   "Handle Control-C. If this process is already ending, count the interrupt, and exit after too
 many."
   (cond ((null *interrupts-while-ending*) (handle-interrupt))
-        ((< (incf *interrupts-while-ending*) +patience-of-users+))
-        (t (end-interrupted))))
+        ((< (incf *interrupts-while-ending*) +interrupts-before-exit+))
+        (t (exit-after-interrupts))))
 
-(defvar *diagnostics* nil "The stream for this thread's error output; once the process is ending, a
-stream that discards it.")
+(defvar *ending-error-output* nil
+  "The stream for this thread's error output; once the process is ending, a stream that discards
+it.")
 
-(defun begin-to-end (condition)
+(defun begin-ending (condition)
   "Record that CONDITION, an interrupt, ends this process. Discard error output until the final
 message, such as the compiler's report that it was aborted."
   (declare (ignore condition))
   (setf *interrupts-while-ending* 0
-        *diagnostics* (make-broadcast-stream)))
+        *ending-error-output* (make-broadcast-stream)))
 
 (defun call-until-interrupted (function then)
   "Call FUNCTION and return its values. If Control-C interrupts FUNCTION, this process is ending:
 call THEN, which is not interrupted, and return the values of THEN."
-  (let ((*diagnostics* *error-output*))
+  (let ((*ending-error-output* *error-output*))
     (handler-case
-        (handler-bind ((user-interrupt #'begin-to-end))
-          (let ((*error-output* (make-synonym-stream '*diagnostics*)))
+        (handler-bind ((user-interrupt #'begin-ending))
+          (let ((*error-output* (make-synonym-stream '*ending-error-output*)))
             (funcall function)))
       (user-interrupt () (funcall then)))))
 
@@ -84,22 +85,23 @@ or window, where the user may press it any number of times.")
 
 (defvar *interrupt-times* '() "When Control-C was pressed, in seconds, newest first.")
 
-(defparameter *interrupt-span* 5
+(defparameter *interrupt-window-seconds* 5
   "The number of seconds within which further presses of Control-C end this process at once.")
 
-(defun ends-at-once-p (now times)
+(defun exit-at-once-p (now times)
   "True if Control-C, pressed at NOW and before at TIMES, should end this process at once. The third
-press does. The second does, too, if the first had no effect and was over 1/3 s before."
+press ends it. The second press ends it, too, if the first had no effect and was over 1/3 s before."
   (and times
        (or (rest times)
            (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
 
 (defun note-interrupt ()
-  "Record a Control-C. End this process if there were too many."
+  "Record a Control-C. End this process after too many presses."
   (let* ((now (seconds-now))
-         (times (remove-if (lambda (time) (< time (- now *interrupt-span*))) *interrupt-times*)))
+         (times (remove-if (lambda (time) (< time (- now *interrupt-window-seconds*)))
+                           *interrupt-times*)))
     (setf *interrupt-times* (cons now times))
-    (when (and *before-ending-at-once* (ends-at-once-p now times))
+    (when (and *before-ending-at-once* (exit-at-once-p now times))
       (funcall *before-ending-at-once*)
       (end-process 130))))
 
@@ -118,10 +120,10 @@ press does. The second does, too, if the first had no effect and was over 1/3 s 
 ;;; like others, so that the order of keys is kept.
 
 (defvar *original-mode* nil "The mode of the terminal before the prompt changed it, or NIL.")
-(defvar *keys-interrupt-p* nil "True if the terminal turns Control-C and similar keys into
-signals.")
-(defvar *continued-p* nil "True from the time when a suspended process continues until the prompt
-has redrawn its line.")
+(defvar *keys-interrupt-p* nil
+  "True if the terminal turns Control-C and similar keys into signals.")
+(defvar *continued-p* nil
+  "True from the time when a suspended process continues until the prompt has redrawn its line.")
 
 (defun terminal-mode ()
   "Return the mode of the terminal, a termios object, or NIL if there is no terminal."
@@ -131,10 +133,10 @@ has redrawn its line.")
   "Set the mode of the terminal to TERMINAL-MODE. Do nothing if there is no terminal."
   (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow terminal-mode)))
 
-(defun hand-over-keys (&key interrupts)
+(defun enter-key-mode (&key interrupts)
   "Make the terminal pass on each key at once, without echo. If INTERRUPTS, Control-C and similar
-keys are signals instead, which keep pending output. This has an effect only within
-CALL-HANDING-OVER-KEYS."
+keys are signals instead, which keep pending output. ENTER-KEY-MODE has an effect only within
+CALL-IN-KEY-MODE."
   (setf *keys-interrupt-p* interrupts)
   (let ((terminal-mode (terminal-mode))
         (line-flags (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
@@ -150,9 +152,9 @@ CALL-HANDING-OVER-KEYS."
   "Restore the original mode of the terminal, if the prompt has changed it."
   (when *original-mode* (set-terminal-mode *original-mode*)))
 
-(defun call-handing-over-keys (function)
+(defun call-in-key-mode (function)
   (setf *original-mode* (terminal-mode))
-  (unwind-protect (progn (hand-over-keys :interrupts t)
+  (unwind-protect (progn (enter-key-mode :interrupts t)
                          (funcall function))
     (restore-terminal-mode)
     (setf *original-mode* nil)))
@@ -161,12 +163,12 @@ CALL-HANDING-OVER-KEYS."
   "Suspend this process, as Control-Z does. Until it continues, the terminal has its original mode."
   (restore-terminal-mode)
   (sb-posix:kill 0 sb-posix:sigtstp)
-  (hand-over-keys))
+  (enter-key-mode))
 
 ;; Another program, such as a shell, may have changed the mode of the terminal meanwhile.
 (defun resume-terminal ()
   "Make the terminal pass on each key again, after this process was suspended."
-  (hand-over-keys :interrupts *keys-interrupt-p*)
+  (enter-key-mode :interrupts *keys-interrupt-p*)
   (setf *continued-p* t))
 
 (defun quit-by-signal ()

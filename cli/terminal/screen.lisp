@@ -8,7 +8,7 @@
     (write-string text stream)
     (finish-output stream)))
 
-(defun last-held-back (console)
+(defun last-held-back-line (console)
   "Return the last line that CONSOLE holds back, without colours, or an empty string."
   (let* ((text (find-if (lambda (string) (find #\Newline string :test #'char/=))
                         (console-held-back console)))
@@ -17,19 +17,20 @@
 
 (defun begin-screen (console)
   (setf (console-held-back-p console) t)
-  (write-at-once (screen-begun) console))
+  (write-at-once (begin-screen-code) console))
 
 (defun end-screen (console)
-  (write-at-once (screen-ended) console)
+  (write-at-once (end-screen-code) console)
   (with-console (stream console)
     (setf (console-held-back-p console) nil)
     (dolist (string (reverse (shiftf (console-held-back console) '())))
-      (put-string string console stream))
+      (write-or-hold-back string console stream))
     (finish-output stream)))
 
 (defun call-with-screen (function console)
   "Call FUNCTION while CONSOLE, on a terminal that passes on keys, shows a separate screen. FUNCTION
-draws the screen by WRITE-AT-ONCE and OVER-SCREEN. Other output is held back until the end."
+draws the screen by WRITE-AT-ONCE and OVERWRITE-SCREEN-CODE. Other output is held back until the
+end."
   (call-holding-interrupts
    (lambda ()
      (begin-screen console)
@@ -45,7 +46,7 @@ update, WIDTH the length of the text shown."
   (due (+ (seconds-now) 0.5d0) :type double-float)
   (width 0 :type fixnum))
 
-(defun write-over (progress text)
+(defun rewrite-progress (progress text)
   (with-console (stream (progress-line-console progress))
     (format stream "~C~VA~:[~C~;~]" #\Return (progress-line-width progress) text
             (string/= text "") #\Return)
@@ -57,17 +58,17 @@ update, WIDTH the length of the text shown."
 nothing if PROGRESS is NIL."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
-    (write-over progress (apply #'format nil control arguments))))
+    (rewrite-progress progress (apply #'format nil control arguments))))
 
 (defun end-progress (progress)
-  (when (plusp (progress-line-width progress)) (write-over progress "")))
+  (when (plusp (progress-line-width progress)) (rewrite-progress progress "")))
 
 ;;; Beside it.
 
-(defun say (control &rest arguments)
+(defun print-notice (control &rest arguments)
   "Format CONTROL with ARGUMENTS, and write the message to the error output."
   ;; A line that shows progress may be there.
   (when (interactive-stream-p *error-output*)
-    (format *error-output* "~C~A" #\Return (row-cleared)))
+    (format *error-output* "~C~A" #\Return (clear-row-code)))
   (format *error-output* "ars-magna: ~?~%" control arguments)
   (finish-output *error-output*))

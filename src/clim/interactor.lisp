@@ -57,7 +57,7 @@ above it and its ink. Return NIL if PANE is empty."
          (busy (running-line conversation)))
     (cond (shown (append shown (text-above-input conversation (second shown))))
           (busy (multiple-value-bind (count text point)
-                    (ars-magna.cli:typed-ahead
+                    (ars-magna.cli:type-ahead-state
                      (ars-magna.cli:session-input (conversation-session conversation)))
                   (list (waiting-label count) text point
                         (running-line-text "Running ~A" busy) :red))))))

@@ -101,7 +101,7 @@ Return a text about what was ended, to append to a sentence."
          (line (running-line (window-conversation window)))
          (place (and (ars-magna.cli:in-trial-or-fork-p session)
                      (ars-magna.cli:run-description (window-simulation window))))
-         (lines (ars-magna.cli:take-waiting (ars-magna.cli:session-input session))))
+         (lines (ars-magna.cli:take-waiting-lines (ars-magna.cli:session-input session))))
     (ars-magna.cli:abandon-session session)
     (format nil "~@[. Its prompt was in ~A and has left this run~]~
                  ~@[. The running line was ended: ~A~]~
