@@ -188,7 +188,7 @@
   (rover-writes ()
     (driver:begin-plan (rpl:make-plan '(loop (rpl:wait-time 1))))
     (run:run-ticks 2)
-    (is-false (run::warn-of-timeout (time:current-simulation) 60))
+    (is-false (run::warn-of-await-timeout (time:current-simulation) 60))
     (is-true (has-words-p (displayed) "await-idle has waited for 60 s and stops waiting"
                           "the plan (loop (wait-time 1)) did not end"))))
 

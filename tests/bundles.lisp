@@ -11,7 +11,7 @@
 (defun bundle (robot outcomes &rest options)
   "Return a picture of ways with OUTCOMES in the world of ROBOT."
   (with-scratch-file (file "svg")
-    (apply #'trails:save-bundle 'bundle "trial" file (display:snapshot-of robot)
+    (apply #'trails:save-picture-of-ways 'bundle "trial" file (display:snapshot-of robot)
            (lambda ()
              (loop for outcome in outcomes for trial from 1
                    collect (way-of-outcome trial outcome)))
@@ -77,9 +77,9 @@
 (test bundles.count-trials-that-broke-off-before-robots-were-seen
   (is (equal '("broke off with an error: 2 trials")
              (mapcar #'display::entry-text
-                     (trails::outcome-entries (append (trails:ways-along '() 1 "error")
-                                                      (trails:ways-along '() 2 "error"))
-                                              "trial")))))
+                     (trails::outcome-legend-entries (append (trails:trails-to-ways '() 1 "error")
+                                                             (trails:trails-to-ways '() 2 "error"))
+                                                     "trial")))))
 
 ;;; Robots that are put elsewhere.
 

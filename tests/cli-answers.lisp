@@ -31,6 +31,6 @@
   (let ((time:*simulation* nil))
     (run:call-with-simulation
      (lambda ()
-       (run:call-as-owner time:*simulation*
-                          (lambda () (is (typep *standard-input* 'cli::asking-text)))))
+       (run:call-with-thread-bindings time:*simulation*
+                                      (lambda () (is (typep *standard-input* 'cli::asking-text)))))
      '(ars-user::butler))))

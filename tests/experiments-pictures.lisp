@@ -251,14 +251,14 @@
 
 (test ways.need-only-the-ends-of-what-is-straight
   (let ((points '((0 . 0) (1 . 0) (2 . 0) (3 . 0) (3 . 1) (3 . 2))))
-    (is (equal '((0 . 0) (3 . 0) (3 . 2)) (trails:straightened points 1/10)))
-    (is (equal '((0 . 0) (3 . 2)) (trails:straightened points 10)))
-    (is (equal points (trails:straightened points -1)))
-    (is (equal '((1 . 1)) (trails:straightened '((1 . 1)) 1)))
-    (is (equal '() (trails:straightened '() 1)))
+    (is (equal '((0 . 0) (3 . 0) (3 . 2)) (trails:simplify-line points 1/10)))
+    (is (equal '((0 . 0) (3 . 2)) (trails:simplify-line points 10)))
+    (is (equal points (trails:simplify-line points -1)))
+    (is (equal '((1 . 1)) (trails:simplify-line '((1 . 1)) 1)))
+    (is (equal '() (trails:simplify-line '() 1)))
     ;; A circle has no ends.
     (is (equal '((0 . 0) (5 . 0) (0 . 0))
-               (trails:straightened '((0 . 0) (5 . 0) (0 . 0)) 1)))))
+               (trails:simplify-line '((0 . 0) (5 . 0) (0 . 0)) 1)))))
 
 (test ways.are-drawn-by-outcome
   (define-wandering)

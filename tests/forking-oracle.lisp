@@ -114,7 +114,7 @@ with (where . parent) of the first path to it."
 
 (defun trace-text (simulation)
   "Return what happened to the plans of SIMULATION, as text, or NIL if nobody notes that."
-  (let ((trace (run::call-inside simulation
+  (let ((trace (run::call-in-simulation simulation
                                 (lambda ()
                                   (and driver::*interface*
                                        (rpl:plan-trace (driver:rpl-runner)))))))

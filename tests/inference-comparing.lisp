@@ -103,7 +103,7 @@ from 0 as it is."
          (z (/ (reduce #'+ numbers) (sqrt (reduce #'+ (mapcar (lambda (x) (* x x)) numbers))))))
     (multiple-value-bind (p exact) (stats:permutation-test numbers)
       (is (null exact))
-      (is (near p (* 2 (stats::normal-probability (- (abs z)))) .015))
+      (is (near p (* 2 (stats::normal-cdf (- (abs z)))) .015))
       (is (= p (stats:permutation-test numbers :seed 0)))
       (is (/= p (stats:permutation-test numbers :seed 1))))
     (is (= (/ 1001d0) (stats:permutation-test (mapcar #'abs numbers) :resamples 1000)))))
@@ -137,7 +137,7 @@ are nearly as McNemar counts."
         for numbers = (loop repeat 3000 collect (base:roll-gaussian mean 1 dice))
         for z = (/ (reduce #'+ numbers) (sqrt (reduce #'+ (mapcar (lambda (x) (* x x)) numbers))))
         for p = (stats:permutation-test numbers :rare-too t :resamples 2000)
-        do (is (relatively-near p (* 2 (stats::normal-probability (- z))) .15) "~A ~A" z p)))
+        do (is (relatively-near p (* 2 (stats::normal-cdf (- z))) .15) "~A ~A" z p)))
 
 ;;; Several tests.
 

@@ -25,10 +25,10 @@
   (stats::variance-of (as-sample numbers)))
 
 (defun sample-deviation (numbers)
-  (stats::deviation-of (as-sample numbers)))
+  (stats::mean-standard-error (as-sample numbers)))
 
 (defun sample-quantile (numbers share)
-  (stats::sorted-quantile (stats::sorted (as-sample numbers)) (stats:as-written share)))
+  (stats::sorted-quantile (stats::sort-sample (as-sample numbers)) (stats:as-written share)))
 
 (test averages.as-fisher-has-them
   (is-printed 3 '("20.933") (stats:mean *maize*))
@@ -62,7 +62,7 @@
   (loop with dice = (base:make-dice 4)
         for size in '(0 1 2 3 7 8 9 100 1000)
         for numbers = (coerce (loop repeat size collect (base:roll-within 5 dice)) 'stats::doubles)
-        do (is (equalp (sort (copy-seq numbers) #'<) (stats::sorted (copy-seq numbers))))))
+        do (is (equalp (sort (copy-seq numbers) #'<) (stats::sort-sample (copy-seq numbers))))))
 
 ;;; Intervals.
 

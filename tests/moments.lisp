@@ -56,8 +56,8 @@
   "However often a plan tries again, what becomes of plans is told of."
   (run:with-simulation (ars-worlds:dot :seed 1 :journal t)
     (let ((simulation (time:current-simulation)))
-      (dotimes (count 2000) (run:remark simulation :part "tried again"))
-      (run:remark simulation :plan "failed"))
+      (dotimes (count 2000) (run:add-remark simulation :part "tried again"))
+      (run:add-remark simulation :plan "failed"))
     (let ((kinds (mapcar #'display:moment-kind (display:journal-moments nil))))
       (is (= 1 (count :plan kinds)))
       (is (< 100 (count :part kinds) 1000)))))

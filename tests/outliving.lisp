@@ -234,4 +234,5 @@ east they have moved."
             (run:with-simulation (mayfly)
               (base:undefine 'robot 'mayfly)
               (is (eq (first (run:simulation-robots (time:current-simulation)))
-                      (run:call-as-owner (time:current-simulation) (lambda () mayfly)))))))))
+                      (run:call-with-thread-bindings (time:current-simulation)
+                                                      (lambda () mayfly)))))))))

@@ -157,9 +157,9 @@
 (test series.look-different-without-colour
   "The first 210 series have no colour, marker and dashes in common."
   (let ((looks (loop for index below 210
-                     collect (list (plots::look-color index)
-                                   (plots::nth-cyclic index plots::*shapes*)
-                                   (plots::nth-cyclic index plots::*dashes*)))))
+                     collect (list (plots::series-color index)
+                                   (plots::nth-cyclic index plots::*series-markers*)
+                                   (plots::nth-cyclic index plots::*series-dashes*)))))
     (is (= 210 (length (remove-duplicates looks :test #'equal))))
     (is (= 30 (length (remove-duplicates (subseq (mapcar #'rest looks) 0 30) :test #'equal))))))
 

@@ -64,7 +64,7 @@
 (test rewind.knows-robots-and-what-is-shared-in-arguments
   "Where the run is redone from its beginning: a kept fork shares what only a program refers to."
   (with-rover (:seed 1 :keep t)
-    (let* ((run::*keeping-share* 1/1000000)
+    (let* ((run::*fork-time-share* 1/1000000)
            (chore (make-chore :robot rover)) (given (vector chore (list chore)))
            (seen (rpl:create-fluent 'seen)))
       (rpl:set-value seen given)
@@ -176,7 +176,7 @@
 
 (defmacro keeping-every (share &body body)
   "Run BODY, where runs spend so much of their time on forks as SHARE says."
-  `(let ((run::*keeping-share* ,share)) ,@body))
+  `(let ((run::*fork-time-share* ,share)) ,@body))
 
 (defun pot-after (share rewinds begin)
   "Return where a pot is after 88 ticks, once BEGIN has been called with it, and what was said;

@@ -8,11 +8,12 @@
 
 (defun kept-ticks ()
   "Return the ticks of the forks that the current simulation keeps, oldest first."
-  (reverse (mapcar #'run::kept-tick (run::past-forks (run:simulation-past time:*simulation*)))))
+  (reverse (mapcar #'run::fork-record-tick
+                   (run::past-forks (run:simulation-past time:*simulation*)))))
 
 (defmacro keeping-often (&body body)
   "Run BODY, where runs keep a fork at each tick that they may."
-  `(let ((run::*keeping-share* 1)) ,@body))
+  `(let ((run::*fork-time-share* 1)) ,@body))
 
 (defun state-now () (run:state-digest time:*simulation* t))
 

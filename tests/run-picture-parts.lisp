@@ -33,7 +33,7 @@
     (run:run-ticks 5)
     (flet ((words (part)
              (with-scratch-file (file "svg")
-               (trails:save-bundle
+               (trails:save-picture-of-ways
                 'save-ways-picture "trial" file (display:snapshot-of robot)
                 (lambda () (list (trails::make-way 1 "failure" '(((2 . 6) (5 . 6))))
                                  (trails::make-way 2 "success" '(((2 . 7) (5 . 7))))))

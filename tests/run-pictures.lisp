@@ -125,7 +125,7 @@
   "Where the map is as large as a number, that is wholly on it; on a smaller one, in its middle."
   (loop for (scale least) in '((40 9) (20 9) (10 5))
         do (let ((middle (/ scale 2)))
-             (dolist (at (trails::place-for-number (list 0 0 scale scale) middle middle 4 '() '()))
+             (dolist (at (trails::number-position (list 0 0 scale scale) middle middle 4 '() '()))
                (is (<= least at (- scale least)))))))
 
 (test run-picture.has-what-save-picture-has
@@ -181,7 +181,7 @@
   (let ((text (documentation 'ars:save-run-picture 'function)))
     (dolist (kind display::+moment-kinds+)
       (is (search (format nil "~S" kind) text) "~S" kind)
-      (is-true (assoc kind trails::*kind-words*)))))
+      (is-true (assoc kind trails::*moment-kind-nouns*)))))
 
 (test run-picture.tells-two-robots-apart
   (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :journal t)

@@ -130,7 +130,7 @@ function and its arguments."
                  (funcall end old new)
                  (run:stop-simulator old))
         (run:rewind 1))
-      (is-false (time:live-p (run:latest old))))))
+      (is-false (time:live-p (run:latest-successor old))))))
 
 (test stop-simulator.of-a-run-that-was-rewound-stops-what-goes-on
   (with-yard ()
@@ -143,11 +143,11 @@ function and its arguments."
   (with-yard ()
     (let ((old (start-and-pass 3)))
       (is (eq :left
-              (coming-between (run::note-rewound (note &rest arguments)
+              (coming-between (run::record-rewind (note &rest arguments)
                          (interrupt-here)
                          (apply note arguments))
                 (interrupted (run:rewind 1)))))
-      (let ((new (run:latest old)))
+      (let ((new (run:latest-successor old)))
         (is (not (eq old new)))
         (is (eq (run:simulation-world new) (world:map-resident (world:find-map 'coach-yard))))
         (is (eq (run:simulation-world new) (robot:robot-world (symbol-value 'dray))))
@@ -189,7 +189,7 @@ function and its arguments."
   (with-yard ()
     (start-dray)
     (let ((thread (thread-of-dray)))
-      (is (eq :left (coming-between (run::end-world (&rest arguments)
+      (is (eq :left (coming-between (run::end-world-run (&rest arguments)
                                (declare (ignore arguments))
                                (leave))
                       (interrupted (world:define-map 'coach-yard 7 7)))))
@@ -221,7 +221,7 @@ function and its arguments."
             (ars:robot-turn robot 1 #'hear)))
         (run:run-ticks 1)
         (is (eq :left (interrupted
-                       (coming-between (run::tell-of-end (tell simulation)
+                       (coming-between (run::notify-of-end (tell simulation)
                                          (interrupt-here)
                                          (funcall tell simulation))
                          (run::end-simulation time:*simulation* "it is enough")))))
@@ -243,8 +243,8 @@ function and its arguments."
                  (awaiting (time:custody-questions custody)))
         (run:rewind 1))
       (is-true (ends-p thread))
-      (is-false (time:live-p (run:latest old)))
-      (is-true (run::simulation-over (run:latest old))))))
+      (is-false (time:live-p (run:latest-successor old)))
+      (is-true (run::simulation-over (run:latest-successor old))))))
 
 ;;; A time limit is that of the thread that has set it.
 
@@ -279,7 +279,7 @@ function and its arguments."
 (test with-simulation.that-is-interrupted-at-its-end-ends-its-run
   (with-yard ()
     (let ((simulation nil))
-      (is (eq :left (coming-between (run::warn-at-end (warn &rest arguments)
+      (is (eq :left (coming-between (run::warn-of-unpassed-ticks (warn &rest arguments)
                                       (interrupt-here)
                                       (apply warn arguments))
                       (interrupted (run:with-simulation (dray)

@@ -77,8 +77,8 @@ What else may be signalled is not caught."
 condition of ours that loading signals."
   (handler-case
       (run::reading-file (in file :run 'run:damaged-simulation)
-        (let* ((reading (run::make-reading in 0 0)) (head (run::read-head reading)))
-          (run::simulation-from reading head (file-length in))))
+        (let* ((reading (run::make-line-reader in 0 0)) (head (run::read-head reading)))
+          (run::simulation-from-lines reading head (file-length in))))
     (base:ars-magna-error (trouble) trouble)
     (:no-error (simulation) (run:run-ticks 30 simulation) :ran)))
 
@@ -131,7 +131,7 @@ have been."
   (let ((array (make-array 3 :element-type 'double-float)))
     (dolist (type (mapcar #'definitions:kind-name (definitions:all-kinds)))
       (let* ((object (copying:blank-object type (copying:fields-of-type type)))
-             (said (handler-case (run::put-elements array 1 object (run::make-loaded 9))
+             (said (handler-case (run::store-elements array 1 object (run::make-loader 9))
                      (error (trouble) (princ-to-string trouble)))))
         (is-true (has-words-p said "double-float" (string-downcase type)))))))
 

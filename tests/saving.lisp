@@ -18,12 +18,12 @@
 
 (defun driven-future (simulation seed)
   "Return the digest of SIMULATION after it was driven at random, by SEED."
-  (run::call-inside simulation
-                    (lambda ()
-                      (let ((*ride* (make-ride (base:make-dice seed "driven"))))
-                        (loop repeat 150 do (step-ride) (base:take-messages))
-                        (run:run-ticks 100)
-                        (run:state-digest)))))
+  (run::call-in-simulation simulation
+                           (lambda ()
+                             (let ((*ride* (make-ride (base:make-dice seed "driven"))))
+                               (loop repeat 150 do (step-ride) (base:take-messages))
+                               (run:run-ticks 100)
+                               (run:state-digest)))))
 
 (test saved.goes-on-as-its-original
   "40 moments of random rides, and 1,000 ticks from there."
@@ -55,7 +55,7 @@
 (defun kinds-met (simulation)
   "Return the names of the structures that SIMULATION is saved with."
   (loop for batch in (run::batches-in-order
-                      (run::take-inventory simulation (run::requests-waiting simulation)))
+                      (run::take-inventory simulation (run::waiting-requests simulation)))
         when (eq :object (first (run::batch-shape batch)))
           collect (second (run::batch-shape batch))))
 
@@ -188,7 +188,7 @@
       (is (equal (journal-lines file) (journal-lines again)))
       (let ((seeded (run:load-simulation file)))
         (run:set-seed 4 seeded)
-        (is (equal (with-rover (:seed 4) (rolls)) (run::call-inside seeded #'rolls)))))))
+        (is (equal (with-rover (:seed 4) (rolls)) (run::call-in-simulation seeded #'rolls)))))))
 
 (test loaded.without-dice-rolls-by-the-seed
   "As files of old, and those of live runs, say none."

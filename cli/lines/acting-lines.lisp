@@ -5,7 +5,7 @@
 (defun warn-of-rewind (point simulation)
   "Queue a warning that the robot no longer goes to POINT, because a rewind has replaced
 SIMULATION."
-  (let ((*message-queue* (simulation-messages (latest simulation))))
+  (let ((*message-queue* (simulation-messages (latest-successor simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
                               longer goes there. Type the line again to send it there."
                          point))))
@@ -33,7 +33,7 @@ NIL."
       (robot-go-to (session-robot) x y
                    (lambda (err robot)
                      (let ((*asker* own) (*told-of* own))
-                       (if (eq simulation (latest simulation))
+                       (if (eq simulation (latest-successor simulation))
                            (report-arrival err robot point)
                            (warn-of-rewind point simulation)))
                      (end-job job err))))

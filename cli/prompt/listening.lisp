@@ -22,7 +22,7 @@
 (defun shows-run-p (session simulation)
   "True if SESSION shows messages of SIMULATION, or of the run that it replaced by a rewind."
   (let ((run (session-simulation session)))
-    (and run (eq (latest run) (latest simulation)))))
+    (and run (eq (latest-successor run) (latest-successor simulation)))))
 
 (defun sessions-showing (simulation)
   (and simulation

@@ -72,7 +72,7 @@ WORLD has chosen to continue with, or NIL."
         *prompt-robot* robot-name)
   (import-robot-names (robot-names-in-same-world robot-name))
   (call-with-simulation (lambda ()
-                          (note-lines-typed *simulation*)
+                          (mark-as-prompt-run *simulation*)
                           (run-session session))
                         (robot-names-in-same-world robot-name)
                         :seed seed :journal t :keep *forks-to-keep*)

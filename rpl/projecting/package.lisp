@@ -12,7 +12,7 @@ believes in, to estimate how they may end, and to choose the best.")
   (:import-from :ars-magna.run #:simulation-messages
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
                 #:simulation-participants #:simulation-journal #:simulation-world
-                #:fork-simulation #:call-in-fork #:release-fork #:*fork-asker*)
+                #:fork-simulation #:call-in-fork #:release-fork #:*fork-operator*)
   (:import-from :ars-magna.rpl
                 #:*break-on-plan-failures* #:*runaway-limit* #:*step-plans* #:+parked+ #:enter
                 #:environment
@@ -24,5 +24,5 @@ believes in, to estimate how they may end, and to choose the best.")
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
                 #:*interface* #:*realm* #:fork-realm)
-  (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
+  (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind))

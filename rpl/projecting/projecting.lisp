@@ -141,7 +141,7 @@ step."
 of QUESTION."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
-    (unwind-protect (let ((*fork-asker* (question-operator question)))
+    (unwind-protect (let ((*fork-operator* (question-operator question)))
                       (drop-records (fork-simulation (interface-simulation interface))))
       (call-with-plans (lambda () (forget-wish question)) interface))))
 

@@ -163,7 +163,7 @@ projection."
 more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
-                      (let ((*fork-asker* (question-operator question)))
+                      (let ((*fork-operator* (question-operator question)))
                         (drop-records (fork-at-rest interface)))))
          (projections (catch 'abandoned
                         (let ((*current-question* question)) (project-branches question moment)))))

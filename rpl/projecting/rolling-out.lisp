@@ -76,11 +76,11 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
     (multiple-value-bind (how result cost broken)
         (run-question-to-end question interface begin
                              (lambda ()
-                               (setf trails (note-places (current-simulation) trails))
+                               (setf trails (update-trails (current-simulation) trails))
                                (funcall runaway)))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (counted-steps runner) steps)
-                    (ways-along trails trial (outcome-word how))
+                    (trails-to-ways trails trial (outcome-word how))
                     broken))))
 
 ;;; Such a world is made by the user's function WORLD. It is called with a function and a seed; it
@@ -238,7 +238,7 @@ plans unless PRINT, or the option :PRINT of the question, is true."
                  (let ((*standard-output* output) (*error-output* errors))
                    (funcall then rollout)))))
     (call-for-rollout (lambda ()
-                        (let ((*fork-asker* (question-operator question)))
+                        (let ((*fork-operator* (question-operator question)))
                           (if (scene-moment scene)
                               (roll-out-in-fork scene trial seed then)
                               (roll-out-in-belief scene trial seed then))))

@@ -42,7 +42,7 @@ start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
          (interface (interface-of-robot (interface-robot client) simulation)))
     (cond ((and interface (same-era-p task interface))
            (or (task-numbered (task-serial task) (interface-runner interface)) task))
-          ((eq (interface-simulation client) (latest (interface-simulation client))) task)
+          ((eq (interface-simulation client) (latest-successor (interface-simulation client))) task)
           (t (reject-use "The task ~D, ~A, belongs to a run that was rewound, and is not in the ~
                           run that goes on: it began after the tick to which the run was rewound, ~
                           or RPL-INIT-ROBOT has begun plans anew since. (plans) lists the plans ~
@@ -87,7 +87,7 @@ OLD."
 (defun record-plan-action (interface function &rest arguments)
   "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats the current
 action."
-  (apply #'note-doing (interface-simulation interface) function arguments))
+  (apply #'record-outside-act (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
   "Repeat a call from outside of plans: of the function WORD with ARGUMENTS and the task with the
@@ -124,7 +124,7 @@ Return FLUENT itself if no variable holds FLUENT."
 (defun record-fluent-change (function fluent value)
   "Record for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
   (when (and *simulation* (simulation-past *simulation*))
-    (note-doing *simulation* #'repeat-change function (name-of-fluent fluent) value)))
+    (record-outside-act *simulation* #'repeat-change function (name-of-fluent fluent) value)))
 
 (defmethod note-outside-change ((interface interface) function fluent value)
   (record-fluent-change function fluent value))

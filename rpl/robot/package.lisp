@@ -16,8 +16,9 @@
                 #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run
-                #:simulation-tick #:add-observer #:remove-observer #:run-ticks #:call-as-owner
-                #:resolve-robot #:simulation-over #:doubt-wait
+                #:simulation-tick #:add-observer #:remove-observer #:run-ticks
+                #:call-with-thread-bindings
+                #:resolve-robot #:simulation-over #:check-wait-while-paused
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
                 #:simulation-timeline #:simulation-robots #:simulation-observers
                 #:simulation-world #:simulation-messages #:robot-simulation
@@ -30,10 +31,11 @@
                 #:call-as-participant-makes-way #:participant-unfinished
                 #:participant-cut-off #:participant-around-p
                 #:fork-simulation #:refuse-fork
-                #:participant-place #:simulation-participants #:fork-p #:note-environment
+                #:participant-place #:simulation-participants #:fork-p #:store-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
-                #:counterpart-in-current-run #:latest #:await-postponed-fork #:note-doing
-                #:simulation-past #:simulation-journal #:remark #:unremark)
+                #:counterpart-in-current-run #:latest-successor
+                #:await-postponed-fork #:record-outside-act
+                #:simulation-past #:simulation-journal #:add-remark #:remove-remark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable
                 #:fluent-value #:fluent-name

@@ -185,7 +185,7 @@ nothing."
 (defun add-failure-remark (interface kind task failure)
   "Add a remark to the journal of the run of INTERFACE: TASK has failed with FAILURE or, if FAILURE
 is NIL, was ended. KIND says whether TASK is a :PLAN or a :PART of a plan. Return the remark."
-  (remark (interface-simulation interface) kind
+  (add-remark (interface-simulation interface) kind
           (format nil "~@[in ~A: ~]~:[task~;plan~] ~A ~:[was ended~;failed: ~:*~A~]"
                   (and (task-parent task) (task-label (task-top task)))
                   (eq :plan kind) (task-label task) (and failure (one-line-text failure)))
@@ -203,7 +203,7 @@ the remark on the same failure of a part in this tick."
         (simulation (interface-simulation interface)))
     (destructuring-bind (&optional told . remark) (shiftf (interface-told interface) nil)
       (when (and remark (eq told failure) (eql (first remark) (simulation-tick simulation)))
-        (unremark simulation remark)))
+        (remove-remark simulation remark)))
     (add-failure-remark interface :plan task failure)))
 
 (defun note-end (interface task)

@@ -141,7 +141,7 @@ calls from outside can wake the plans."
                           (deadlocked-p interface))
                      (setf told t)
                      (with-plans (interface) (report-stillness (interface-runner interface)))))
-              (doubt-wait 'run-plan simulation)
+              (check-wait-while-paused 'run-plan simulation)
               (wait-a-while over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
@@ -151,7 +151,7 @@ calls from outside can wake the plans."
     (reject-use "run-plan: a plan is at work here. Call the other plan as a step of that plan."))
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here."))
-  (doubt-wait 'run-plan (interface-simulation interface)))
+  (check-wait-while-paused 'run-plan (interface-simulation interface)))
 
 ;;; Plans that did not end.
 
@@ -275,10 +275,10 @@ that has replaced the run of INTERFACE in a rewind."
   (and *simulation*
        (not (eq *simulation* (interface-simulation interface)))
        (or (fork-p *simulation*)
-           (eq *simulation* (latest (interface-simulation interface))))))
+           (eq *simulation* (latest-successor (interface-simulation interface))))))
 
 (defmethod current-counterpart ((interface interface) task)
-  (let ((latest (latest (interface-simulation interface))))
+  (let ((latest (latest-successor (interface-simulation interface))))
     (cond ((in-later-run-p interface) (counterpart-of-task task *simulation*))
           ((not (eq latest (interface-simulation interface))) (counterpart-of-task task latest))
           (t task))))

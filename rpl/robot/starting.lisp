@@ -86,13 +86,13 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 interface."
   ;; Other threads may set the variable meanwhile.
   (let ((simulation (robot-simulation robot)) (before *interface*))
-    (note-doing simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
+    (record-outside-act simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
     (when (and before (must-end-for-p before simulation)) (close-interface before))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation eras (commanded-robot))))
       (attach-interface interface)
       (setf *interface* interface)
-      (when (eq simulation *simulation*) (note-environment simulation))
+      (when (eq simulation *simulation*) (store-environment simulation))
       interface)))
 
 (defun init-robot (robot)

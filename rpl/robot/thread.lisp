@@ -154,7 +154,7 @@ Do nothing if the start of this thread was given up."
     (flet ((run ()
              (let ((*user-calls* calls))
                (in-any-case
-                 (call-as-owner simulation
+                 (call-with-thread-bindings simulation
                                 (lambda ()
                                   (call-as-plans-thread
                                    interface (lambda () (run-thread interface)))))
@@ -164,8 +164,9 @@ Do nothing if the start of this thread was given up."
       (let ((thread (start-thread #'run (name "plans of ~A"))))
         (swap-if (interface-thread interface) :starting thread)
         (start-thread (lambda ()
-                        (call-as-owner simulation
-                                       (lambda () (watch-plans interface thread calls ended))))
+                        (call-with-thread-bindings
+                         simulation
+                         (lambda () (watch-plans interface thread calls ended))))
                       (name "watcher of the plans of ~A"))))))
 
 ;; A time limit may come at any moment: it must not leave plans that wait for a thread to start.

@@ -89,7 +89,7 @@ SECONDS."
 (defun title-with-remark (title journal anyway)
   "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
 that says so."
-  (let ((words (and anyway (typep title '(or null string)) (repeated-words journal))))
+  (let ((words (and anyway (typep title '(or null string)) (changed-definitions-sentence journal))))
     (if words
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)
         title)))

@@ -101,4 +101,4 @@ NIL."
             (out text t)))))))
 
 (attend *simulator-hooks* announce-display)
-(pushnew 'display *hook-options*)
+(pushnew 'display *simulator-hook-options*)

@@ -7,8 +7,8 @@ resumed, on all processors and on many machines. Names lparallel.")
         :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
                 #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
-                #:save-chart #:power-of-ten #:decimal-text #:without-zeros)
-  (:import-from :ars-magna.trails #:note-places #:ways-along #:save-bundle)
+                #:save-chart #:decimal-exponent #:decimal-text #:strip-trailing-zeros)
+  (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
                 #:open-display #:*display-opener* #:group-by)

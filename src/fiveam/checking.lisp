@@ -4,15 +4,16 @@
 
 (export '(is-success-rate))
 
-(defparameter *examples* 5 "The largest number of unsuccessful trials that a failed check lists.")
+(defparameter *most-failures-listed* 5
+  "The largest number of unsuccessful trials that a failed check lists.")
 
 (defun subject-text (check)
   (if (check-subject check)
-      (checked-form-text (subject-form (check-subject check)) check)
+      (form-text-for-check (subject-form (check-subject check)) check)
       (format nil "~(~A~), ~A" (experiment-name (check-experiment check))
               (condition-name (check-condition check)))))
 
-(defun per-cent (share)
+(defun percent-text (share)
   (let ((text (format nil "~,2F" (* 100 share))))
     (format nil "~A %" (string-right-trim "." (string-right-trim "0" text)))))
 
@@ -23,40 +24,40 @@
               (string= "" (result-reason result)) (result-reason result)
               (string= "" (result-error result)) (result-error result))))
 
-(defun example-lines (bad check)
-  "Return lines of text about the first *EXAMPLES* results in BAD, a list of results of trials of
-CHECK that did not succeed."
+(defun failed-trial-lines (bad check)
+  "Return lines of text about the first *MOST-FAILURES-LISTED* results in BAD, a list of results of
+unsuccessful trials of CHECK."
   (append (loop for result in bad
-                repeat *examples*
+                repeat *most-failures-listed*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
                                 (result-seed result) (outcome-text result check)))
-          (when (> (length bad) *examples*)
-            (list (format nil "  and ~D more" (- (length bad) *examples*))))))
+          (when (> (length bad) *most-failures-listed*)
+            (list (format nil "  and ~D more" (- (length bad) *most-failures-listed*))))))
 
-(defun numbers-text (check)
+(defun success-count-text (check)
   (let ((trials (length (check-results check))) (successes (check-successes check)))
     (format nil "~D of ~D trial~:P succeeded, ~A" successes trials
-            (per-cent (/ successes trials)))))
+            (percent-text (/ successes trials)))))
 
-(defun meaning-text (check)
+(defun false-alarm-text (check)
   (if (= 1 (check-at-least check))
       "All should."
       (format nil "If ~A or more succeeded in the long run, this check would fail with a ~
                    probability of at most ~A."
-              (per-cent (check-at-least check)) (per-cent (check-level check)))))
+              (percent-text (check-at-least check)) (percent-text (check-level check)))))
 
 (defun failure-text (check)
   (let ((bad (remove-if #'success-p (reverse (check-results check)))))
     (format nil "~A~%succeeds less often than ~A: ~A.~%~A~%Trials that did not ~
                  succeed:~%~{~A~%~}To repeat the first of them, in the package ~A:~%  ~A"
-            (subject-text check) (per-cent (check-at-least check)) (numbers-text check)
-            (meaning-text check) (example-lines bad check)
+            (subject-text check) (percent-text (check-at-least check)) (success-count-text check)
+            (false-alarm-text check) (failed-trial-lines bad check)
             (package-name (experiment-package (check-experiment check)))
-            (repetition-text check (first bad)))))
+            (repeat-trial-text check (first bad)))))
 
 ;;;; The check
 
-(defun designated-condition (experiment condition)
+(defun resolve-condition (experiment condition)
   "Return the condition of EXPERIMENT for the designator CONDITION. If CONDITION is NIL, return the
 only condition of EXPERIMENT."
   (let ((all (experiment-conditions experiment)))
@@ -70,32 +71,32 @@ only condition of EXPERIMENT."
 
 ;;; Checking.
 
-(defun decide-check (experiment condition subject at-least trials level workers)
+(defun run-and-report-check (experiment condition subject at-least trials level workers)
   "Check, with at most TRIALS trials of CONDITION of EXPERIMENT, that the rate of success is
 AT-LEAST or more. SUBJECT is the subject for which EXPERIMENT was made, or NIL. Report the result to
 FiveAM; return true if the check passes."
-  (check-rates 'is-success-rate at-least trials level)
+  (check-rate-arguments 'is-success-rate at-least trials level)
   (check-argument is-success-rate workers (whole-p workers 1 1000) "a number of threads, from 1 to ~
                                                                     1000")
   (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
                                       (as-written level) workers))))
     (cond ((eq :passed (check-verdict check))
-           (pass "~A: ~A" (subject-text check) (numbers-text check))
+           (pass "~A: ~A" (subject-text check) (success-count-text check))
            t)
           (t (fail "~A" (failure-text check))
              nil))))
 
 (defun check-form-rate (subject at-least trials level workers seed)
-  (let ((experiment (experiment-of subject 'is-success-rate seed)))
-    (decide-check experiment (first (experiment-conditions experiment)) subject
-                  at-least trials level workers)))
+  (let ((experiment (experiment-for-subject subject 'is-success-rate seed)))
+    (run-and-report-check experiment (first (experiment-conditions experiment)) subject
+                          at-least trials level workers)))
 
 (defun check-experiment-rate (name condition at-least trials level workers)
   (let ((experiment (find-experiment name)))
-    (decide-check experiment (designated-condition experiment condition) nil
-                  at-least (or trials (experiment-trials experiment)) level workers)))
+    (run-and-report-check experiment (resolve-condition experiment condition) nil
+                          at-least (or trials (experiment-trials experiment)) level workers)))
 
-(defun experiment-clause (form options)
+(defun parse-experiment-clause (form options)
   "Return a list of name and condition in FORM, (:experiment name :condition c). Signals
 MALFORMED-DEFINITION if FORM does not have this form, or if there are OPTIONS, because the
 experiment determines these."
@@ -111,7 +112,7 @@ experiment determines these."
 (define-user-macro is-success-rate
     (form &rest options
           &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
-          (limit +usual-limit+) (workers 1))
+          (limit +default-tick-limit+) (workers 1))
   "Check, in a test of FiveAM, that the rate of success of FORM is at least AT-LEAST, by default
 .95. Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME.
 
@@ -143,7 +144,8 @@ gives the numbers, the first unsuccessful trials with reasons, and a form that r
 trials, by REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp with the same code."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
-          (experiment-clause form (intersection '(:robots :seed :parameters :clean :limit) options))
+          (parse-experiment-clause form (intersection '(:robots :seed :parameters :clean :limit)
+                                                      options))
         `(check-experiment-rate ,name ,condition ,at-least ,trials ,level ,workers))
-      `(check-form-rate ,(subject-maker "is-success-rate" form robots parameters clean limit)
+      `(check-form-rate ,(subject-expansion "is-success-rate" form robots parameters clean limit)
                         ,at-least ,(or trials 200) ,level ,workers ,seed)))

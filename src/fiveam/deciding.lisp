@@ -18,7 +18,7 @@
         (:below :failed)
         ((nil) nil))))
 
-(defun last-verdict (successes trials rate level)
+(defun final-verdict (successes trials rate level)
   (if (< (nth-value 1 (exact-interval successes trials :confidence (- 1 level))) rate)
       :failed
       :passed))
@@ -27,11 +27,11 @@
   "Return :PASSED, :FAILED or, if more trials are needed, NIL, for SUCCESSES successes in TRIALS
 trials. MOST is the largest number of trials."
   (or (early-verdict successes trials rate level)
-      (and (= trials most) (last-verdict successes trials rate level))))
+      (and (= trials most) (final-verdict successes trials rate level))))
 
 ;;; The probability that a check passes, over all possible courses.
 
-(defun check-rates (operator at-least trials level)
+(defun check-rate-arguments (operator at-least trials level)
   (unless (and (finite-p at-least) (<= 1d-9 at-least 1))
     (reject-argument operator 'at-least at-least "a rate above 0 and up to 1, such as .95"))
   (unless (and (integerp trials) (<= 1 trials +largest+))
@@ -39,7 +39,7 @@ trials. MOST is the largest number of trials."
   (unless (and (finite-p level) (<= 1d-9 level 1/2))
     (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
 
-(defun next-odds (odds count rate)
+(defun probabilities-after-trial (odds count rate)
   "Return a vector of the probabilities of 0 to COUNT successes. ODDS is the vector of the
 probabilities of 0 to COUNT - 1 successes before the last trial, which succeeds with the probability
 RATE."
@@ -58,12 +58,12 @@ rates a check accepts: with the defaults, a rate of 95 % passes with a probabili
 adds up all sequences of successes and failures, which takes a second for 5,000 trials. Signals
 WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
-  (check-rates 'pass-probability at-least trials level)
+  (check-rate-arguments 'pass-probability at-least trials level)
   (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))
         (odds (vector 1)) (passed 0) (run 0))
     (loop for count from 1 to trials
           do (incf run (reduce #'+ odds))
-             (setf odds (next-odds odds count rate))
+             (setf odds (probabilities-after-trial odds count rate))
              (loop for successes to count
                    for verdict = (and (plusp (aref odds successes))
                                       (verdict successes count trials at-least level))

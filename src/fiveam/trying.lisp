@@ -18,11 +18,11 @@ ticks."
   (clean nil :read-only t)
   (limit 0 :read-only t))
 
-(defconstant +usual-limit+ 100000 "The default for the largest number of ticks of a trial.")
+(defconstant +default-tick-limit+ 100000 "The default for the largest number of ticks of a trial.")
 
 ;;; An experiment for a form.
 
-(defun parameter-parts (parameters operator)
+(defun experiment-parameters (parameters operator)
   "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM requires. OPERATOR is the
 operator whose argument PARAMETERS is, for errors."
   (unless (and (proper-list-p parameters)
@@ -32,7 +32,7 @@ operator whose argument PARAMETERS is, for errors."
         for symbol = (parameter-symbol (find-parameter name))
         collect (list (list symbol value) value)))
 
-(defun experiment-of (subject operator seed)
+(defun experiment-for-subject (subject operator seed)
   "Return an experiment that consists of trials of SUBJECT, with seeds that follow SEED. Errors name
 OPERATOR."
   (let ((limit (subject-limit subject)))
@@ -43,7 +43,8 @@ OPERATOR."
                                        :robots (subject-robots subject)
                                        :run (subject-function subject)
                                        :seed seed :limit limit
-                                       :parameters (parameter-parts (subject-parameters subject)
+                                       :parameters (experiment-parameters
+                                                    (subject-parameters subject)
                                                                     operator)
                                        :clean (subject-clean subject))))
       (setf (experiment-package experiment) (subject-package subject))
@@ -73,7 +74,7 @@ there is no name."
                      collect `(list ',(first part) ,(second part))))
       parameters))
 
-(defun subject-maker (operator form robots parameters clean limit)
+(defun subject-expansion (operator form robots parameters clean limit)
   "Return a form that makes the subject from these arguments of the macro OPERATOR."
   (warn-of-nested-run form)
   (let ((names (robot-names operator robots form)))
@@ -106,7 +107,7 @@ there is no name."
 
 (defun success-p (result) (string= "success" (result-outcome result)))
 
-(defun count-result (check result)
+(defun record-result (check result)
   "Add RESULT, the result of the next trial of CHECK, to the results of CHECK. Return the verdict,
 or NIL."
   (push result (check-results check))
@@ -115,33 +116,33 @@ or NIL."
         (verdict (check-successes check) (length (check-results check)) (check-trials check)
                  (check-at-least check) (check-level check))))
 
-(defun try-trial (check trial stopping-p)
+(defun run-one-trial (check trial stopping-p)
   (call-without-output
    (lambda ()
      (run-trial-in-worker (check-experiment check) (check-condition check) trial stopping-p))))
 
 ;; The trials that count are decided in their order, whichever worker runs them.
-(defun run-some-trials (check first)
+(defun run-next-trials (check first)
   "Run some trials of CHECK, from the number FIRST on, and return their results in order. With one
 worker, run only one trial."
   (let* ((workers (check-workers check))
          (last (min (check-trials check) (+ first (max first (* 8 workers)))))
          (results (make-array (- last first -1)))
          (stopped nil))
-    (cond ((= 1 workers) (list (try-trial check first (constantly t))))
+    (cond ((= 1 workers) (list (run-one-trial check first (constantly t))))
           (t (call-by-workers (lambda (worker)
                                 (loop for trial from (+ first worker -1) to last by workers
                                       until stopped
                                       do (setf (aref results (- trial first))
-                                               (try-trial check trial (lambda () stopped)))))
+                                               (run-one-trial check trial (lambda () stopped)))))
                               workers :stop (lambda () (setf stopped t)))
              (coerce results 'list)))))
 
 (defun run-check (check)
   "Run trials of CHECK until the verdict is :PASSED or :FAILED. Return CHECK."
   (loop for first = (1+ (length (check-results check)))
-        until (loop for result in (run-some-trials check first)
-                      thereis (count-result check result)))
+        until (loop for result in (run-next-trials check first)
+                      thereis (record-result check result)))
   check)
 
 ;;;; Repeating a trial
@@ -149,13 +150,13 @@ worker, run only one trial."
 ;;; The log of a check may be read elsewhere and much later. So the form that it prints repeats a
 ;;; trial in any Lisp with the same code, whatever parameters are set there.
 
-(defun replay-subject (subject seed options)
+(defun repeat-subject-trial (subject seed options)
   (unless (integerp seed) (reject-argument 'repeat-trial 'seed seed "an integer"))
-  (apply #'replay-trial (experiment-of subject 'repeat-trial (1- seed)) 1 1 options))
+  (apply #'replay-trial (experiment-for-subject subject 'repeat-trial (1- seed)) 1 1 options))
 
 (define-user-macro repeat-trial
     (form &rest options
-          &key robots (seed 1) parameters clean (limit +usual-limit+)
+          &key robots (seed 1) parameters clean (limit +default-tick-limit+)
           until then rate step journal trace)
   "Run again, in this thread, the trial with SEED of a check of FORM by IS-SUCCESS-RATE. A failed
 check prints a form (repeat-trial ...); the arguments besides SEED are those of the check.
@@ -167,42 +168,43 @@ UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are those of REPLAY-TRIAL, for exampl
 at a pace or to stop it in the middle. Return the same plist as REPLAY-TRIAL. Signals the errors of
 REPLAY-TRIAL, and MALFORMED-DEFINITION."
   (declare (ignore until then rate step journal trace))
-  `(replay-subject ,(subject-maker "repeat-trial" form robots parameters clean limit) ,seed
+  `(repeat-subject-trial ,(subject-expansion "repeat-trial" form robots parameters clean limit)
+                         ,seed
                    (list ,@(loop for (key value) on options by #'cddr
                                  unless (member key '(:robots :seed :parameters :clean :limit))
                                    append (list key value)))))
 
 ;;; As a text.
 
-(defun checked-form-text (form check)
+(defun form-text-for-check (form check)
   "Return the text of FORM in the package of CHECK, on one line if it is short."
   (let* ((text (form-in-package form (experiment-package (check-experiment check))))
          (line (one-line text)))
     (if (< (length line) 90) line text)))
 
-(defun literal (value)
+(defun literal-form (value)
   "Return a form that evaluates to VALUE."
   (if (or (consp value) (and (symbolp value) (not (keywordp value)) (not (member value '(t nil)))))
       `',value
       value))
 
-(defun repetition-options (subject seed)
+(defun repeat-trial-options (subject seed)
   (let ((robots (subject-robots subject)) (parameters (subject-parameters subject)))
     `(:robots ,(if (rest robots) robots (first robots))
       :seed ,seed
-      ,@(unless (= +usual-limit+ (subject-limit subject)) `(:limit ,(subject-limit subject)))
+      ,@(unless (= +default-tick-limit+ (subject-limit subject)) `(:limit ,(subject-limit subject)))
       ,@(when parameters
           `(:parameters ,(loop for (name value) in parameters
-                               collect (list name (literal value)))))
+                               collect (list name (literal-form value)))))
       ,@(when (subject-clean subject) '(:clean t)))))
 
-(defun repetition-text (check result)
+(defun repeat-trial-text (check result)
   "Return the text of a form that repeats the trial of CHECK that had the result RESULT."
   (let ((subject (check-subject check)))
-    (flet ((text (form) (checked-form-text form check)))
+    (flet ((text (form) (form-text-for-check form check)))
       (if subject
           (format nil "(~A ~A~%    ~{~A ~A~^ ~})" (text 'repeat-trial) (text (subject-form subject))
-                  (mapcar #'text (repetition-options subject (result-seed result))))
+                  (mapcar #'text (repeat-trial-options subject (result-seed result))))
           (format nil "(~A '~A ~S ~D)" (text 'replay-trial)
                   (text (experiment-name (check-experiment check)))
                   (condition-name (check-condition check)) (result-trial result))))))

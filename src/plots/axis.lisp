@@ -21,7 +21,7 @@ logarithm."
         (t (check-argument chart value (plusp value)
                            "a number above 0 on a logarithmic axis; leave :log-x out, or give the
 value as a string")
-           (let ((power (power-of-ten value)))
+           (let ((power (decimal-exponent value)))
              (+ power (rational (/ (logarithm (/ value (expt 10 power))) (logarithm 10))))))))
 
 (defun antilogarithm (logarithm)
@@ -29,7 +29,7 @@ value as a string")
   (multiple-value-bind (power rest) (floor logarithm)
     (* (expt 10 power) (rational (power 10 rest)))))
 
-(defun axis-place (value axis)
+(defun axis-pixel (value axis)
   (let ((low (axis-low axis)))
     (+ (axis-from axis)
        (* (- (axis-to axis) (axis-from axis))
@@ -37,22 +37,22 @@ value as a string")
 
 ;;; Limits.
 
-(defun limits (values &optional (least-step 0))
+(defun value-range (values &optional (least-mark-step 0))
   "Return the least and the greatest of VALUES, or 0 and 1 if VALUES is empty. If both would be
-equal, the limits are at least LEAST-STEP farther out on each side."
+equal, the limits are at least LEAST-MARK-STEP farther out on each side."
   (let ((low (if values (reduce #'min values) 0))
         (high (if values (reduce #'max values) 1)))
     (cond ((< low high) (values low high))
           ((zerop low) (values 0 1))
-          (t (let ((more (max least-step (/ (abs low) 10))))
+          (t (let ((more (max least-mark-step (/ (abs low) 10))))
                (values (- low more) (+ high more)))))))
 
-(defun least-step (values percent)
+(defun least-mark-step (values percent)
   "Return the least step between marks for VALUES: 1 for counts, that is, integers that are not
 shown as PERCENT; else 0."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
-(defun padded-limits (low high from to inset)
+(defun padded-range (low high from to inset)
   "Return the numbers at the ends of an axis between the pixels FROM and TO on which LOW and HIGH
 are INSET pixels from the ends. INSET is reduced to a sixth of the axis if it is more."
   (let* ((span (rational (- to from)))
@@ -72,9 +72,9 @@ are INSET pixels from the ends. INSET is reduced to a sixth of the axis if it is
   (loop for (mark next) on (axis-marks axis)
         while next
         always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))
-                   (- (axis-place (first next) axis) (axis-place (first mark) axis)))))
+                   (- (axis-pixel (first next) axis) (axis-pixel (first mark) axis)))))
 
-(defun fit-marks (axis candidates least)
+(defun choose-fitting-marks (axis candidates least)
   "Give AXIS the first list of marks in CANDIDATES whose texts fit. A list of a single mark, which
 does not show the scale, is used only if no candidate has two marks."
   (loop for (marks . more) on (or (remove-if-not #'rest candidates) candidates)
@@ -84,11 +84,11 @@ does not show the scale, is used only if no candidate has two marks."
 
 ;;; Axes across.
 
-(defun step-candidates (low high start end percent &optional (least-step 0))
+(defun linear-mark-candidates (low high start end percent &optional (least-mark-step 0))
   "Return several lists of possible marks between START and END, the longest list first. The marks
-of a list are at least LEAST-STEP apart, and at most 10 of them are between LOW and HIGH."
+of a list are at least LEAST-MARK-STEP apart, and at most 10 of them are between LOW and HIGH."
   (loop for most in '(10 8 6 5 4 3 2 1)
-        for step = (max least-step (round-step (- high low) most))
+        for step = (max least-mark-step (round-step (- high low) most))
         collect (step-marks step start end percent)))
 
 (defun decade-marks (low high factors every)
@@ -99,44 +99,45 @@ exponent EVERY divides."
           append (loop for factor in factors
                        for value = (* factor (expt 10 power))
                        when (<= low (scaled-value value t) high)
-                         collect (list value (plain-text value 4)))))
+                         collect (list value (significant-digits-text value 4)))))
 
-(defun logarithmic-candidates (low high percent)
+(defun logarithmic-mark-candidates (low high percent)
   "Return several lists of possible marks of a logarithmic axis from LOW to HIGH, which are
 logarithms. The longest list comes first."
   (if (< (- high low) 1)
       (let ((least (antilogarithm low)) (most (antilogarithm high)))
-        (step-candidates least most least most percent))
+        (linear-mark-candidates least most least most percent))
       (loop for (every . factors) in '((1 1 2 3 4 5 6 7 8 9) (1 1 2 5) (1 1 3) (1 1) (2 1) (3 1)
                                        (5 1) (10 1) (50 1) (200 1))
             collect (decade-marks low high factors every))))
 
-(defun axis-across (values from to log-p &key percent (least 0) (inset 16))
+(defun numeric-x-axis (values from to log-p &key percent (least 0) (inset 16))
   "Return an axis for VALUES, logarithmic if LOG-P, from the pixel FROM to TO, with as many marks as
 fit, each at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the
 ends."
-  (let ((least-step (if log-p 0 (least-step values percent)))
+  (let ((least-mark-step (if log-p 0 (least-mark-step values percent)))
         (spots (if log-p
                    (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))
                    values)))
-    (multiple-value-bind (low high) (limits spots least-step)
-      (multiple-value-bind (start end) (padded-limits low high from to inset)
-        (fit-marks (make-axis :low start :high end :from from :to to :log-p (and log-p t))
+    (multiple-value-bind (low high) (value-range spots least-mark-step)
+      (multiple-value-bind (start end) (padded-range low high from to inset)
+        (choose-fitting-marks (make-axis :low start :high end :from from :to to
+                                         :log-p (and log-p t))
                    (if log-p
-                       (logarithmic-candidates start end percent)
-                       (step-candidates low high low high percent least-step))
+                       (logarithmic-mark-candidates start end percent)
+                       (linear-mark-candidates low high low high percent least-mark-step))
                    least)))))
 
 ;;; The axis upward. Its ends are marks.
 
-(defun axis-upward (values percent range)
+(defun numeric-y-axis (values percent range)
   "Return a vertical axis for VALUES and the two numbers of RANGE, without its position on the
 page."
-  (multiple-value-bind (low high) (limits (append range values))
+  (multiple-value-bind (low high) (value-range (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            ;; 0 and 1 can be counts or shares.
-           (least-step (if (<= high 1) 0 (least-step values percent)))
-           (step (max least-step (round-step (- high low) 6)))
+           (least-mark-step (if (<= high 1) 0 (least-mark-step values percent)))
+           (step (max least-mark-step (round-step (- high low) 6)))
            (low (multiple-below step low))
            (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))
@@ -146,9 +147,10 @@ page."
 ;;; The words are below their places, in up to three lines, if none must be broken for that.
 ;;; Otherwise they run upward. If there are too many for the page, it becomes wider.
 
-(defconstant +longest-upward+ 170 "The greatest length of a line of vertical text, in pixels.")
+(defconstant +longest-vertical-text+ 170
+  "The greatest length of a line of vertical text, in pixels.")
 
-(defun across-lines (words width)
+(defun horizontal-label-lines (words width)
   "Return a list with the lines of text of each of WORDS, wrapped at WIDTH pixels. Return NIL if one
 of WORDS needs more than three lines or must be broken inside."
   (let ((all (mapcar (lambda (word) (wrap-text word width)) words)))
@@ -159,12 +161,12 @@ of WORDS needs more than three lines or must be broken inside."
                 words all)
          all)))
 
-(defun word-axis (words from to)
+(defun word-x-axis (words from to)
   "Return an axis with a mark for each of WORDS, at 0, 1, 2 and so on. The axis begins at the pixel
 FROM and may reach beyond the pixel TO."
   (let* ((count (max 1 (length words)))
-         (across (across-lines words (- (/ (- to from) count) 8)))
-         (all (or across (mapcar (lambda (word) (wrap-text word +longest-upward+)) words)))
+         (across (horizontal-label-lines words (- (/ (- to from) count) 8)))
+         (all (or across (mapcar (lambda (word) (wrap-text word +longest-vertical-text+)) words)))
          (least (if across 0 (+ 1 (reduce #'max all :key #'lines-height :initial-value 0)))))
     (make-axis :low -1/2 :high (- count 1/2) :from from :to (max to (+ from (* count least)))
                :marks (loop for lines in all for number from 0 collect (cons number lines))
@@ -176,11 +178,11 @@ FROM and may reach beyond the pixel TO."
            (reduce #'max (axis-marks axis) :key (lambda (mark) (lines-height (rest mark)))
                                            :initial-value 0))))
 
-(defun draw-marks-across (canvas axis y)
+(defun draw-x-axis-marks (canvas axis y)
   (loop for (value . lines) in (axis-marks axis)
-        for x = (axis-place value axis)
-        do (with-ink (+line-ink+)
+        for x = (axis-pixel value axis)
+        do (with-ink (+axis-color+)
              (draw-line canvas draw-gcontext* x y x (+ y 4)))
            (if (axis-upward-p axis)
-               (write-lines-upward canvas x (+ y 8) lines)
+               (write-vertical-lines canvas x (+ y 8) lines)
                (write-lines canvas x (+ y 17) lines :anchor :middle))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.plots)
 
-(export '(figure-text power-of-ten decimal-text without-zeros))
+(export '(figure-text decimal-exponent decimal-text strip-trailing-zeros))
 
 ;;; Internally all numbers are rationals. So numbers of any size do not overflow, and the same data
 ;;; give the same picture to the last byte.
@@ -18,7 +18,7 @@ WRONG-ARGUMENT."
            (rational value)
            (rationalize value))))
 
-(defun power-of-ten (value)
+(defun decimal-exponent (value)
   "Return the greatest integer N for which 10^N is at most the absolute value of VALUE, which is not
 0."
   (let* ((size (abs value))
@@ -37,25 +37,26 @@ WRONG-ARGUMENT."
             (and (minusp value) (plusp (+ whole rest)))
             whole (plusp decimals) decimals rest)))
 
-(defun without-zeros (text)
+(defun strip-trailing-zeros (text)
   "Return TEXT, the text of a number, without trailing zeros after the decimal point."
   (if (find #\. text)
       (string-right-trim "." (string-right-trim "0" text))
       text))
 
-(defun rounded (value digits)
+(defun round-to-digits (value digits)
   "Return VALUE, a rational, rounded to DIGITS significant digits."
   (if (zerop value)
       0
-      (let ((unit (expt 10 (- (power-of-ten value) digits -1))))
+      (let ((unit (expt 10 (- (decimal-exponent value) digits -1))))
         (* unit (round value unit)))))
 
-(defun plain-text (value digits)
-  (let* ((value (rounded value digits))
-         (power (if (zerop value) 0 (power-of-ten value))))
+(defun significant-digits-text (value digits)
+  (let* ((value (round-to-digits value digits))
+         (power (if (zerop value) 0 (decimal-exponent value))))
     (if (<= -4 power 6)
-        (without-zeros (decimal-text value (max 0 (- digits 1 power))))
-        (format nil "~Ae~D" (without-zeros (decimal-text (/ value (expt 10 power)) (1- digits)))
+        (strip-trailing-zeros (decimal-text value (max 0 (- digits 1 power))))
+        (format nil "~Ae~D"
+                (strip-trailing-zeros (decimal-text (/ value (expt 10 power)) (1- digits)))
                 power))))
 
 (defun figure-text (value &key (percent nil) (digits 4))
@@ -63,8 +64,8 @@ WRONG-ARGUMENT."
 12.5 %, 1.5e9. For NIL return a dash. Signals WRONG-ARGUMENT."
   (let ((value (as-rational value)))
     (cond ((null value) "-")
-          (percent (format nil "~A %" (plain-text (* 100 value) digits)))
-          (t (plain-text value digits)))))
+          (percent (format nil "~A %" (significant-digits-text (* 100 value) digits)))
+          (t (significant-digits-text value digits)))))
 
 ;;; Round numbers along an axis.
 
@@ -72,35 +73,35 @@ WRONG-ARGUMENT."
   "Return the least step that divides SPAN into at most MOST parts. A step is 1, 2 or 5 times a
 power of ten."
   (let ((least (/ span most)))
-    (loop for power from (power-of-ten least)
+    (loop for power from (decimal-exponent least)
           thereis (loop for factor in '(1 2 5)
                         for step = (* factor (expt 10 power))
                         when (<= least step) return step))))
 
-(defconstant +slack+ 1/1000000000
+(defconstant +step-tolerance+ 1/1000000000
   "The fraction of a step by which a float may differ from a round number.")
 
 (defun multiple-below (step value)
-  (* step (floor (+ (/ value step) +slack+))))
+  (* step (floor (+ (/ value step) +step-tolerance+))))
 
 (defun multiple-above (step value)
-  (* step (ceiling (- (/ value step) +slack+))))
+  (* step (ceiling (- (/ value step) +step-tolerance+))))
 
-(defun step-text (value step largest percent)
+(defun mark-text (value step largest percent)
   "Return the text of VALUE for a mark, with as many decimals as STEP. The marks are STEP apart;
 LARGEST is the largest absolute value."
-  (flet ((decimals (step) (max 0 (- (power-of-ten step)))))
+  (flet ((decimals (step) (max 0 (- (decimal-exponent step)))))
     (cond (percent
            (format nil "~A %" (decimal-text (* 100 value) (decimals (* 100 step)))))
           ((and (<= 1/100000 step) (< largest (expt 10 7)))
            (decimal-text value (decimals step)))
           ((zerop value) "0")
-          (t (let ((unit (expt 10 (power-of-ten largest))))
+          (t (let ((unit (expt 10 (decimal-exponent largest))))
                (format nil "~Ae~D" (decimal-text (/ value unit) (decimals (/ step unit)))
-                       (power-of-ten largest)))))))
+                       (decimal-exponent largest)))))))
 
 (defun step-marks (step low high percent)
   "Return a list of marks (value text), STEP apart, for an axis from LOW to HIGH."
   (let ((largest (max (abs low) (abs high))))
     (loop for value from (multiple-above step low) to (multiple-below step high) by step
-          collect (list value (step-text value step largest percent)))))
+          collect (list value (mark-text value step largest percent)))))

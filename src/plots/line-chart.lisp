@@ -19,15 +19,15 @@ text; Y, LOW and HIGH may be NIL."
   (index 0 :read-only t)
   (points '() :type list :read-only t))
 
-(defun checked-point (point words-p)
+(defun checked-point (point any-x-word-p)
   (check-argument chart point (and (consp point) (ignore-errors (<= 2 (length point) 4)))
                   "a list (x y) or (x y low high)")
   (destructuring-bind (x y &optional low high) point
     (check-argument chart x (not (null x)) "a number, or a word such as the name of a condition")
-    (make-data-point (if words-p (name-text x) (as-rational x))
+    (make-data-point (if any-x-word-p (name-text x) (as-rational x))
                      (as-rational y) (as-rational low) (as-rational high))))
 
-(defun words-p (all)
+(defun any-x-word-p (all)
   "True if any point in ALL, a list of lists (name point...), has an X that is not a number."
   (some (lambda (entry)
           (some (lambda (point) (and (consp point) (not (realp (first point))))) (rest entry)))
@@ -38,13 +38,13 @@ text; Y, LOW and HIGH may be NIL."
 words."
   (check-argument chart all (and (listp all) (every #'consp all))
                   "a list of series, each a list (name (x y low high) ...)")
-  (let ((words-p (words-p all)))
+  (let ((any-x-word-p (any-x-word-p all)))
     (values (loop for (name . points) in all
                   for index from 0
                   collect (make-series (name-text name) index
-                                       (mapcar (lambda (point) (checked-point point words-p))
+                                       (mapcar (lambda (point) (checked-point point any-x-word-p))
                                                points)))
-            words-p)))
+            any-x-word-p)))
 
 (defun all-points (series) (mapcan (lambda (one) (copy-list (series-points one))) series))
 
@@ -67,12 +67,12 @@ than two."
           minimize (- next place) into gap
           finally (return (if (rest sorted) gap 60)))))
 
-(defconstant +most-sideways+ 8 "The greatest shift between two series, in pixels.")
+(defconstant +largest-series-shift+ 8 "The greatest shift between two series, in pixels.")
 
-(defun shift-step (count gap)
+(defun series-shift-step (count gap)
   "Return the horizontal shift from one of COUNT series to the next, in pixels, if points of a
 series are GAP pixels apart."
-  (min +most-sideways+ (/ (* 6/10 gap) (max 1 count))))
+  (min +largest-series-shift+ (/ (* 6/10 gap) (max 1 count))))
 
 (defun inset-for-series (series values from to log-p)
   "Return the distance that VALUES must have from the ends of an axis between the pixels FROM and
@@ -80,18 +80,18 @@ TO, so that all SERIES have room side by side."
   (let* ((places (mapcar (lambda (value) (scaled-value value log-p)) values))
          (span (if places (- (reduce #'max places) (reduce #'min places)) 0))
          (gap (if (zerop span) 60 (* (- to from) (/ (least-gap places) span)))))
-    (+ 14 (* 1/2 (length series) (shift-step (length series) gap)))))
+    (+ 14 (* 1/2 (length series) (series-shift-step (length series) gap)))))
 
-(defun series-shifts (series places from)
+(defun series-shift-function (series places from)
   "Return a function that returns the horizontal shift, in pixels, of the series with a given index
 among SERIES. PLACES are the positions of points on an axis that begins at the pixel FROM."
   (let* ((middle (/ (1- (length series)) 2))
          (room (if places (- (reduce #'min places) from 7) 0))
-         (step (min (shift-step (length series) (least-gap places))
+         (step (min (series-shift-step (length series) (least-gap places))
                     (/ room (max 1 middle)))))
     (lambda (index) (* step (- index middle)))))
 
-(defun legend-name (name known-p)
+(defun legend-label (name known-p)
   "Return the text for the series NAME in the legend. KNOWN-P is true if the series has data."
   (if (or known-p (string= "" name))
       name
@@ -101,7 +101,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
 
 ;;; Words along the axis across are replaced by numbers.
 
-(defun number-words (series words)
+(defun words-to-positions (series words)
   "Return copies of SERIES in which each X, a word, is replaced by its position in WORDS."
   (loop for one in series
         for points = (loop for point in (series-points one)
@@ -110,7 +110,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
                                                     (point-high point)))
         collect (make-series (series-name one) (series-index one) points)))
 
-(defun point-title (series point words percent)
+(defun point-tooltip (series point words percent)
   "Return the tooltip of POINT: its series, X, Y and interval."
   (flet ((text (value) (figure-text value :percent percent)))
     (format nil "~@[~A, ~]~A: ~A~:[~;~:* (~A to ~A)~]"
@@ -120,7 +120,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
             (and (point-low point) (point-high point) (text (point-low point)))
             (and (point-high point) (text (point-high point))))))
 
-(defun runs (items test)
+(defun consecutive-sublists (items test)
   "Return a list of the longest sublists of consecutive ITEMS for which TEST is true."
   (let ((runs '()) (run '()))
     (dolist (item items (nreverse (if run (cons (nreverse run) runs) runs)))
@@ -128,56 +128,57 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
             (run (push (nreverse run) runs)
                  (setf run '()))))))
 
-(defun draw-connections (canvas series plane shift)
-  (dolist (run (runs (series-points series) #'point-y))
+(defun draw-connections (canvas series plot shift)
+  (dolist (run (consecutive-sublists (series-points series) #'point-y))
     (when (rest run)
-      (with-look ((series-index series) 1.8)
+      (with-series-look ((series-index series) 1.8)
         (draw-lines canvas draw-gcontext*
                     (loop for point in run
-                          collect (+ shift (axis-place (point-x point) (plane-across plane)))
-                          collect (axis-place (point-y point) (plane-upward plane))))))))
+                          collect (+ shift (axis-pixel (point-x point) (plot-x-axis plot)))
+                          collect (axis-pixel (point-y point) (plot-y-axis plot))))))))
 
-(defun draw-intervals (canvas series plane shift)
-  (with-ink ((look-color (series-index series)) 1.2)
+(defun draw-intervals (canvas series plot shift)
+  (with-ink ((series-color (series-index series)) 1.2)
     (dolist (point (series-points series))
       (when (and (point-low point) (point-high point))
-        (draw-interval canvas (+ shift (axis-place (point-x point) (plane-across plane)))
-                       (axis-place (point-low point) (plane-upward plane))
-                       (axis-place (point-high point) (plane-upward plane)))))))
+        (draw-vertical-interval canvas (+ shift (axis-pixel (point-x point) (plot-x-axis plot)))
+                                (axis-pixel (point-low point) (plot-y-axis plot))
+                                (axis-pixel (point-high point) (plot-y-axis plot)))))))
 
-(defun draw-markers (canvas series plane shift words percent)
+(defun draw-markers (canvas series plot shift words percent)
   (dolist (point (series-points series))
     (when (point-y point)
-      (with-subject (canvas (point-title series point words percent))
+      (with-subject (canvas (point-tooltip series point words percent))
         (draw-marker canvas (series-index series)
-                     (+ shift (axis-place (point-x point) (plane-across plane)))
-                     (axis-place (point-y point) (plane-upward plane)))))))
+                     (+ shift (axis-pixel (point-x point) (plot-x-axis plot)))
+                     (axis-pixel (point-y point) (plot-y-axis plot)))))))
 
-(defun draw-series (canvas all plane words percent)
+(defun draw-series (canvas all plot words percent)
   "Draw the series in the list ALL: lines first, then intervals, then markers."
-  (let ((shifts (series-shifts all
-                               (mapcar (lambda (x) (axis-place x (plane-across plane))) (all-x all))
-                               (axis-from (plane-across plane)))))
+  (let ((shifts (series-shift-function all
+                                       (mapcar (lambda (x) (axis-pixel x (plot-x-axis plot)))
+                                                (all-x all))
+                                       (axis-from (plot-x-axis plot)))))
     (flet ((each (function)
              (dolist (series all)
                (funcall function series (funcall shifts (series-index series))))))
       (unless words
-        (each (lambda (series shift) (draw-connections canvas series plane shift))))
-      (each (lambda (series shift) (draw-intervals canvas series plane shift)))
-      (each (lambda (series shift) (draw-markers canvas series plane shift words percent))))))
+        (each (lambda (series shift) (draw-connections canvas series plot shift))))
+      (each (lambda (series shift) (draw-intervals canvas series plot shift)))
+      (each (lambda (series shift) (draw-markers canvas series plot shift words percent))))))
 
-(defun plan-line-chart (all words values log-x upward options)
+(defun lay-out-line-chart (all words values log-x upward options)
   "Return the plane for the series in the list ALL. VALUES are their X. If there are WORDS, the X
 are positions in WORDS."
-  (apply #'plan-plane
+  (apply #'lay-out-plot
          (lambda (from to)
            (if words
-               (word-axis words from to)
-               (axis-across values from to log-x
-                            :inset (inset-for-series all values from to log-x))))
+               (word-x-axis words from to)
+               (numeric-x-axis values from to log-x
+                               :inset (inset-for-series all values from to log-x))))
          upward
          (loop for series in all
-               collect (legend-name (series-name series) (some #'point-y (series-points series))))
+               collect (legend-label (series-name series) (some #'point-y (series-points series))))
          :connect (null words) options))
 
 (defun line-chart (series &rest options
@@ -194,13 +195,13 @@ names are NIL, there is no legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")
-  (multiple-value-bind (checked words-p) (checked-series series)
+  (multiple-value-bind (checked any-x-word-p) (checked-series series)
     (let* ((values (all-x checked))
-           (words (and words-p values))
-           (all (if words-p (number-words checked words) checked))
-           (upward (axis-upward (all-y all) percent
-                                (mapcar #'as-rational (or range (and percent '(0 1))))))
-           (plane (plan-line-chart all words values log-x upward options)))
-      (plane-svg plane (all-y all)
-                 (lambda (canvas)
-                   (draw-series canvas all plane words percent))))))
+           (words (and any-x-word-p values))
+           (all (if any-x-word-p (words-to-positions checked words) checked))
+           (upward (numeric-y-axis (all-y all) percent
+                                   (mapcar #'as-rational (or range (and percent '(0 1))))))
+           (plot (lay-out-line-chart all words values log-x upward options)))
+      (plot-svg plot (all-y all)
+                (lambda (canvas)
+                  (draw-series canvas all plot words percent))))))

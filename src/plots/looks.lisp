@@ -9,41 +9,41 @@
 ;;; apart without colours. There are 7 colours, 10 markers and 6 dashes: so the first 210 series all
 ;;; differ.
 
-(defconstant +ink+ #x202020 "The colour of text.")
-(defconstant +faint-ink+ #x505050 "The colour of text that is less important.")
-(defconstant +line-ink+ #x404040 "The colour of axes.")
-(defconstant +grid-ink+ #xDEDEDE "The colour of the lines behind the data.")
+(defconstant +text-color+ #x202020 "The colour of text.")
+(defconstant +faint-text-color+ #x505050 "The colour of text that is less important.")
+(defconstant +axis-color+ #x404040 "The colour of axes.")
+(defconstant +grid-color+ #xDEDEDE "The colour of the lines behind the data.")
 
-(defparameter *colors* #(#x0072B2 #xD55E00 #x009E73 #x000000 #xE69F00 #x56B4E9 #xCC79A7)
+(defparameter *series-colors* #(#x0072B2 #xD55E00 #x009E73 #x000000 #xE69F00 #x56B4E9 #xCC79A7)
   "The colours of series, in turn: blue, vermilion, green, black, orange, sky blue, purple.")
 
-(defparameter *dashes* #(nil (7 3) (2 3) (9 3 2 3) (4 2) (12 3 2 3 2 3))
+(defparameter *series-dashes* #(nil (7 3) (2 3) (9 3 2 3) (4 2) (12 3 2 3 2 3))
   "The dashes of series, in turn: lengths of dashes and gaps, in pixels; NIL is a solid line.")
 
-(defparameter *shapes*
+(defparameter *series-markers*
   #((:circle t) (:square t) (:triangle t) (:diamond t) (:kite t)
     (:circle nil) (:square nil) (:triangle nil) (:diamond nil) (:kite nil))
   "The markers of series, in turn: lists (outline filled-p).")
 
-(defparameter *outlines*
+(defparameter *marker-outlines*
   '((:square -9/10 -9/10 9/10 -9/10 9/10 9/10 -9/10 9/10)
     (:triangle 0 -6/5 23/20 4/5 -23/20 4/5)
     (:diamond 0 -27/20 1 0 0 27/20 -1 0)
     (:kite 0 6/5 23/20 -4/5 -23/20 -4/5))
   "An alist from names of markers to their outlines, polygons x y ... around the point 0, 0.")
 
-(defun look-color (index)
+(defun series-color (index)
   "Return the colour of the series INDEX."
-  (nth-cyclic index *colors*))
+  (nth-cyclic index *series-colors*))
 
-(defun call-with-look (function index width)
-  (with-gcontext (draw-gcontext* :foreground (look-color index))
-    (with-dashes ((nth-cyclic index *dashes*) :width width)
+(defun call-with-series-look (function index width)
+  (with-gcontext (draw-gcontext* :foreground (series-color index))
+    (with-dashes ((nth-cyclic index *series-dashes*) :width width)
       (funcall function))))
 
-(defmacro with-look ((index width) &body body)
+(defmacro with-series-look ((index width) &body body)
   "Run BODY drawing lines WIDTH pixels wide in the colour and dashes of the series INDEX."
-  `(call-with-look (lambda () ,@body) ,index ,width))
+  `(call-with-series-look (lambda () ,@body) ,index ,width))
 
 (defmacro with-ink ((color &optional (width 1)) &body body)
   "Run BODY drawing solid lines WIDTH pixels wide in COLOR."
@@ -53,33 +53,33 @@
 ;;; Markers. A line runs through the middles of pixels, the edge of a filled shape between pixels. A
 ;;; shift of half a pixel makes the two meet.
 
-(defun shape-points (outline x y radius)
-  (loop for (dx dy) on (rest (assoc outline *outlines*)) by #'cddr
+(defun marker-outline-points (outline x y radius)
+  (loop for (dx dy) on (rest (assoc outline *marker-outlines*)) by #'cddr
         collect (+ x 1/2 (* radius dx))
         collect (+ y 1/2 (* radius dy))))
 
-(defun fill-shape (canvas outline color x y radius)
+(defun fill-marker (canvas outline color x y radius)
   (with-ink (color)
     (if (eq :circle outline)
         (draw-arc canvas draw-gcontext* (- (+ x 1/2) radius) (- (+ y 1/2) radius)
                   (* 2 radius) (* 2 radius) 0 (* 2 pi) t)
-        (draw-lines canvas draw-gcontext* (shape-points outline x y radius) :fill-p t))))
+        (draw-lines canvas draw-gcontext* (marker-outline-points outline x y radius) :fill-p t))))
 
-(defun draw-marker (canvas index x y &optional (radius 4) (color (look-color index)))
+(defun draw-marker (canvas index x y &optional (radius 4) (color (series-color index)))
   "Draw the marker of the series INDEX in COLOR, with its middle at X, Y and a white rim."
-  (destructuring-bind (outline filled-p) (nth-cyclic index *shapes*)
-    (fill-shape canvas outline white* x y (+ radius 6/5))
-    (fill-shape canvas outline color x y radius)
+  (destructuring-bind (outline filled-p) (nth-cyclic index *series-markers*)
+    (fill-marker canvas outline white* x y (+ radius 6/5))
+    (fill-marker canvas outline color x y radius)
     (unless filled-p
-      (fill-shape canvas outline white* x y (- radius 8/5)))))
+      (fill-marker canvas outline white* x y (- radius 8/5)))))
 
-(defun draw-interval (canvas x low high)
+(defun draw-vertical-interval (canvas x low high)
   "Draw a vertical bar at X from the pixel LOW to HIGH, with caps."
   (draw-segments canvas draw-gcontext* (list x low x high
                                              (- x 3) low (+ x 3) low
                                              (- x 3) high (+ x 3) high)))
 
-(defun draw-interval-across (canvas y low high)
+(defun draw-horizontal-interval (canvas y low high)
   (draw-segments canvas draw-gcontext* (list low y high y
                                              low (- y 3) low (+ y 3)
                                              high (- y 3) high (+ y 3))))
@@ -87,7 +87,7 @@
 ;;;; Text, broken into lines, never cut
 
 (defconstant +text-size+ 12 "The height of the font of charts, in pixels.")
-(defconstant +text-step+ 15 "The distance between lines of text, in pixels.")
+(defconstant +chart-line-height+ 15 "The distance between lines of text, in pixels.")
 
 (defun name-text (name)
   "Return the text of NAME, a string, symbol, character or number; or the empty string for NIL."
@@ -108,13 +108,13 @@
         while end
         do (setf start (1+ end))))
 
-(defun fitting-length (word width size bold-p)
+(defun fitting-character-count (word width size bold-p)
   "Return the number of characters at the beginning of WORD that fit in WIDTH pixels, at least 1."
   (loop for count from 1 to (length word)
         while (<= (text-width (subseq word 0 count) size bold-p) width)
         finally (return (max 1 (1- count)))))
 
-(defun place-to-break (word count)
+(defun break-position (word count)
   "Return the position at which to break WORD, whose first COUNT characters fit in a line. WORD is
 broken after the last dash, slash or similar character in that part, but not at its beginning;
 without such a character WORD is broken at COUNT."
@@ -123,14 +123,14 @@ without such a character WORD is broken at COUNT."
     (if (and place (plusp place)) (1+ place) count)))
 
 (defun break-word (word width size bold-p)
-  (loop for fitting = (fitting-length word width size bold-p)
+  (loop for fitting = (fitting-character-count word width size bold-p)
         while (< fitting (length word))
-        for count = (place-to-break word fitting)
+        for count = (break-position word fitting)
         collect (subseq word 0 count) into pieces
         do (setf word (subseq word count))
         finally (return (append pieces (list word)))))
 
-(defun wrapped-words (words width size bold-p)
+(defun wrap-words (words width size bold-p)
   "Return WORDS as a list of lines of text, each as long as fits in WIDTH pixels."
   (let ((lines '()) (line nil))
     (dolist (word words)
@@ -151,16 +151,17 @@ character, or anywhere if there is none."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
        (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
-             append (wrapped-words (split-text paragraph #'space-p) width size bold-p))))
+             append (wrap-words (split-text paragraph #'space-p) width size bold-p))))
 
 (defun lines-width (lines &optional (size +text-size+) bold-p)
   "Return the width of the longest of LINES, in pixels."
   (reduce #'max lines :key (lambda (line) (text-width line size bold-p)) :initial-value 0))
 
-(defun lines-height (lines) (* +text-step+ (length lines)))
+(defun lines-height (lines) (* +chart-line-height+ (length lines)))
 
-(defun write-lines (canvas x y lines &key (anchor :start) (color +ink+) (size +text-size+) bold-p
-                                       (step +text-step+))
+(defun write-lines (canvas x y lines &key (anchor :start) (color +text-color+)
+                                       (size +text-size+) bold-p
+                                       (step +chart-line-height+))
   "Write LINES of text below each other. Y is the base line of the first line. Return the base line
 for a further line."
   (with-ink (color)
@@ -168,19 +169,19 @@ for a further line."
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)
       (incf y step))))
 
-(defun write-lines-upward (canvas x y lines)
+(defun write-vertical-lines (canvas x y lines)
   "Write LINES as vertical text, side by side around X. The texts end at Y."
-  (with-ink (+ink+)
+  (with-ink (+text-color+)
     (loop for line in lines
           for shift from (- (/ (1- (length lines)) 2))
-          do (draw-words canvas draw-gcontext* (+ x 4 (* shift +text-step+)) y line
+          do (draw-words canvas draw-gcontext* (+ x 4 (* shift +chart-line-height+)) y line
                         :anchor :end :size +text-size+ :upward-p t))))
 
 ;;;; The page: margin, title, document
 
 (defconstant +margin+ 16 "The margin around a chart, in pixels.")
 
-(defun check-size (width height)
+(defun check-chart-size (width height)
   (check-argument chart width (whole-p width 300 10000)
                   "an integer from 300 to 10000, in pixels")
   (check-argument chart height (whole-p height 200 10000)
@@ -188,7 +189,7 @@ for a further line."
 
 ;;; A heading is a list of a title and a subtitle, each a list of lines.
 
-(defun plan-heading (title subtitle width)
+(defun lay-out-heading (title subtitle width)
   (let ((room (- width (* 2 +margin+))))
     (list (wrap-text title room :size 15 :bold-p t) (wrap-text subtitle room))))
 
@@ -198,7 +199,7 @@ for a further line."
 (defun draw-heading (canvas heading)
   (destructuring-bind (title subtitle) heading
     (let ((y (write-lines canvas +margin+ (+ +margin+ 13) title :size 15 :step 19 :bold-p t)))
-      (write-lines canvas +margin+ (- y 2) subtitle :color +faint-ink+))))
+      (write-lines canvas +margin+ (- y 2) subtitle :color +faint-text-color+))))
 
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the

@@ -3,7 +3,7 @@
 (in-package :ars-magna.plots)
 
 (defconstant +sample-width+ 30 "The width of the sample of a series, in pixels.")
-(defconstant +entry-gap+ 6 "The gap between entries of the legend, in pixels.")
+(defconstant +legend-entry-gap+ 6 "The gap between entries of the legend, in pixels.")
 
 (defstruct (legend (:copier nil))
   "The legend beside a chart. TITLE is a list of lines of text, ENTRIES a list of lists (index
@@ -14,11 +14,11 @@ line...). If CONNECT is true, the samples of series have lines."
   (width 0 :type real)
   (height 0 :type real))
 
-(defun title-height (title)
+(defun legend-title-height (title)
   "Return the height, in pixels, of TITLE, a list of lines of text above the entries of a legend."
-  (if title (+ +entry-gap+ (lines-height title)) 0))
+  (if title (+ +legend-entry-gap+ (lines-height title)) 0))
 
-(defun plan-legend (names title most connect)
+(defun lay-out-legend (names title most connect)
   "Return the legend for series with NAMES, below TITLE, a string or NIL, and at most MOST pixels
 wide. If all names are empty, the legend is empty. If CONNECT is true, the samples of series have
 lines."
@@ -34,49 +34,50 @@ lines."
                                  (+ +sample-width+ 24
                                     (reduce #'max entries :key (lambda (entry)
                                                                  (lines-width (rest entry))))))
-                     :height (+ (title-height title)
+                     :height (+ (legend-title-height title)
                                 (loop for (nil . lines) in entries
-                                      sum (+ +entry-gap+ (lines-height (or lines '(""))))))))))
+                                      sum (+ +legend-entry-gap+
+                                           (lines-height (or lines '(""))))))))))
 
 (defun draw-sample (canvas index x y connect)
   (when connect
-    (with-look (index 1.8)
+    (with-series-look (index 1.8)
       (draw-line canvas draw-gcontext* x y (+ x +sample-width+) y)))
   (draw-marker canvas index (+ x (/ +sample-width+ 2)) y))
 
 (defun draw-legend (canvas legend x y)
   (write-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
-  (incf y (title-height (legend-title legend)))
+  (incf y (legend-title-height (legend-title legend)))
   (loop for (index . lines) in (legend-entries legend)
         do (draw-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
            (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
-           (incf y (+ +entry-gap+ (lines-height (or lines '("")))))))
+           (incf y (+ +legend-entry-gap+ (lines-height (or lines '("")))))))
 
 (defconstant +least-height+ 170 "The least height of the area for the data, in pixels.")
 (defconstant +least-width+ 200 "The least width of the area for the data, in pixels.")
 
 (defstruct (page (:copier nil))
-  "The layout of a chart. ACROSS is the horizontal axis. LEFT, RIGHT, TOP and BOTTOM are the edges
+  "The layout of a chart. X-AXIS is the horizontal axis. LEFT, RIGHT, TOP and BOTTOM are the edges
 of the area for the data, in pixels."
-  heading across x-lines
+  heading x-axis x-lines
   (left 0) (right 0) (top 0) (bottom 0) (width 0) (height 0))
 
-(defstruct (plane (:include page) (:copier nil))
-  "A page with a vertical axis, UPWARD. BELOW is the top, in pixels, of the space below the
+(defstruct (plot (:include page) (:copier nil))
+  "A page with a vertical axis, Y-AXIS. BELOW is the top, in pixels, of the space below the
 horizontal axis that some charts use."
-  upward legend y-lines (below 0))
+  y-axis legend y-lines (below 0))
 
-(defun plan-plane (make-across upward names
-                   &key title subtitle x-label y-label legend-title (width 720) (height 440)
-                     (connect t) (extra 0) (least-left 0)
-                   &allow-other-keys)
+(defun lay-out-plot (make-across upward names
+                     &key title subtitle x-label y-label legend-title (width 720) (height 440)
+                       (connect t) (extra 0) (least-left 0)
+                     &allow-other-keys)
   "Return a plane for series with NAMES. UPWARD is the vertical axis. The function MAKE-ACROSS is
 called with the left and right pixel of the area for the data, and returns the horizontal axis.
 EXTRA is the height to leave free at the bottom, LEAST-LEFT the least width at the left. The page
 grows beyond WIDTH and HEIGHT if necessary."
-  (check-size width height)
-  (let* ((heading (plan-heading title subtitle width))
-         (legend (plan-legend names legend-title (* 4/10 width) connect))
+  (check-chart-size width height)
+  (let* ((heading (lay-out-heading title subtitle width))
+         (legend (lay-out-legend names legend-title (* 4/10 width) connect))
          (y-lines (wrap-text y-label (- width (* 2 +margin+))))
          (top (+ (heading-bottom heading) 14 (lines-height y-lines) (if y-lines 8 0)))
          (left (max least-left (+ +margin+ (marks-width upward) 8)))
@@ -88,41 +89,41 @@ grows beyond WIDTH and HEIGHT if necessary."
          (bottom (max (- height +margin+ low extra) (+ top +least-height+)
                       (+ top (legend-height legend)))))
     (setf (axis-from upward) bottom (axis-to upward) top)
-    (make-plane :heading heading :legend legend :across across :upward upward
-                :x-lines x-lines :y-lines y-lines :left left :right right :top top :bottom bottom
-                :below (+ bottom low)
-                :width (ceiling (+ right (max 16 (legend-width legend)) +margin+))
-                :height (ceiling (+ bottom low extra +margin+)))))
+    (make-plot :heading heading :legend legend :x-axis across :y-axis upward
+               :x-lines x-lines :y-lines y-lines :left left :right right :top top :bottom bottom
+               :below (+ bottom low)
+               :width (ceiling (+ right (max 16 (legend-width legend)) +margin+))
+               :height (ceiling (+ bottom low extra +margin+)))))
 
-(defun draw-upward (canvas plane)
-  (loop with left = (plane-left plane)
-        for (value . lines) in (axis-marks (plane-upward plane))
-        for y = (axis-place value (plane-upward plane))
-        do (with-ink (+grid-ink+)
-             (draw-line canvas draw-gcontext* left y (plane-right plane) y))
+(defun draw-y-axis (canvas plot)
+  (loop with left = (plot-left plot)
+        for (value . lines) in (axis-marks (plot-y-axis plot))
+        for y = (axis-pixel value (plot-y-axis plot))
+        do (with-ink (+grid-color+)
+             (draw-line canvas draw-gcontext* left y (plot-right plot) y))
            (write-lines canvas (- left 8) (+ y 4) lines :anchor :end)))
 
 (defun draw-no-data (canvas page)
   (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
                (/ (+ (page-top page) (page-bottom page)) 2) '("no data")
-               :anchor :middle :color +faint-ink+))
+               :anchor :middle :color +faint-text-color+))
 
-(defun draw-across (canvas page)
-  (let ((across (page-across page)) (bottom (page-bottom page)))
-    (draw-marks-across canvas across bottom)
+(defun draw-x-axis (canvas page)
+  (let ((across (page-x-axis page)) (bottom (page-bottom page)))
+    (draw-x-axis-marks canvas across bottom)
     (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
                  (+ bottom (marks-height across) 15) (page-x-lines page) :anchor :middle)))
 
-(defun draw-plane (canvas plane)
-  (let ((left (plane-left plane)) (top (plane-top plane)) (right (plane-right plane))
-        (bottom (plane-bottom plane)))
-    (write-lines canvas +margin+ (- top 2 (lines-height (plane-y-lines plane)))
-                 (plane-y-lines plane))
-    (draw-upward canvas plane)
-    (with-ink (+line-ink+ 1.2)
+(defun draw-plot (canvas plot)
+  (let ((left (plot-left plot)) (top (plot-top plot)) (right (plot-right plot))
+        (bottom (plot-bottom plot)))
+    (write-lines canvas +margin+ (- top 2 (lines-height (plot-y-lines plot)))
+                 (plot-y-lines plot))
+    (draw-y-axis canvas plot)
+    (with-ink (+axis-color+ 1.2)
       (draw-lines canvas draw-gcontext* (list left top left bottom right bottom)))
-    (draw-across canvas plane)
-    (draw-legend canvas (plane-legend plane) right top)))
+    (draw-x-axis canvas plot)
+    (draw-legend canvas (plot-legend plot) right top)))
 
 (defun page-svg (page draw)
   (with-output-to-string (stream)
@@ -132,9 +133,9 @@ grows beyond WIDTH and HEIGHT if necessary."
         (funcall draw canvas)
         (values (page-width page) (page-height page))))))
 
-(defun plane-svg (plane data-p draw-data)
-  "Return PLANE as an SVG document. If DATA-P is true, the function DRAW-DATA of a canvas draws the
+(defun plot-svg (plot data-p draw-data)
+  "Return PLOT as an SVG document. If DATA-P is true, the function DRAW-DATA of a canvas draws the
 data; else the chart has the text \"no data\"."
-  (page-svg plane (lambda (canvas)
-                    (draw-plane canvas plane)
-                    (if data-p (funcall draw-data canvas) (draw-no-data canvas plane)))))
+  (page-svg plot (lambda (canvas)
+                   (draw-plot canvas plot)
+                   (if data-p (funcall draw-data canvas) (draw-no-data canvas plot)))))

@@ -14,7 +14,7 @@ pixels."
 
 (defun row-middle (row) (+ (row-top row) (/ (row-height row) 2)))
 
-(defun plan-row (label words width least)
+(defun lay-out-row (label words width least)
   "Return a row that is at least LEAST pixels high on a page of WIDTH pixels. WORDS is a list of
 strings."
   (let ((label (wrap-text label (* 32/100 width)))
@@ -32,50 +32,51 @@ strings."
     (setf (row-top row) top)
     (incf top (row-height row))))
 
-(defun plan-table (entries values &key title subtitle x-label (width 720) (least 14) log-x percent)
+(defun lay-out-table (entries values &key title subtitle x-label (width 720) (least 14) log-x
+                                        percent)
   "Return a table with a row for each of ENTRIES, lists (label text...), and a horizontal axis for
 VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDTH if necessary."
-  (check-size width 440)
+  (check-chart-size width 440)
   (flet ((widest (reader rows)
            (reduce #'max rows :initial-value 0
                               :key (lambda (row) (lines-width (funcall reader row))))))
-    (let* ((heading (plan-heading title subtitle width))
+    (let* ((heading (lay-out-heading title subtitle width))
            (rows (loop for (label . words) in entries
-                       collect (plan-row label words width least)))
+                       collect (lay-out-row label words width least)))
            (left (+ +margin+ (widest #'row-label rows) 12))
            (words-width (widest #'row-words rows))
            (right (max (+ left +least-width+)
                        (- width +margin+ (if (plusp words-width) (+ 14 words-width) 16))))
-           (across (axis-across values left right log-x :percent percent))
+           (across (numeric-x-axis values left right log-x :percent percent))
            (top (+ (heading-bottom heading) 12))
            (bottom (+ 4 (stack-rows rows (+ top 4))))
            (bottom (if rows bottom (+ top 60)))
            (x-lines (wrap-text x-label (- right left))))
-      (make-table :heading heading :across across :rows rows :x-lines x-lines
+      (make-table :heading heading :x-axis across :rows rows :x-lines x-lines
                   :left left :right right :top top :bottom bottom
                   :width (ceiling (+ right (max 16 (+ 14 words-width)) +margin+))
                   :height (ceiling (+ bottom (marks-height across) 6 (lines-height x-lines)
                                       +margin+))))))
 
-(defun write-beside (canvas x row lines anchor)
+(defun write-beside-row (canvas x row lines anchor)
   (write-lines canvas x (+ 12 (- (row-middle row) (/ (lines-height lines) 2))) lines
                :anchor anchor))
 
 (defun draw-table (canvas table draw-row)
   "Draw TABLE. For each row, call DRAW-ROW with CANVAS, the row and its number, to draw the data."
   (let ((left (table-left table)) (right (table-right table)) (top (table-top table))
-        (bottom (table-bottom table)) (across (table-across table)))
-    (with-ink (+grid-ink+)
+        (bottom (table-bottom table)) (across (table-x-axis table)))
+    (with-ink (+grid-color+)
       (loop for (value) in (axis-marks across)
-            for x = (axis-place value across)
+            for x = (axis-pixel value across)
             do (draw-line canvas draw-gcontext* x top x bottom)))
-    (with-ink (+line-ink+ 1.2)
+    (with-ink (+axis-color+ 1.2)
       (draw-line canvas draw-gcontext* left bottom right bottom))
-    (draw-across canvas table)
+    (draw-x-axis canvas table)
     (loop for row in (table-rows table)
           for number from 0
-          do (write-beside canvas (- left 12) row (row-label row) :end)
-             (write-beside canvas (+ right 14) row (row-words row) :start)
+          do (write-beside-row canvas (- left 12) row (row-label row) :end)
+             (write-beside-row canvas (+ right 14) row (row-words row) :start)
              (funcall draw-row canvas row number))
     (unless (table-rows table) (draw-no-data canvas table))))
 
@@ -92,7 +93,7 @@ high words); all but the label may be NIL."
   (destructuring-bind (label estimate &optional low high words) row
     (list (name-text label) (as-rational estimate) (as-rational low) (as-rational high) words)))
 
-(defun signed-text (value percent)
+(defun signed-number-text (value percent)
   (concatenate 'string (if (and value (plusp value)) "+" "")
                (figure-text value :percent percent :digits 3)))
 
@@ -107,21 +108,21 @@ number."
 (defun difference-entry (difference percent)
   (destructuring-bind (label estimate low high words) difference
     (list label
-          (interval-text estimate low high (lambda (value) (signed-text value percent)))
+          (interval-text estimate low high (lambda (value) (signed-number-text value percent)))
           words)))
 
 (defun draw-estimate (canvas index y value low high across)
   "Draw VALUE and its interval from LOW to HIGH on the horizontal axis ACROSS, at the height Y, with
 the colour and marker of the series INDEX."
   (when (and low high)
-    (with-ink ((look-color index) 1.8)
-      (draw-interval-across canvas y (axis-place low across) (axis-place high across))))
+    (with-ink ((series-color index) 1.8)
+      (draw-horizontal-interval canvas y (axis-pixel low across) (axis-pixel high across))))
   (when value
-    (draw-marker canvas index (axis-place value across) y 5)))
+    (draw-marker canvas index (axis-pixel value across) y 5)))
 
-(defun draw-zero (canvas table)
-  (let ((x (axis-place 0 (table-across table))))
-    (with-ink (+line-ink+ 1.2)
+(defun draw-zero-line (canvas table)
+  (let ((x (axis-pixel 0 (table-x-axis table))))
+    (with-ink (+axis-color+ 1.2)
       (draw-line canvas draw-gcontext* x (table-top table) x (table-bottom table)))))
 
 (defun difference-chart (rows &key percent title subtitle x-label (width 720))
@@ -131,18 +132,18 @@ and a remark such as \"p = 0.03\". All but the label may be NIL. If PERCENT is t
 shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument difference-chart rows (listp rows) "a list of rows")
   (let* ((differences (mapcar #'checked-difference rows))
-         (table (plan-table (mapcar (lambda (difference) (difference-entry difference percent))
-                                    differences)
-                            (cons 0 (loop for difference in differences
-                                          append (remove nil (subseq difference 1 4))))
-                            :title title :subtitle subtitle :x-label x-label :width width
-                            :percent percent)))
+         (table (lay-out-table (mapcar (lambda (difference) (difference-entry difference percent))
+                                       differences)
+                               (cons 0 (loop for difference in differences
+                                             append (remove nil (subseq difference 1 4))))
+                               :title title :subtitle subtitle :x-label x-label :width width
+                               :percent percent)))
     (table-svg table
                (lambda (canvas row number)
-                 (when (zerop number) (draw-zero canvas table))
+                 (when (zerop number) (draw-zero-line canvas table))
                  (destructuring-bind (estimate low high) (subseq (elt differences number) 1 4)
                    (draw-estimate canvas 0 (row-middle row) estimate low high
-                                  (table-across table)))))))
+                                  (table-x-axis table)))))))
 
 ;;;; Distributions of many numbers, by group
 
@@ -170,19 +171,19 @@ low high)."
                (format nil "~A ~A" middle-label (interval-text middle low high #'figure-text)))
           (format nil "n = ~D" (length numbers)))))
 
-(defun columns (numbers axis)
+(defun histogram-columns (numbers axis)
   "Return an alist from the columns of a histogram, numbered from the beginning of AXIS, to the
 count of NUMBERS in each column."
   (let ((counts (make-hash-table)))
     (dolist (number numbers)
-      (incf (gethash (floor (- (axis-place number axis) (axis-from axis)) +column-width+)
+      (incf (gethash (floor (- (axis-pixel number axis) (axis-from axis)) +column-width+)
                      counts 0)))
     (sort (loop for column being the hash-keys of counts using (hash-value count)
                 collect (cons column count))
           #'< :key #'car)))
 
-(defun draw-columns (canvas numbers y axis)
-  (let* ((columns (columns numbers axis))
+(defun draw-histogram (canvas numbers y axis)
+  (let* ((columns (histogram-columns numbers axis))
          (most (reduce #'max columns :key #'cdr :initial-value 1)))
     (with-ink (#x8FB3CC)
       (loop for (column . count) in columns
@@ -196,7 +197,7 @@ count of NUMBERS in each column."
 (defun draw-group (canvas group row axis)
   (destructuring-bind (numbers middle low high) (rest group)
     (let ((base (+ (row-middle row) 12)))
-      (draw-columns canvas numbers base axis)
+      (draw-histogram canvas numbers base axis)
       (draw-estimate canvas 3 (+ base 8) middle low high axis))))
 
 (defun measure-chart (rows &key log-x (middle-label "median") title subtitle x-label (width 720))
@@ -208,12 +209,12 @@ If LOG-X is true, the scale is logarithmic. The other arguments are those of LIN
 WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
-         (table (plan-table (mapcar (lambda (group) (group-entry group middle-label)) groups)
-                            (loop for group in groups
-                                  append (remove nil (cddr group))
-                                  append (second group))
-                            :title title :subtitle subtitle :x-label x-label :width width
-                            :least (+ +column-height+ 20) :log-x log-x)))
+         (table (lay-out-table (mapcar (lambda (group) (group-entry group middle-label)) groups)
+                               (loop for group in groups
+                                     append (remove nil (cddr group))
+                                     append (second group))
+                               :title title :subtitle subtitle :x-label x-label :width width
+                               :least (+ +column-height+ 20) :log-x log-x)))
     (table-svg table
                (lambda (canvas row number)
-                 (draw-group canvas (elt groups number) row (table-across table))))))
+                 (draw-group canvas (elt groups number) row (table-x-axis table))))))

@@ -54,20 +54,20 @@ any reason."
   "True if CURVE has data to show."
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
-(defun at-risk (time curve)
+(defun count-at-risk (time curve)
   "Return the number of trials in CURVE that are at risk just before TIME."
   (count time (curve-times curve) :test #'<=))
 
 ;;; The curve.
 
-(defun stairs (steps end reader plane)
+(defun step-line-points (steps end reader plot)
   "Return a list of points x y ... along STEPS until the time END. READER returns the value of a
 step to draw."
   (loop for (step next) on steps
-        for y = (axis-place (funcall reader step) (plane-upward plane))
-        collect (axis-place (first step) (plane-across plane))
+        for y = (axis-pixel (funcall reader step) (plot-y-axis plot))
+        collect (axis-pixel (first step) (plot-x-axis plot))
         collect y
-        collect (axis-place (if next (first next) end) (plane-across plane))
+        collect (axis-pixel (if next (first next) end) (plot-x-axis plot))
         collect y))
 
 (defun reverse-points (points)
@@ -76,70 +76,70 @@ step to draw."
         collect x
         collect y))
 
-(defun bands (curve)
+(defun confidence-bands (curve)
   "Return lists (end step...), one for each sequence of consecutive steps of CURVE that have an
 interval. END is the time until which the last of these steps is valid."
   (loop with steps = (curve-steps curve)
-        for band in (runs steps (lambda (step) (and (third step) (fourth step))))
+        for band in (consecutive-sublists steps (lambda (step) (and (third step) (fourth step))))
         for next = (second (member (first (last band)) steps))
         collect (cons (if next (first next) (curve-end curve)) band)))
 
-(defun draw-bands (canvas curve plane)
+(defun draw-confidence-bands (canvas curve plot)
   (with-opacity (canvas 16/100)
-    (with-ink ((look-color (curve-index curve)))
-      (loop for (end . steps) in (bands curve)
+    (with-ink ((series-color (curve-index curve)))
+      (loop for (end . steps) in (confidence-bands curve)
             do (draw-lines canvas draw-gcontext*
-                           (append (stairs steps end #'third plane)
-                                   (reverse-points (stairs steps end #'fourth plane)))
+                           (append (step-line-points steps end #'third plot)
+                                   (reverse-points (step-line-points steps end #'fourth plot)))
                            :fill-p t)))))
 
-(defun draw-censored (canvas curve plane)
+(defun draw-censored (canvas curve plot)
   "Draw a short vertical line for each censored trial in CURVE, at most one line for each pixel."
   (let ((places (remove-duplicates
                  (loop for time in (remove-duplicates (curve-censored curve))
-                       collect (list (round (axis-place time (plane-across plane)))
-                                     (axis-place (second (step-at time curve))
-                                                 (plane-upward plane))))
+                       collect (list (round (axis-pixel time (plot-x-axis plot)))
+                                     (axis-pixel (second (step-at time curve))
+                                                 (plot-y-axis plot))))
                  :test #'equal)))
-    (with-ink ((look-color (curve-index curve)) 1.4)
+    (with-ink ((series-color (curve-index curve)) 1.4)
       (loop for (x y) in places
             do (draw-line canvas draw-gcontext* x (- y 5) x (+ y 5))))))
 
-(defun draw-markers-along (canvas curve curves plane)
+(defun draw-markers-along (canvas curve curves plot)
   "Draw up to four markers along CURVE, at times at which none of the other CURVES has markers."
   (loop with end = (reduce #'max curves :key #'curve-end)
         for turn below 4
         for time = (* end 1/4 (+ turn (/ (+ 1/2 (curve-index curve)) (length curves))))
         while (<= time (curve-end curve))
-        do (draw-marker canvas (curve-index curve) (axis-place time (plane-across plane))
-                        (axis-place (second (step-at time curve)) (plane-upward plane)))))
+        do (draw-marker canvas (curve-index curve) (axis-pixel time (plot-x-axis plot))
+                        (axis-pixel (second (step-at time curve)) (plot-y-axis plot)))))
 
-(defun draw-curves (canvas curves plane)
+(defun draw-curves (canvas curves plot)
   (let ((known (remove-if-not #'has-data-p curves)))
-    (dolist (curve known) (draw-bands canvas curve plane))
+    (dolist (curve known) (draw-confidence-bands canvas curve plot))
     (dolist (curve known)
-      (with-look ((curve-index curve) 1.8)
+      (with-series-look ((curve-index curve) 1.8)
         (draw-lines canvas draw-gcontext*
-                    (stairs (curve-steps curve) (curve-end curve) #'second plane)))
-      (draw-censored canvas curve plane))
-    (dolist (curve known) (draw-markers-along canvas curve curves plane))))
+                    (step-line-points (curve-steps curve) (curve-end curve) #'second plot)))
+      (draw-censored canvas curve plot))
+    (dolist (curve known) (draw-markers-along canvas curve curves plot))))
 
 ;;; Below: the numbers at risk.
 
-(defun risk-width (curves)
+(defun risk-count-width (curves)
   (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
                                                 :initial-value 0))
               +text-size+))
 
-(defun draw-risks (canvas curves plane label)
-  (let ((y (+ (plane-below plane) 20)))
-    (write-lines canvas +margin+ y (list label) :color +faint-ink+)
+(defun draw-risk-counts (canvas curves plot label)
+  (let ((y (+ (plot-below plot) 20)))
+    (write-lines canvas +margin+ y (list label) :color +faint-text-color+)
     (dolist (curve curves)
-      (incf y +text-step+)
+      (incf y +chart-line-height+)
       (draw-sample canvas (curve-index curve) +margin+ (- y 4) t)
-      (dolist (mark (axis-marks (plane-across plane)))
-        (write-lines canvas (axis-place (first mark) (plane-across plane)) y
-                     (list (format nil "~D" (at-risk (first mark) curve)))
+      (dolist (mark (axis-marks (plot-x-axis plot)))
+        (write-lines canvas (axis-pixel (first mark) (plot-x-axis plot)) y
+                     (list (format nil "~D" (count-at-risk (first mark) curve)))
                      :anchor :middle)))))
 
 (defun survival-chart (curves &rest options
@@ -156,19 +156,20 @@ WRONG-ARGUMENT."
   (check-argument survival-chart risk-label (stringp risk-label) "a string")
   (let* ((curves (checked-curves curves))
          (ends (cons 0 (mapcar #'curve-end curves)))
-         (plane (apply #'plan-plane
+         (plot (apply #'lay-out-plot
                        (lambda (from to)
-                         (axis-across ends from to nil :least (risk-width curves) :inset 8))
-                       (axis-upward '() t '(0 1))
-                       (mapcar (lambda (curve) (legend-name (curve-name curve) (has-data-p curve)))
+                         (numeric-x-axis ends from to nil
+                                         :least (risk-count-width curves) :inset 8))
+                       (numeric-y-axis '() t '(0 1))
+                       (mapcar (lambda (curve) (legend-label (curve-name curve) (has-data-p curve)))
                                curves)
                        :extra (if (some #'curve-times curves)
-                                  (+ 10 (* +text-step+ (1+ (length curves))))
+                                  (+ 10 (* +chart-line-height+ (1+ (length curves))))
                                   0)
-                       :least-left (+ +margin+ +sample-width+ 14 (/ (risk-width curves) 2))
+                       :least-left (+ +margin+ +sample-width+ 14 (/ (risk-count-width curves) 2))
                        options)))
-    (plane-svg plane (some #'has-data-p curves)
+    (plot-svg plot (some #'has-data-p curves)
                (lambda (canvas)
-                 (draw-curves canvas curves plane)
+                 (draw-curves canvas curves plot)
                  (when (some #'curve-times curves)
-                   (draw-risks canvas curves plane risk-label))))))
+                   (draw-risk-counts canvas curves plot risk-label))))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(environment-of note-environment fork-p *simulation-variables*))
+(export '(environment-of store-environment fork-p *simulation-variables*))
 
 ;;; Robots' names and the *SIMULATION-VARIABLES* are bound by WITH-SIMULATION; for a live run they
 ;;; are global. A fork keeps their values, and they are bound while code works in it.
@@ -34,44 +34,44 @@ simulation are undone at its end and do not affect other simulations.")
 ;;; A live run that is started inside WITH-SIMULATION is current there only. At the end, the
 ;;; variables of the one that is current outside are restored.
 
-(defvar *outer-globals* nil
+(defvar *saved-outer-globals* nil
   "In a headless simulation, a list whose rest saves global values. The rest is (run (symbol .
 value)...) if another live run was started in the simulation: RUN is the live run that was current
 outside, and the values are those of its *SIMULATION-VARIABLES*. Otherwise the rest is empty.")
 
-(defun note-outer-globals (simulation)
+(defun save-outer-globals (simulation)
   "Save the global values of *SIMULATION-VARIABLES* if SIMULATION, started inside a headless
 simulation, is about to set them while another live run is current outside."
   (let ((current (global-value '*simulation*)))
-    (when (and *outer-globals*
-               (null (rest *outer-globals*))
+    (when (and *saved-outer-globals*
+               (null (rest *saved-outer-globals*))
                current
                (live-p current)
                (not (eq current simulation)))
-      (setf (rest *outer-globals*)
+      (setf (rest *saved-outer-globals*)
             (cons current (loop for symbol in *simulation-variables*
                                 collect (cons symbol (global-value symbol))))))))
 
 (defun restore-outer-globals ()
-  "Restore the global values of *SIMULATION-VARIABLES* that NOTE-OUTER-GLOBALS has saved, if any."
-  (destructuring-bind (&optional run &rest values) (rest *outer-globals*)
+  "Restore the global values of *SIMULATION-VARIABLES* that SAVE-OUTER-GLOBALS has saved, if any."
+  (destructuring-bind (&optional run &rest values) (rest *saved-outer-globals*)
     (when (and run (eq run (global-value '*simulation*)))
       (loop for (symbol . value) in values
             do (setf (global-value symbol) value)))))
 
-(defun publish-variables (simulation)
+(defun set-variables-globally (simulation)
   "If SIMULATION is live, set the global values of *SIMULATION-VARIABLES* to their values in this
 thread, for all threads of SIMULATION. The variables may be bound in this thread, by a headless
 simulation in which SIMULATION was started."
   (when (live-p simulation)
-    (note-outer-globals simulation)
+    (save-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
       (setf (global-value symbol) (symbol-value symbol)))))
 
-(defun note-environment (simulation)
+(defun store-environment (simulation)
   "Store in SIMULATION, in which this thread works, the current values of its variables."
   (setf (simulation-environment simulation) (environment-in-this-thread simulation))
-  (publish-variables simulation))
+  (set-variables-globally simulation))
 
 (defun environment-of (simulation)
   "Return a list (symbol . value) of the variables of SIMULATION, in any thread. The list includes
@@ -85,7 +85,7 @@ the dice that SIMULATION was loaded with, if any."
             (acons *lisps-dice* dice environment)
             environment))))
 
-(defun adopt-environment (simulation)
+(defun restore-environment (simulation)
   "Set the variables of SIMULATION, to which this thread returns, to the values that are stored in
 SIMULATION."
   (when (headless-p simulation)
@@ -109,13 +109,13 @@ Store the last values of the variables in SIMULATION, or globally if SIMULATION 
 (defun call-in-other-run (simulation function)
   "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."
   (let ((around *simulation*))
-    (when around (note-environment around))
+    (when around (store-environment around))
     (in-any-case
       (call-with-parameter-values (simulation-known-parameters simulation)
                                   (lambda () (call-in-environment simulation function)))
-      (when around (adopt-environment around)))))
+      (when around (restore-environment around)))))
 
-(defun call-inside (simulation function)
+(defun call-in-simulation (simulation function)
   "Call FUNCTION with SIMULATION as the current simulation, with its world and message queue. If
 another simulation was current, also bind the parameters and variables of SIMULATION."
   (flet ((call ()

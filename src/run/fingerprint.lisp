@@ -30,7 +30,7 @@ their methods are compared instead.")
 
 ;;; Definitions in use, as lists (kind name).
 
-(defun names-on-things (simulation name entries)
+(defun names-used-by-things (simulation name entries)
   "Return the names of the entries of all things in SIMULATION, without duplicates. The function
 ENTRIES returns the list of entries of a thing, the function NAME the name of an entry."
   (let ((names '()))
@@ -39,7 +39,7 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
         (pushnew (funcall name entry) names)))
     names))
 
-(defun elements-in-use (numbers elements)
+(defun elements-at-indices (numbers elements)
   "Return a list of the elements of the vector ELEMENTS whose indices are in NUMBERS. Index 0 is
 ignored."
   (let ((used (make-array (length elements) :element-type 'bit :initial-element 0)))
@@ -47,47 +47,47 @@ ignored."
     (loop for index from 1 below (length elements)
           when (plusp (sbit used index)) collect (aref elements index))))
 
-(defun entries-so-far (simulation)
+(defun journal-entries-so-far (simulation)
   (let ((journal (simulation-journal simulation)))
     (and journal (journal-newest-first journal))))
 
 (defun journalled-arguments (operator position simulation)
   "Return the arguments at POSITION in all journal entries of SIMULATION for OPERATOR."
   (remove-duplicates
-   (loop for entry in (entries-so-far simulation)
+   (loop for entry in (journal-entries-so-far simulation)
          when (eq operator (second entry)) collect (nth (+ 2 position) entry))))
 
 (defun users-commands (simulation)
-  (loop for name in (remove-duplicates (mapcar #'second (entries-so-far simulation)))
+  (loop for name in (remove-duplicates (mapcar #'second (journal-entries-so-far simulation)))
         for entry = (lookup-entry name *commands*)
         when (and entry (users-p entry)) collect name))
 
-(defun names-in-use (kind simulation)
+(defun definition-names-in-use (kind simulation)
   (let ((map (world-map (simulation-world simulation))))
     (ecase kind
       (:map (list (map-name map)))
       (:map-clause (map-clause-kinds map))
       (:robot (mapcar #'robot-name (simulation-robots simulation)))
-      (:kicker (append (names-on-things simulation
-                                        (lambda (attachment)
-                                          (kicker-name (attachment-kicker attachment)))
-                                        #'thing-kickers)
+      (:kicker (append (names-used-by-things simulation
+                                             (lambda (attachment)
+                                               (kicker-name (attachment-kicker attachment)))
+                                             #'thing-kickers)
                        (journalled-arguments 'set-kicker 1 simulation)))
-      (:place-type (loop for type in (elements-in-use (map-places map) (map-place-types map))
+      (:place-type (loop for type in (elements-at-indices (map-places map) (map-place-types map))
                          collect (if (place-type-p type) (place-type-name type) type)))
-      (:attribute (names-on-things simulation #'first #'thing-attributes))
+      (:attribute (names-used-by-things simulation #'first #'thing-attributes))
       (:part (remove-duplicates
               (loop for robot in (simulation-robots simulation)
                     append (cl:map 'list #'type-of (robot-sensors robot)))))
       (:command (users-commands simulation))
-      (:substance (elements-in-use (map-substances map) (map-substance-types map))))))
+      (:substance (elements-at-indices (map-substances map) (map-substance-types map))))))
 
 (defun definition-of (kind entry)
   (list kind (qualified-name (entry-name entry))))
 
 (defun definitions-in-use (simulation)
   (append (loop for (kind . registry) in *definition-kinds*
-                append (loop for name in (names-in-use kind simulation)
+                append (loop for name in (definition-names-in-use kind simulation)
                              for entry = (lookup-entry name registry)
                              when entry collect (definition-of kind entry)))
           (loop for name in (journalled-arguments 'manipulate 0 simulation)
@@ -116,7 +116,7 @@ ignored."
                                      (mapcar #'method-source (methods-of definition)))))
    :test #'equal))
 
-(defun definitions-from (sources)
+(defun definitions-in-files (sources)
   "Return all definitions in the files SOURCES, except maps and robots."
   (append (loop for (kind . registry) in *definition-kinds*
                 unless (member kind '(:map :robot))
@@ -128,7 +128,7 @@ ignored."
                                    sources :test #'equal)
                   collect (list :manipulation (name-string (manipulation-name manipulation))))))
 
-(defun file-name-of (source)
+(defun source-file-name (source)
   (name-in-directory (native-path (source-file source))))
 
 ;;; Their digests.
@@ -145,7 +145,7 @@ of all definitions that are compared."
     (let ((entry (definition-entry definition))
           (methods (methods-of definition))
           (files (and (same-name-p :file kind)
-                      (remove name sources :key #'file-name-of :test-not #'string=))))
+                      (remove name sources :key #'source-file-name :test-not #'string=))))
       (values (cond (entry (entry-digest entry))
                     (methods (sum-of-digests (remove nil (mapcar #'method-digest methods))))
                     (files (sum-of-digests (mapcar #'second files))))
@@ -164,11 +164,11 @@ of all definitions that are compared."
 
 (defun undefined-attributes (simulation)
   "Return the undefined attributes of things in SIMULATION, in the form of definitions."
-  (loop for name in (names-in-use :attribute simulation)
+  (loop for name in (definition-names-in-use :attribute simulation)
         unless (lookup-entry name *attributes*)
           collect (list :attribute (name-string name) :undefined)))
 
-(defun undefined-p (definition)
+(defun recorded-as-undefined-p (definition)
   (same-name-p :undefined (or (and (symbolp (third definition)) (third definition)) "")))
 
 (defun definitions-of (simulation)
@@ -177,8 +177,8 @@ of all definitions that are compared."
     (append (current-definitions
              (remove-duplicates
               (append used
-                      (definitions-from sources)
-                      (mapcar (lambda (source) (list :file (file-name-of source))) sources))
+                      (definitions-in-files sources)
+                      (mapcar (lambda (source) (list :file (source-file-name source))) sources))
               :test #'same-definition-p :from-end t))
             (undefined-attributes simulation))))
 
@@ -186,7 +186,7 @@ of all definitions that are compared."
 
 (defun unchanged-p (definition now)
   "True if DEFINITION is among the current definitions NOW, or was and still is undefined."
-  (if (undefined-p definition)
+  (if (recorded-as-undefined-p definition)
       (not (member definition now :test #'same-definition-p))
       (member definition now :test #'equal)))
 
@@ -202,7 +202,7 @@ number of a definition that has changed becomes :CHANGED."
             (remove-if (lambda (definition) (member definition before :test #'same-definition-p))
                        after))))
 
-(defun definition-words (definition)
+(defun kind-and-name-text (definition)
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
     (let* ((colons (search "::" name)) (bare (if colons (subseq name (+ 2 colons)) name)))
@@ -214,17 +214,18 @@ number of a definition that has changed becomes :CHANGED."
 name in OTHERS, or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
-    (cond ((undefined-p definition)
+    (cond ((recorded-as-undefined-p definition)
            (and other (format nil "~A has been defined since the recording"
-                              (definition-words definition))))
+                              (kind-and-name-text definition))))
           ((null other)
-           (format nil "~A is not loaded" (definition-words definition)))
+           (format nil "~A is not loaded" (kind-and-name-text definition)))
           ((and number (symbolp number))
-           (format nil "~A was defined anew during the recorded run" (definition-words definition)))
+           (format nil "~A was defined anew during the recorded run"
+                   (kind-and-name-text definition)))
           ((and number (third other) (/= number (third other)))
-           (format nil "~A has changed since the recording" (definition-words definition))))))
+           (format nil "~A has changed since the recording" (kind-and-name-text definition))))))
 
-(defun differences (definitions)
+(defun definition-differences (definitions)
   "Return a list of texts about how DEFINITIONS of a journal differ from the current ones."
   (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

@@ -2,18 +2,18 @@
 
 (in-package :ars-magna.run)
 
-(export '(call-with-fork *fork-asker* refuse-fork counterpart-in-current-run))
+(export '(call-with-fork *fork-operator* refuse-fork counterpart-in-current-run))
 
 ;;; A fork is a headless run with its own world. The variables bound in the original (its robots,
 ;;; the fluents of plans) are copied as well: the fork keeps their values as its environment, which
 ;;; is bound while code works in the fork.
 
-(defvar *fork-asker* 'fork-simulation
+(defvar *fork-operator* 'fork-simulation
   "The operator called by the user that makes the fork, as named in error messages.")
 
 (defun refuse-fork (reason &rest arguments)
   "Signal MISUSE: no fork can be made. The message is REASON, a format control for ARGUMENTS."
-  (reject-use "~(~A~): ~?" *fork-asker* reason arguments))
+  (reject-use "~(~A~): ~?" *fork-operator* reason arguments))
 
 (defmethod copy-plan-value ((simulation simulation) fork)
   (if (eq simulation (copier-option fork :simulation))
@@ -25,7 +25,7 @@
       (copy-slots timeline fork)
       timeline))
 
-(defun copy-of-run (simulation copier)
+(defun copy-run (simulation copier)
   "Return a copy of SIMULATION made by COPIER, with the participants in the options of COPIER and
 without a journal."
   (let ((copy (copying (copier)
@@ -63,7 +63,7 @@ cannot be copied."
   "Return a copy of SIMULATION, which is between ticks, without its participants."
   (with-copier (copier :options (list :simulation simulation
                                       :world (simulation-world simulation)))
-    (copy-of-run simulation copier)))
+    (copy-run simulation copier)))
 
 (defun environment-of-fork (simulation)
   "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
@@ -79,9 +79,9 @@ has no dice for CL:RANDOM, which is so if it is live, new dice are made."
 (defun finish-tick (fork phase)
   "Pass the rest of the tick in which FORK was made, in the phase PHASE."
   (when (<= (phase-number :continuations) phase (phase-number :observers))
-    (call-inside fork (lambda ()
-                        (deliver-notifications (simulation-timeline fork))
-                        (let-participants-act fork)))))
+    (call-in-simulation fork (lambda ()
+                               (deliver-notifications (simulation-timeline fork))
+                               (let-participants-act fork)))))
 
 (defun fork-now (simulation continuations decisions)
   "Return a fork of SIMULATION, which is between ticks. For CONTINUATIONS and DECISIONS see
@@ -91,7 +91,7 @@ FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
   (when (eq simulation *simulation*) (record-settings simulation))
   (let ((copy (with-copier (copier :environment (environment-of-fork simulation)
                                    :options (fork-options simulation continuations decisions))
-                (copy-of-run simulation copier)))
+                (copy-run simulation copier)))
         (journal (simulation-journal simulation)))
     (setf (simulation-messages copy) (copy-message-queue (simulation-messages simulation))
           (simulation-trails copy) (simulation-trails simulation))
@@ -102,21 +102,22 @@ FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
 
 ;;; A participant may be busy in another thread.
 
-(defun call-nested (caller participants function)
+(defun call-through-participants (caller participants function)
   "Call FUNCTION inside nested calls of CALLER, such as PARTICIPANT-AT-REST, one call for each of
 the PARTICIPANTS. Return the value of FUNCTION."
   (if participants
       (funcall caller (first participants)
-               (lambda () (call-nested caller (rest participants) function)))
+               (lambda () (call-through-participants caller (rest participants) function)))
       (funcall function)))
 
-(defconstant +patience+ 2000 "How many times a fork is tried, once a tick or some milliseconds.")
+(defconstant +fork-attempts+ 2000
+  "How many times making a fork is tried, once a tick or some milliseconds.")
 
 (defun keep-trying-to-fork (simulation try)
   "Call the function TRY until it returns a fork of SIMULATION instead of :BUSY; return the fork.
-Signals MISUSE after +PATIENCE+ attempts."
+Signals MISUSE after +FORK-ATTEMPTS+ attempts."
   (loop with moment = (make-semaphore "fork")
-        repeat +patience+
+        repeat +fork-attempts+
         for fork = (funcall try)
         unless (eq :busy fork) return fork
         do (wait-a-while moment 0.002)
@@ -129,17 +130,18 @@ Signals MISUSE after +PATIENCE+ attempts."
 FORK-NOW."
   (flet ((try ()
            (asking (simulation)
-             (call-nested #'participant-at-rest (simulation-participants simulation)
+             (call-through-participants #'participant-at-rest (simulation-participants simulation)
                           (lambda () (fork-now simulation continuations decisions))))))
     (let ((fork (try)))
       (if (eq :busy fork)
-          (call-nested #'call-as-participant-makes-way (simulation-participants simulation)
+          (call-through-participants #'call-as-participant-makes-way
+                                     (simulation-participants simulation)
                        (lambda () (keep-trying-to-fork simulation #'try)))
           fork))))
 
 ;; The restarts are established here, in the thread that asked for the fork: another thread may own
 ;; the run.
-(defun decide-on-fork (condition)
+(defun ask-about-uncopiable-value (condition)
   "Signal CONDITION, a CANNOT-FORK, with restarts. Return the replacement in the fork for the value
 that cannot be copied, and true; or NIL and false if the user wants no fork."
   (restart-case (error condition)
@@ -156,17 +158,17 @@ that cannot be copied, and true; or NIL and false if the user wants no fork."
     (loop
       (handler-case (return (await-fork simulation continuations decisions))
         (cannot-fork (condition)
-          (multiple-value-bind (replacement decided-p) (decide-on-fork condition)
+          (multiple-value-bind (replacement decided-p) (ask-about-uncopiable-value condition)
             (unless decided-p (return nil))
             (push (cons (cannot-fork-value condition) replacement) decisions)))))))
 
-(defun fork-arguments (arguments)
+(defun parse-fork-arguments (arguments)
   "Parse ARGUMENTS, the arguments of FORK-SIMULATION. Return the simulation and the plist of
 options."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
       (values (if arguments
-                  (resolve-simulation (first arguments) *fork-asker*)
+                  (resolve-simulation (first arguments) *fork-operator*)
                   (current-simulation))
               (rest arguments))))
 
@@ -178,7 +180,7 @@ options."
                   "(fork-simulation [simulation] [:seed integer] [:continuations boolean])")
   (let ((seed (getf options :seed)))
     (unless (typep seed '(or null integer))
-      (reject-argument *fork-asker* 'seed seed "an integer, or NIL"))))
+      (reject-argument *fork-operator* 'seed seed "an integer, or NIL"))))
 
 (addition fork-simulation)
 (defun fork-simulation (&rest arguments)
@@ -197,9 +199,9 @@ would, given the same requests. ARGUMENTS are the simulation, by default the cur
 - Observers stay with the original.
 Signals MISUSE inside a tick, in which no continuation runs, and inside a plan's own step. Signals
 CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
-  (multiple-value-bind (simulation options) (fork-arguments arguments)
+  (multiple-value-bind (simulation options) (parse-fork-arguments arguments)
     (check-fork-options options)
-    (check-not-over simulation *fork-asker*)
+    (check-not-over simulation *fork-operator*)
     (mapc #'check-forkable (simulation-participants simulation))
     (setf (simulation-forked-p simulation) t)
     (let ((fork (fork-or-ask simulation (getf options :continuations)))
@@ -207,7 +209,7 @@ CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL.
       (when fork
         (setf (message-queue-error-policy (simulation-messages fork))
               (message-queue-error-policy (simulation-messages simulation)))
-        (when seed (call-inside fork (lambda () (set-seed seed fork)))))
+        (when seed (call-in-simulation fork (lambda () (set-seed seed fork)))))
       fork)))
 
 (addition release-fork)
@@ -217,7 +219,7 @@ and no continuation is called; unread errors go to the error output. Return noth
 WRONG-ARGUMENT if FORK is no fork."
   (check-argument release-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
-  (let ((fork (latest fork)))
+  (let ((fork (latest-successor fork)))
     (unless (simulation-over fork)
       (show-unseen (simulation-messages fork))
       (setf (timeline-over (simulation-timeline fork)) "the fork has been released")))
@@ -225,11 +227,11 @@ WRONG-ARGUMENT if FORK is no fork."
 
 (defun call-with-fork (function &rest options)
   "Call FUNCTION in a fork of the current simulation, made with OPTIONS; see WITH-FORK."
-  (let ((fork (let ((*fork-asker* 'with-fork)) (apply #'fork-simulation options))))
+  (let ((fork (let ((*fork-operator* 'with-fork)) (apply #'fork-simulation options))))
     (when fork
       (in-any-case
-        (multiple-value-prog1 (call-inside fork function)
-          (signal-trouble (simulation-messages (latest fork))))
+        (multiple-value-prog1 (call-in-simulation fork function)
+          (signal-trouble (simulation-messages (latest-successor fork))))
         (release-fork fork)))))
 
 (addition with-fork)
@@ -248,7 +250,7 @@ If FORK was rewound, its successor is used."
   (check-argument call-in-fork fork (and (simulation-p fork) (fork-p fork))
                   "a fork, as FORK-SIMULATION returns")
   (check-argument call-in-fork function (functionp function) "a function of no arguments")
-  (call-inside (latest fork) function))
+  (call-in-simulation (latest-successor fork) function))
 
 ;;; The copy of an object in a fork.
 
@@ -288,4 +290,4 @@ Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
                   (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")
-  (call-inside (latest fork) (lambda () (counterpart-in-current-run object))))
+  (call-in-simulation (latest-successor fork) (lambda () (counterpart-in-current-run object))))

@@ -21,7 +21,7 @@ simulation keeps a journal. THINKING is the thinking mode."
     (let ((world (make-world (first maps) :seed seed)))
       (dolist (blueprint blueprints) (make-robot blueprint world))
       (let ((simulation (make-simulation world)))
-        (begin-thinking simulation thinking)
+        (set-initial-thinking simulation thinking)
         (when journal (begin-journal simulation))
         simulation))))
 
@@ -42,22 +42,22 @@ options of WITH-SIMULATION."
      (check-parameters)
      (when clean (clean-simulation))
      (let ((*message-queue* (make-message-queue :error-policy errors)))
-       (call-as-headless function
+       (call-in-headless function
                          (fresh-simulation (ensure-list robots) :seed seed :journal journal
                                                                 :thinking thinking)
                          :variables variables :keep keep)))))
 
-(defun call-as-headless (function simulation &key variables keep)
+(defun call-in-headless (function simulation &key variables keep)
   "Call FUNCTION with the headless SIMULATION as the current simulation. Its robots are the values
 of their names and of VARIABLES, further symbols that name some of the robots. KEEP says how many
 forks the run keeps, see KEEP-FORKS. The run is over at the end."
-  (when *simulation* (note-environment *simulation*))
+  (when *simulation* (store-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
          (*world* (simulation-world simulation))
          (*tick-dice* nil)
          (*recorded-bindings* '())
-         (*outer-globals* (list :around))
+         (*saved-outer-globals* (list :around))
          (robots (simulation-robots simulation)))
     (setf (simulation-variables simulation)
           (append variables (mapcar #'robot-name robots) *simulation-variables*
@@ -66,7 +66,7 @@ forks the run keeps, see KEEP-FORKS. The run is over at the end."
         (append (robots-named variables) robots (mapcar #'symbol-value *simulation-variables*)
                 (list (or (simulation-dice simulation)
                           (seeded-lisps-dice (simulation-seed simulation)))))
-      (note-environment simulation)
+      (store-environment simulation)
       (in-any-case
         (call-telling-names
          (remove-duplicates (append variables (mapcar #'robot-name robots)))
@@ -87,7 +87,7 @@ as the error policy of the message queue of SIMULATION says."
           (multiple-value-prog1 (funcall function)
             (signal-trouble queue)
             (setf left-p nil))
-          (warn-at-end simulation left-p)
+          (warn-of-unpassed-ticks simulation left-p)
           (show-unseen queue)
           (end-headless simulation)
           ;; What the end interrupts is no error.
@@ -97,13 +97,13 @@ as the error policy of the message queue of SIMULATION says."
                                         (not (eq message (message-queue-unsignalled queue))))))))
       (signal-trouble queue))))
 
-(defun warn-at-end (simulation left-p)
+(defun warn-of-unpassed-ticks (simulation left-p)
   "Warn at the end of SIMULATION if no ticks have passed, or too few for its requests. Do not warn
 if LEFT-P is true, that is, after a non-local exit such as an error. Do not warn either if
 SIMULATION was forked, because ticks may have passed in the fork."
   (let ((text (and (not left-p)
                    (not (simulation-forked-p simulation))
-                   (text-at-end simulation))))
+                   (warning-at-end-text simulation))))
     (unless (or left-p (zerop (simulation-tick simulation)))
       (warn-of-idle-kickers (simulation-world simulation)))
     (when text
@@ -116,7 +116,8 @@ last successor.")
 
 (defun end-headless (simulation)
   "End SIMULATION or, if it was rewound, its successor."
-  (let ((reason "the headless simulation that it was in has ended") (last (latest simulation)))
+  (let ((reason "the headless simulation that it was in has ended")
+        (last (latest-successor simulation)))
     (retire-robots (simulation-robots last) reason)
     (end-simulation last reason)
     (unless (eq last simulation)
@@ -144,9 +145,9 @@ last successor.")
 USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they were signalled,
 shown or read. If SIMULATION was rewound, its successor is used. When a simulator starts, the errors
 of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
-  (let ((simulation (latest (resolve-simulation simulation 'simulation-errors))))
+  (let ((simulation (latest-successor (resolve-simulation simulation 'simulation-errors))))
     (errors-in (simulation-messages simulation)
-               (lambda (run) (or (null run) (eq simulation (latest run)))))))
+               (lambda (run) (or (null run) (eq simulation (latest-successor run)))))))
 
 ;;; The macro, and warnings about misspelt forms.
 
@@ -166,7 +167,7 @@ name or a list of names."
                  (or (some #'consp (rest form))
                      (known-function-p head environment)))))))
 
-(defun warn-of-used-values (body)
+(defun warn-of-used-command-values (body)
   "Warn about each form in BODY, the body of a WITH-SIMULATION form, that uses the value of a
 command."
   (map-calls (lambda (form)
@@ -235,7 +236,7 @@ something was requested, or if a plan waits for an event that nothing in the run
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (strip-quote robots)))
          (variables (if form-p '() (variables-among robots))))
-    (warn-of-used-values body)
+    (warn-of-used-command-values body)
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)

@@ -3,11 +3,11 @@
 (in-package :ars-magna.run)
 
 ;;; Some objects do not belong to one run: maps, robots' definitions, kickers and other definitions,
-;;; and some functions of the simulator. A saved run refers to these outer objects by name, and they
-;;; must be defined where it is loaded.
+;;; and some functions of the simulator. A saved run refers to these external objects by name, and
+;;; they must be defined where it is loaded.
 
-(defgeneric outer-name (object)
-  (:documentation "If OBJECT does not belong to one run, return its name, by which OUTER-OBJECT
+(defgeneric external-name (object)
+  (:documentation "If OBJECT does not belong to one run, return its name, by which EXTERNAL-OBJECT
 finds it: a list (KIND argument...) of a keyword and plain data. Otherwise return NIL.")
   (:method (object) (declare (ignore object)) nil)
   (:method ((map map)) (list :map (qualified-name (map-name map))))
@@ -37,8 +37,8 @@ finds it: a list (KIND argument...) of a keyword and plain data. Otherwise retur
   (or (nth position (manipulation-methods (find-manipulation name)))
       (error "~(~A~) has fewer methods than that" name)))
 
-(defun outer-object (kind argument &optional more)
-  "Return the object with the outer name (KIND ARGUMENT [MORE]). Signals an error if there is no
+(defun external-object (kind argument &optional more)
+  "Return the object with the external name (KIND ARGUMENT [MORE]). Signals an error if there is no
 such object."
   (or (typecase argument
         (string (case kind
@@ -57,12 +57,12 @@ such object."
                          (error "~A is not a function that a saved run may refer to" argument)))))
       (error "~A is not a kind of object that a saved run may refer to" (short-text kind))))
 
-(defun current-outer-name (object)
-  "Return the OUTER-NAME of OBJECT, and true if this name no longer means OBJECT."
-  (let ((name (outer-name object)))
+(defun checked-external-name (object)
+  "Return the EXTERNAL-NAME of OBJECT, and true if this name no longer means OBJECT."
+  (let ((name (external-name object)))
     (values name
             (and name
-                 (not (eql object (ignore-errors (apply #'outer-object name))))))))
+                 (not (eql object (ignore-errors (apply #'external-object name))))))))
 
 ;;;; The inventory
 
@@ -71,10 +71,11 @@ such object."
 ;;; the file too long. Other values are written where they are found. Objects of one shape form a
 ;;; batch and have successive numbers.
 
-(defconstant +longest-text+ 1000 "The most characters of a string without a number.")
-(defconstant +longest-row+ 1000 "The most elements of a list or array in a line.")
+(defconstant +longest-inline-string+ 1000 "The most characters of a string without a number.")
+(defconstant +most-elements-in-line+ 1000 "The most elements of a list or array in a line.")
 (defconstant +max-nesting+ 50 "The deepest nesting of lists without numbers.")
-(defconstant +room-of-object+ 300000 "About the most characters that are written for one object.")
+(defconstant +characters-per-object+ 300000
+  "About the most characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
   "Objects of the same SHAPE. If they are structures, FIELDS are their slots."
@@ -86,7 +87,7 @@ such object."
   "The objects of a run that is to be saved. STATES is a hash table from each object that was found
 to :FOUND or :NUMBERED. At the end, :NUMBERED is replaced by the number of the object."
   (states (make-hash-table :test 'eql) :type hash-table :read-only t)
-  (outer '() :type list)
+  (external-objects '() :type list)
   (batches (make-hash-table :test 'equal) :type hash-table :read-only t)
   (shapes '() :type list)
   (waiting '() :type list)
@@ -108,7 +109,7 @@ WHY, a text."
 
 ;;; Shapes.
 
-(defparameter *element-types*
+(defparameter *savable-element-types*
   (cons t (remove-duplicates
            (mapcar #'upgraded-array-element-type
                    (list* 'bit 'character 'base-char 'single-float 'double-float 'fixnum
@@ -118,7 +119,7 @@ WHY, a text."
            :test #'equal))
   "The element types of arrays that can be saved with a run.")
 
-(defparameter *table-tests* '(eq eql equal equalp)
+(defparameter *savable-table-tests* '(eq eql equal equalp)
   "The tests of hash tables that can be saved with a run.")
 
 (defun array-shape (array)
@@ -141,7 +142,7 @@ WHY, a text."
     (list :object type)))
 
 (defun table-shape (table inventory)
-  (unless (member (hash-table-test table) *table-tests*)
+  (unless (member (hash-table-test table) *savable-table-tests*)
     (reject-object table "Hash tables with a user-defined test cannot be saved" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
@@ -187,7 +188,7 @@ was found before. Return true if it was found before."
   "Record OBJECT in INVENTORY and give it a number. If OBJECT belongs to the run, its contents are
 surveyed later."
   (unless (gethash object (inventory-states inventory))
-    (multiple-value-bind (name other-p) (current-outer-name object)
+    (multiple-value-bind (name other-p) (checked-external-name object)
       (cond ((null name)
              (mark-found object t inventory)
              (push object (inventory-waiting inventory)))
@@ -195,32 +196,33 @@ surveyed later."
              (reject-object object "This object has been defined anew, or is no longer defined"
                             inventory))
             (t (setf (gethash object (inventory-states inventory)) :numbered)
-               (push (cons object name) (inventory-outer inventory)))))))
+               (push (cons object name) (inventory-external-objects inventory)))))))
 
 (defun reserve-room (characters inventory)
   "Record that CHARACTERS more characters will be written for the current object of INVENTORY. True
 if there is room for them."
   (plusp (decf (inventory-room inventory) characters)))
 
-(defun survey-text (text inventory)
-  (let ((short-p (and (<= (length text) +longest-text+) (simple-string-p text))))
+(defun record-string (text inventory)
+  (let ((short-p (and (<= (length text) +longest-inline-string+) (simple-string-p text))))
     (mark-found text (not (and (reserve-room (* 2 (length text)) inventory) short-p)) inventory)))
 
-(defun survey-list (list depth inventory)
+(defun record-list (list depth inventory)
   "Record the conses of LIST, which is nested DEPTH deep, and their contents in INVENTORY."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
         do (let ((far-p (or (not (reserve-room 2 inventory)) (= depth +max-nesting+))))
-             (when (mark-found tail (or far-p (= position +longest-row+)) inventory) (return))
+             (when (mark-found tail (or far-p (= position +most-elements-in-line+)) inventory)
+               (return))
              ;; The rest gets its own line and is surveyed later.
-             (when (or far-p (= position +longest-row+))
+             (when (or far-p (= position +most-elements-in-line+))
                (push tail (inventory-waiting inventory))
                (return))
-             (survey (car tail) depth inventory))
-        finally (survey tail depth inventory)))
+             (record-value (car tail) depth inventory))
+        finally (record-value tail depth inventory)))
 
-(defun survey (value depth inventory)
+(defun record-value (value depth inventory)
   "Record VALUE in INVENTORY, and also its contents if it gets no number. Signals MISUSE."
   (typecase value
     ((or null fixnum) (reserve-room 20 inventory))
@@ -232,55 +234,55 @@ if there is room for them."
        (reject-object value "The package of this symbol has a name with ::" inventory)))
     (number (reserve-room 50 inventory)
      (when (unprintable-atom-p value) (reject-object value "This number is too long" inventory)))
-    (cons (survey-list value (1+ depth) inventory))
-    (string (survey-text value inventory))
+    (cons (record-list value (1+ depth) inventory))
+    (string (record-string value inventory))
     (t (mark-numbered value inventory))))
 
 ;;; Contents of objects.
 
-(defun survey-fields (object inventory)
+(defun record-slots (object inventory)
   (let ((batch (gethash (shape-in-inventory object inventory) (inventory-batches inventory))))
     (dolist (field (batch-fields batch))
       (setf (inventory-field inventory) field)
-      (survey (funcall (kind-slot-reader field) object) 0 inventory))))
+      (record-value (funcall (kind-slot-reader field) object) 0 inventory))))
 
-(defun survey-array (array inventory)
+(defun record-array (array inventory)
   (when (eq t (array-element-type array))
     (dotimes (index (element-count array))
-      (survey (row-major-aref array index) 0 inventory))))
+      (record-value (row-major-aref array index) 0 inventory))))
 
-(defun survey-contents (object inventory)
+(defun record-contents (object inventory)
   "Record the contents of OBJECT, which has a number, in INVENTORY."
-  (setf (inventory-room inventory) +room-of-object+
+  (setf (inventory-room inventory) +characters-per-object+
         (inventory-holder inventory) object
         (inventory-field inventory) nil)
   (typecase object
-    (cons (survey (car object) 0 inventory)
-     (survey (cdr object) 0 inventory))
-    (array (survey-array object inventory))
+    (cons (record-value (car object) 0 inventory)
+     (record-value (cdr object) 0 inventory))
+    (array (record-array object inventory))
     (hash-table (maphash (lambda (key value)
-                           (survey key 0 inventory)
-                           (survey value 0 inventory))
+                           (record-value key 0 inventory)
+                           (record-value value 0 inventory))
                          object))
     (dice)
-    (agenda (dolist (event (pending-events object)) (survey event 0 inventory)))
-    (t (survey-fields object inventory))))
+    (agenda (dolist (event (pending-events object)) (record-value event 0 inventory)))
+    (t (record-slots object inventory))))
 
-(defun survey-all (inventory)
+(defun record-all-contents (inventory)
   "Record the contents of all objects in INVENTORY, until no new objects are found."
   (loop while (inventory-waiting inventory)
         do (dolist (object (reverse (shiftf (inventory-waiting inventory) '())))
-             (survey-contents object inventory))))
+             (record-contents object inventory))))
 
 (defun batches-in-order (inventory)
   (loop for shape in (reverse (inventory-shapes inventory))
         collect (gethash shape (inventory-batches inventory))))
 
-(defun give-numbers (inventory)
-  "Number the objects in INVENTORY: first the outer objects, then the objects of each batch."
+(defun number-objects (inventory)
+  "Number the objects in INVENTORY: first the external objects, then the objects of each batch."
   (let ((number 0) (states (inventory-states inventory)))
-    (setf (inventory-outer inventory) (reverse (inventory-outer inventory)))
-    (loop for (object) in (inventory-outer inventory)
+    (setf (inventory-external-objects inventory) (reverse (inventory-external-objects inventory)))
+    (loop for (object) in (inventory-external-objects inventory)
           do (setf (gethash object states) (incf number)))
     (dolist (batch (batches-in-order inventory))
       (loop for object across (batch-members batch)
@@ -291,17 +293,17 @@ if there is room for them."
 first batch is SIMULATION alone. Signals MISUSE."
   (let ((inventory (make-inventory)))
     (setf (inventory-holder inventory) simulation)
-    (survey simulation 0 inventory)
-    (dolist (request requests) (survey request 0 inventory))
-    (survey-all inventory)
-    (give-numbers inventory)
+    (record-value simulation 0 inventory)
+    (dolist (request requests) (record-value request 0 inventory))
+    (record-all-contents inventory)
+    (number-objects inventory)
     inventory))
 
 (defun inventory-size (inventory)
-  (+ (length (inventory-outer inventory))
+  (+ (length (inventory-external-objects inventory))
      (loop for batch in (batches-in-order inventory) sum (length (batch-members batch)))))
 
-(defun number-of (object inventory)
+(defun object-number (object inventory)
   "Return the number of OBJECT in INVENTORY, or NIL if it has none."
   (let ((state (gethash object (inventory-states inventory))))
     (and (integerp state) state)))

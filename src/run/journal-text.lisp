@@ -46,11 +46,11 @@
           (mapcar #'entry-datum (journal-entries journal))
           (list (list :end (journal-end journal)))))
 
-(defun write-data (data out)
+(defun write-data-lines (data out)
   "Write DATA to OUT, each element as a line with a check sum."
   (write-line +journal-title+ out)
   (let ((sum 0))
-    (dolist (datum data) (setf sum (write-sealed (datum-text datum) sum out)))))
+    (dolist (datum data) (setf sum (write-checksummed-line (datum-text datum) sum out)))))
 
 ;;; Reading.
 
@@ -62,7 +62,7 @@
               read any more: repeat the run with the version that recorded it, or record it anew"))
     (unless (begins-p "(ars-magna-journal ") (error "the file does not begin like a journal"))))
 
-(defun numbered-datum (number line sum)
+(defun checked-entry-datum (number line sum)
   "Return the values of CHECKED-DATUM for LINE and SUM. Errors name the NUMBER of the entry."
   (handler-case (checked-datum line sum)
     (error (trouble)
@@ -73,10 +73,10 @@
 entry."
   (loop with sum = 0
         for number from 0
-        for line = (next-line in)
+        for line = (next-data-line in)
         while line
         when (zerop number) do (check-head-line line)
-        collect (multiple-value-bind (datum new) (numbered-datum number line sum)
+        collect (multiple-value-bind (datum new) (checked-entry-datum number line sum)
                   (setf sum new)
                   datum)))
 
@@ -103,7 +103,7 @@ entry."
                  (cons (or null string) (cons (or null real) (cons (or null real) null))))))
              object))
 
-(defun settings-trouble (settings)
+(defun settings-error-text (settings)
   "Return a text about an error in SETTINGS, lists (name value) of parameters, or NIL."
   (handler-case (call-with-parameters settings (constantly nil))
     (ars-magna-error (trouble) (one-line-text trouble))))
@@ -112,7 +112,7 @@ entry."
   "True if the strings NAMES contain duplicates."
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
-(defun header-trouble (header)
+(defun header-error-text (header)
   "Return a text about an error in HEADER, the header of a journal, or NIL."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
     (cond ((not (plist-p header)) "the head is no list of names and values")
@@ -128,7 +128,7 @@ entry."
           ((name-without-definition header)
            (format nil "the head does not contain the definition of ~A"
                    (name-without-definition header)))
-          ((settings-trouble (getf header :parameters))))))
+          ((settings-error-text (getf header :parameters))))))
 
 (defun name-without-definition (header)
   "Return the name of a map or robot in HEADER whose definition is missing in HEADER, or NIL."
@@ -138,7 +138,7 @@ entry."
         (find-if-not (lambda (name) (described-p :robot name)) (getf header :robots))
         (getf header :map))))
 
-(defun entry-trouble (entry tick)
+(defun entry-error-text (entry tick)
   "Return a text about an error in the journal entry ENTRY, which follows an entry at TICK, or NIL."
   (cond ((not (typep entry '(cons tick-count (cons symbol list)))) "it is no list (tick name ...)")
         ((< (first entry) tick) (format nil "its tick, ~D, is before the tick of the previous ~
@@ -153,7 +153,7 @@ that names the wrong entry."
   (loop with tick = 0
         for entry in data
         for number from 1
-        for trouble = (entry-trouble entry tick)
+        for trouble = (entry-error-text entry tick)
         when trouble do (error "entry ~D makes no sense: ~A" number trouble)
         do (setf tick (first entry))
         ;; Use the symbol with which the operator was defined.
@@ -162,9 +162,9 @@ that names the wrong entry."
 (defun check-head (head)
   (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
     (error "the file does not begin like a journal"))
-  (check-format (second head) +journal-version+)
-  (when (header-trouble (third head))
-    (error "the head makes no sense: ~A" (header-trouble (third head)))))
+  (check-file-format (second head) +journal-version+)
+  (when (header-error-text (third head))
+    (error "the head makes no sense: ~A" (header-error-text (third head)))))
 
 (defun check-end (end entries)
   "Signal an error unless END is a valid last datum (:end tick) after ENTRIES."
@@ -175,7 +175,7 @@ that names the wrong entry."
   (when (and entries (< (second end) (first (first (last entries)))))
     (error "the journal ends at tick ~D, before its last entry" (second end))))
 
-(defun journal-from (data)
+(defun journal-from-data (data)
   "Return the journal made of DATA, a list of all data in its file. Signals an error if DATA are not
 a valid journal."
   (check-head (first data))
@@ -196,7 +196,7 @@ WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file
                      "a journal, or the name of a file that holds a journal"))
-  (reading-file (in file :journal 'damaged-journal) (journal-from (read-data in))))
+  (reading-file (in file :journal 'damaged-journal) (journal-from-data (read-data in))))
 
 ;;; Writing. The new file is read on trial, so saving refuses what loading would refuse.
 
@@ -207,12 +207,12 @@ WRONG-ARGUMENT unless FILE is a file name."
       (reject-use "The journal cannot be written to a file, because the written file could not be ~
                    read again: ~A. An older file is unchanged. (simulator ROBOT) starts a run with ~
                    a new journal."
-                  (reason-of-refusal trouble)))))
+                  (damage-reason trouble)))))
 
 (defun write-journal (journal file)
   "Write JOURNAL to FILE and return the file's truename. An existing FILE is replaced only after the
 new file has been written and read as a check. Signals MISUSE and leaves FILE unchanged if that
 fails, for example if an entry contains a function or another object without a readable form."
   (check-printable journal)
-  (write-file-anew (lambda (out) (write-data (journal-data journal) out)) file "the journal"
+  (write-file-anew (lambda (out) (write-data-lines (journal-data journal) out)) file "the journal"
                    :kind :journal :check #'check-readable))

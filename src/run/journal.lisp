@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(journal remark unremark note begin-journal journal-up-to-now))
+(export '(journal add-remark remove-remark record-operation begin-journal journal-up-to-now))
 
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
 ;;; effect, and the tick at which it ended. An operator is a name defined by DEFINE-OPERATOR;
@@ -93,15 +93,15 @@ they close over. See RESTORED-ARGUMENTS."
   (if (some #'functionp arguments) (recall-arguments arguments simulation) arguments))
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
-(defun note (simulation operator arguments &optional request)
+(defun record-operation (simulation operator arguments &optional request)
   "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for it, at the
 current tick, in the journal and the past of SIMULATION, if SIMULATION keeps them."
-  (when (noting-p simulation)
+  (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (asked-inside-p request))))
         (add-entry journal (simulation-tick simulation)
                    (cons operator (arguments-to-keep arguments))))
-      (remember simulation operator arguments request))))
+      (record-act simulation operator arguments request))))
 
 (defun settings-by-name (settings)
   "Return SETTINGS, lists (symbol value), as lists (name value) with the parameters' names as
@@ -119,11 +119,12 @@ values that DIRTY-SIMULATION would restore have changed, record these, too."
   (follow-parameters (simulation-known-parameters simulation)
                      (and (simulation-thread simulation) t)
                      (lambda (symbol value)
-                       (note simulation 'parameter (list (string-downcase symbol) value))))
+                       (record-operation simulation 'parameter
+                                         (list (string-downcase symbol) value))))
   (when (and (eq simulation *simulation*)
              (not (eq *noise-before-cleaning* (simulation-known-noise simulation))))
     (setf (simulation-known-noise simulation) *noise-before-cleaning*)
-    (note simulation 'cleaning (list (settings-by-name *noise-before-cleaning*)))))
+    (record-operation simulation 'cleaning (list (settings-by-name *noise-before-cleaning*)))))
 
 ;;; Remarks. Plans and programs are not repeated in a replay. So the journal has remarks about them
 ;;; for users, made by any thread. They do not affect the replay.
@@ -136,7 +137,7 @@ plan that tries repeatedly makes many, and other remarks need room.")
 (defun room-for-remark-p (journal kind)
   (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))
 
-(defun remark (simulation kind text &optional robot)
+(defun add-remark (simulation kind text &optional robot)
   "If SIMULATION keeps a journal, add a remark at the current tick: KIND is a keyword, TEXT a
 string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
   (let ((journal (simulation-journal simulation)))
@@ -147,7 +148,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
         (atomic-push remark (journal-remarks journal))
         remark))))
 
-(defun unremark (simulation remark)
+(defun remove-remark (simulation remark)
   "Remove REMARK, which the function REMARK has returned, from the journal of SIMULATION."
   (let ((journal (simulation-journal simulation)))
     (when journal
@@ -155,14 +156,14 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
             until (swap-if (journal-remarks journal) remarks
                            (remove remark remarks :test #'eq))))))
 
-(defun remark-error (text)
+(defun add-error-remark (text)
   "Add a remark about an error in users' code, with its text TEXT, to the journal of the current
 run, if any."
   (when *simulation*
     (let ((robots (simulation-robots *simulation*)))
-      (remark *simulation* :error text (and (null (rest robots)) (first robots))))))
+      (add-remark *simulation* :error text (and (null (rest robots)) (first robots))))))
 
-(attend *user-error-hooks* remark-error)
+(attend *user-error-hooks* add-error-remark)
 
 ;;; Beginning and end.
 
@@ -177,7 +178,7 @@ run, if any."
                             :parameters (settings-by-name (parameter-settings))
                             :definitions (definitions-of simulation)))))
 
-(defun begin-thinking (simulation mode)
+(defun set-initial-thinking (simulation mode)
   "Set the thinking mode of SIMULATION to MODE, also in its journal. No tick of SIMULATION has
 passed yet."
   (set-timeline-thinking (simulation-timeline simulation) mode)
@@ -185,7 +186,7 @@ passed yet."
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
           (simulation-thinking simulation))))
 
-(defun renew-definitions (simulation)
+(defun update-journal-definitions (simulation)
   "Store the current definitions in the journal of SIMULATION, because definitions may have changed
 since the journal was begun. No tick of SIMULATION has passed yet."
   (let ((header (copy-list (journal-header (simulation-journal simulation)))))
@@ -261,7 +262,7 @@ again."
       (deferring-interrupts
         (let ((simulation (world-simulation world)))
           (unless (simulation-over simulation)
-            (note simulation operator arguments)))
+            (record-operation simulation operator arguments)))
         (permitting-changes (world) (funcall function)))
       (let ((by-itself-p (goes-on-in-forks-p)))
         (asking (timeline)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(undone-text note-lines-typed))
+(export '(undone-requests-text mark-as-prompt-run))
 
 ;;; A script that commands a live robot and then ends does not wait for the command. A warning says
 ;;; so if there is no debugger; at a REPL, leaving is the user's choice. The clock may still run:
@@ -13,14 +13,14 @@
   (and (request-name request)
        (starts-with-subseq "Lisp" (note-text (request-asker request)))))
 
-(defun elsewhere-remedy (simulation)
+(defun wrong-simulation-remedy (simulation)
   "Return a text with a remedy if requests to SIMULATION were made inside another simulation since
 its last tick; or NIL."
   (and (requested-elsewhere-p (simulation-world simulation))
        (one-line "That was asked for inside of another with-simulation, and only ticks of that one
 passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
 
-(defun too-late-text (simulation)
+(defun requests-too-late-text (simulation)
   "Return a text, with a remedy, about requests that the program has made to SIMULATION since its
 last tick. Requests that only stop something do not count. Return NIL if there are no others."
   (let ((names (loop for request in (timeline-inbox (simulation-timeline simulation))
@@ -32,23 +32,23 @@ last tick. Requests that only stop something do not count. Return NIL if there a
       (format nil "~{~A~^, ~} did nothing, because with-simulation ended before another tick had ~
                    passed. ~:[Call (run-ticks N) or (run-until TEST) after the request.~;~:*~A~]"
               (remove-duplicates (reverse names) :test #'string= :from-end t)
-              (elsewhere-remedy simulation)))))
+              (wrong-simulation-remedy simulation)))))
 
 ;;; At the end of a headless run.
 
-(defun lines-typed-p (simulation)
+(defun belongs-to-prompt-p (simulation)
   "True if SIMULATION belongs to a prompt, whose user types lines instead of WITH-SIMULATION."
   (warning-given-p '(:lines-typed) (simulation-world simulation)))
 
-(defun note-lines-typed (simulation)
+(defun mark-as-prompt-run (simulation)
   "Record that SIMULATION belongs to a prompt, so that warnings at its end suggest lines to type."
   (first-time-p '(:lines-typed) (simulation-world simulation)))
 
-(defparameter *lines-remedy*
+(defparameter *prompt-remedy*
   "STEP N passes N ticks, PLAN NAME carries out a plan to its end."
   "How to pass ticks at the prompt.")
 
-(defun undone-names (simulation)
+(defun undone-request-names (simulation)
   "Return a list of the names of requests to SIMULATION and of plans that have not begun; and a list
 of the names of these plans alone."
   (let ((plans (unfinished-in-participants simulation))
@@ -59,52 +59,52 @@ of the names of these plans alone."
     (values (remove-duplicates (append (reverse requests) plans) :test #'string= :from-end t)
             plans)))
 
-(defun undone-text (simulation)
+(defun undone-requests-text (simulation)
   "Return a text, with a remedy, about requests to SIMULATION and plans that have not begun; or
 NIL."
-  (multiple-value-bind (undone plans) (undone-names simulation)
+  (multiple-value-bind (undone plans) (undone-request-names simulation)
     (when undone
       (format nil "~{~A~^, ~} did nothing. ~A" undone
-              (cond ((lines-typed-p simulation) *lines-remedy*)
-                    ((elsewhere-remedy simulation))
+              (cond ((belongs-to-prompt-p simulation) *prompt-remedy*)
+                    ((wrong-simulation-remedy simulation))
                     (t (format nil "Call (run-ticks N) or (run-until TEST)~:[~; before the end, or ~
                                     (run-plan ...) instead of (begin-plan ...)~]."
                                plans)))))))
 
-(defun cut-off-texts (simulation)
+(defun cut-off-work-texts (simulation)
   "Return a list of texts about work that the end of SIMULATION cuts off. Return NIL if the program
 has checked itself which work was in progress; checks made by a prompt do not count."
-  (when (or (lines-typed-p simulation) (not (progress-checked-p (simulation-world simulation))))
+  (when (or (belongs-to-prompt-p simulation) (not (progress-checked-p (simulation-world simulation))))
     (loop for participant in (simulation-participants simulation)
           append (participant-cut-off participant))))
 
-(defun cut-off-text (simulation)
+(defun cut-off-work-text (simulation)
   "Return a text, with a remedy, about work that the end of SIMULATION cuts off; or NIL."
-  (let ((cut-off (cut-off-texts simulation)) (typed (lines-typed-p simulation)))
+  (let ((cut-off (cut-off-work-texts simulation)) (typed (belongs-to-prompt-p simulation)))
     (when cut-off
       (format nil "At the end~:[ of with-simulation~;~], at tick ~D, ~{~A~^, ~} had not ended and ~
                    ~:[was~;were~] cut off. ~:[Call (run-ticks N) with more ticks, or ~
                    (run-plan ...) instead of (begin-plan ...).~;~A~]"
-              typed (simulation-tick simulation) cut-off (rest cut-off) typed *lines-remedy*))))
+              typed (simulation-tick simulation) cut-off (rest cut-off) typed *prompt-remedy*))))
 
-(defun text-at-end (simulation)
+(defun warning-at-end-text (simulation)
   "Return a text about requests to SIMULATION that had no effect or are cut off, because SIMULATION
 ends; or NIL."
   (if (zerop (simulation-tick simulation))
-      (let ((undone (undone-text simulation)))
+      (let ((undone (undone-requests-text simulation)))
         (and undone (format nil "No ticks have passed~:[ in with-simulation~;~], so ~A"
-                            (lines-typed-p simulation) undone)))
+                            (belongs-to-prompt-p simulation) undone)))
       (and (eq :report (message-queue-error-policy (simulation-messages simulation)))
-           (eq simulation (latest simulation))
-           (or (too-late-text simulation)
+           (eq simulation (latest-successor simulation))
+           (or (requests-too-late-text simulation)
                ;; A program that reads messages knows about its plans; the user of a prompt may not.
-               (and (or (lines-typed-p simulation)
+               (and (or (belongs-to-prompt-p simulation)
                         (not (message-queue-read-p (simulation-messages simulation))))
-                    (cut-off-text simulation))))))
+                    (cut-off-work-text simulation))))))
 
 ;;; At the end of the program.
 
-(defun left-undone (world)
+(defun undone-program-requests (world)
   "Return the names of requests of programs in WORLD that are in progress or have not begun."
   (loop for request in (append (loop for robot in (world-robots world)
                                      append (mapcar #'resource-event
@@ -115,7 +115,7 @@ ends; or NIL."
 
 (defun undone-work-text (world)
   "Return a text, with a remedy, about requests of programs that are left undone in WORLD; or NIL."
-  (let ((undone (remove-duplicates (left-undone world) :test #'string=)))
+  (let ((undone (remove-duplicates (undone-program-requests world) :test #'string=)))
     (when undone
       (format nil "The program ends before ~{~A~^, ~} ~:[has~;have~] ended in ~(~A~), at tick ~D. ~
                    (await-idle) waits until all commands have ended."

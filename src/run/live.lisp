@@ -2,16 +2,17 @@
 
 (in-package :ars-magna.run)
 
-(export '(start-clock stop-clock call-as-owner *simulator-hooks* *hook-options*))
+(export '(start-clock stop-clock call-with-thread-bindings *simulator-hooks*
+          *simulator-hook-options*))
 
 (define-event *simulator-hooks*
   "Functions that are called when SIMULATOR has started a run, with the robot and the plist of
 SIMULATOR's options.")
 
-(defvar *hook-options* '()
+(defvar *simulator-hook-options* '()
   "The names of the options of SIMULATOR that its hooks use, as symbols that are no keywords.")
 
-(defun call-as-owner (simulation function)
+(defun call-with-thread-bindings (simulation function)
   "Call FUNCTION with the bindings of the thread of SIMULATION. The bindings include the robots'
 names that were bound where SIMULATION was started, for example by WITH-SIMULATION around
 SIMULATOR."
@@ -38,7 +39,7 @@ nor :FREE."
         (caller (spread-specials
                  (lambda (function)
                    (in-any-case
-                     (call-as-owner simulation function)
+                     (call-with-thread-bindings simulation function)
                      (mapc #'participant-clock-stopped (simulation-participants simulation))))
                  '*package*)))
     (asking (simulation)
@@ -61,7 +62,7 @@ successor. Return SIMULATION."
     (stop-pacing timeline)
     ;; A thread that rewinds it checks this last, after it has linked the successor.
     (unclaim-pacing timeline)
-    (let ((latest (latest simulation)))
+    (let ((latest (latest-successor simulation)))
       (unless (eq simulation latest)
         (call-alone (simulation-timeline latest) (constantly nil)))))
   simulation)
@@ -85,7 +86,7 @@ and run. Return the run."
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
-(defun run-to-start (world seed journal)
+(defun simulation-to-start (world seed journal)
   "Return the simulation of WORLD to run live. Make a new simulation if ticks of the last simulation
 of WORLD have passed, or if JOURNAL is true and that simulation keeps no journal. SEED, if given,
 seeds the dice."
@@ -98,7 +99,7 @@ seeds the dice."
                (when kept (setf (getf (journal-header kept) :seed) seed)))
              simulation))))
 
-(defun call-starting (world function)
+(defun call-while-starting (world function)
   "Stop the clock of WORLD, and call FUNCTION, which starts it again, with custody of WORLD. Signals
 MISUSE in a nested call, when this thread is already starting WORLD."
   (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
@@ -113,7 +114,7 @@ MISUSE in a nested call, when this thread is already starting WORLD."
                (swap-if (custody-starter custody) (current-thread) nil))))
       (call-alone timeline #'start))))
 
-(defun make-current (simulation everywhere)
+(defun make-current-simulation (simulation everywhere)
   "Make SIMULATION the current simulation of this thread, and of all threads if EVERYWHERE is true."
   (setf *simulation* simulation
         *world* (simulation-world simulation))
@@ -123,25 +124,26 @@ MISUSE in a nested call, when this thread is already starting WORLD."
 
 (defun start-world (world rate seed journal keep thinking everywhere)
   "Run WORLD, which this thread owns, live with the options of SIMULATOR, and make its run the
-current simulation, see MAKE-CURRENT. Return the run."
-  (let ((simulation (run-to-start world seed journal)))
-    (begin-thinking simulation thinking)
+current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
+  (let ((simulation (simulation-to-start world seed journal)))
+    (set-initial-thinking simulation thinking)
     (if journal
-        (renew-definitions simulation)
+        (update-journal-definitions simulation)
         (setf (simulation-journal simulation) nil))
-    (setf (simulation-messages simulation) (residents-queue))
-    (forget-errors (residents-queue) (lambda (run) (and run (simulation-over (latest run)))))
-    (make-current simulation everywhere)
+    (setf (simulation-messages simulation) (resident-message-queue))
+    (forget-errors (resident-message-queue)
+                   (lambda (run) (and run (simulation-over (latest-successor run)))))
+    (make-current-simulation simulation everywhere)
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
-(defun start-live (robot rate seed journal keep thinking)
+(defun start-world-of-robot (robot rate seed journal keep thinking)
   "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT
 meanwhile."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
         (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
-    (call-starting world (lambda ()
+    (call-while-starting world (lambda ()
                            ;; Its map may have been replaced while it was made.
                            (when (and (eq world (map-resident (world-map world)))
                                       (not (current-resident-world-p world)))
@@ -149,7 +151,7 @@ meanwhile."
                            (unless (robot-retired robot)
                              (start-world world rate seed journal keep thinking everywhere))))))
 
-(defun check-no-fork (robot)
+(defun check-not-fork (robot)
   "Signal MISUSE if ROBOT is in a fork, which cannot run live."
   (when (timeline-fork-p (ensure-timeline (robot-world robot)))
     (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
@@ -158,7 +160,8 @@ meanwhile."
   "Signal MISUSE if the plist OPTIONS has a keyword that is an option of neither SIMULATOR nor its
 hooks."
   (unless (getf options :allow-other-keys)
-    (let ((strange (strange-keyword `(&key rate seed journal keep thinking ,@*hook-options*)
+    (let ((strange (strange-keyword `(&key rate seed journal keep thinking
+                                           ,@*simulator-hook-options*)
                                     options)))
       (when strange (reject-use "simulator: ~A" strange)))))
 
@@ -181,11 +184,11 @@ MISUSE if the robot no longer fits into its map. See reading 238."
   (check-of-type 'simulator 'keep keep 'fork-count)
   (check-thinking 'simulator thinking)
   (let ((robot (loop for candidate = (robot-to-start robot)
-                     do (check-no-fork candidate)
-                     when (start-live candidate rate seed journal keep thinking)
+                     do (check-not-fork candidate)
+                     when (start-world-of-robot candidate rate seed journal keep thinking)
                        return candidate)))
     (tell-listeners *simulator-hooks* robot options)
-    (publish-variables (robot-simulation robot))
+    (set-variables-globally (robot-simulation robot))
     robot))
 
 ;; Lisp itself only says that the number of keyword arguments is odd.

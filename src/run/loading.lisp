@@ -14,16 +14,16 @@
   "Signal an error unless DATUM, the first in a file, is the head of a saved run of this version."
   (unless (typep datum '(cons (eql :ars-magna-run) (cons t (cons t null))))
     (error "the file does not begin like a saved run"))
-  (check-format (second datum) +saved-version+)
+  (check-file-format (second datum) +saved-run-version+)
   (let* ((head (third datum))
-         (trouble (or (header-trouble (if (plist-p head) (list* :seed 0 head) head))
-                      (saved-head-trouble head))))
+         (trouble (or (header-error-text (if (plist-p head) (list* :seed 0 head) head))
+                      (head-error-text head))))
     (when trouble (error "the head makes no sense: ~A" trouble))))
 
-(defun saved-head-trouble (head)
-  "Return a text about an error in HEAD that HEADER-TROUBLE does not check, or NIL."
+(defun head-error-text (head)
+  "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not check, or NIL."
   (cond ((not (settings-p (getf head :noise))) "the noise in the head makes no sense")
-        ((settings-trouble (getf head :noise)))
+        ((settings-error-text (getf head :noise)))
         ((not (or (null (getf head :dice)) (lisps-dice-numbers-p (getf head :dice))))
          "the dice in the head make no sense")
         ((not (typep (getf head :tick) 'tick-count)) "the tick in the head is not a tick")
@@ -32,52 +32,54 @@
 
 ;;; Lines. Their order is fixed, so the meaning of each is known.
 
-(defstruct (reading (:constructor make-reading (in sum number)) (:copier nil))
+(defstruct (line-reader (:constructor make-line-reader (in sum number)) (:copier nil))
   "A file that is being read: its stream IN, the check sum SUM so far, and the NUMBER of the line."
   (in nil :read-only t)
   (sum 0 :type (unsigned-byte 32))
   (number 0 :type fixnum))
 
-(defun next-datum (reading)
-  "Return the datum in the next line of READING. Signals an error if the line is damaged or
+(defun next-datum (reader)
+  "Return the datum in the next line of READER. Signals an error if the line is damaged or
 missing."
-  (let ((line (or (next-line (reading-in reading)) (error "the end of the file is missing"))))
-    (incf (reading-number reading))
+  (let ((line (or (next-data-line (line-reader-in reader))
+                  (error "the end of the file is missing"))))
+    (incf (line-reader-number reader))
     (multiple-value-bind (datum sum)
-        (handler-case (checked-datum line (reading-sum reading))
+        (handler-case (checked-datum line (line-reader-sum reader))
           (error (trouble)
-            (error "line ~D is damaged: ~A" (reading-number reading) (one-line-text trouble))))
-      (setf (reading-sum reading) sum)
+            (error "line ~D is damaged: ~A" (line-reader-number reader) (one-line-text trouble))))
+      (setf (line-reader-sum reader) sum)
       datum)))
 
 (defun tagged-p (tag datum)
   (and (consp datum) (eq tag (first datum)) (proper-list-p datum)))
 
-(defun read-numbers (reading loaded)
-  "Read from READING which numbers mean which objects, and make these objects in LOADED."
-  (loop for datum = (next-datum reading)
+(defun read-object-definitions (reader loader)
+  "Read from READER which numbers mean which objects, and make these objects in LOADER."
+  (loop for datum = (next-datum reader)
         until (tagged-p :objects datum)
-        do (cond ((tagged-p :found datum) (add-outer (rest datum) loaded))
+        do (cond ((tagged-p :found datum) (add-external-object (rest datum) loader))
                  ((and (tagged-p :new datum) (<= 3 (length datum)))
-                  (add-batch (second datum) (third datum) (nthcdr 3 datum) loaded))
+                  (add-new-objects (second datum) (third datum) (nthcdr 3 datum) loader))
                  (t (error "the file does not define the numbers of its objects")))
-        finally (unless (equal (rest datum) (list (1- (length (loaded-objects loaded)))))
+        finally (unless (equal (rest datum) (list (1- (length (loader-objects loader)))))
                   (error "the file does not have as many objects as it says"))))
 
-(defun read-contents (reading loaded)
-  "Read the contents of the objects in LOADED from READING. Return a list of the waiting requests."
-  (let ((*numbered* (loaded-objects loaded)))
-    (loop until (all-objects-complete-p loaded) do (fill-next (next-datum reading) loaded))
-    (fill-tables loaded)
-    (loop for datum = (next-datum reading)
+(defun read-object-contents (reader loader)
+  "Read the contents of the objects in LOADER from READER. Return a list of the waiting requests."
+  (let ((*numbered-objects* (loader-objects loader)))
+    (loop until (all-objects-complete-p loader)
+          do (process-contents-line (next-datum reader) loader))
+    (fill-hash-tables loader)
+    (loop for datum = (next-datum reader)
           do (unless (and (tagged-p :waiting datum) (<= (length datum) 2))
                (error "the list of waiting requests is missing"))
           while (rest datum)
           collect (second datum))))
 
-(defun read-entries (reading)
-  "Return a list of the entries of the journal in READING, and the datum after the entries."
-  (loop for datum = (next-datum reading)
+(defun read-journal-entries (reader)
+  "Return a list of the entries of the journal in READER, and the datum after the entries."
+  (loop for datum = (next-datum reader)
         until (tagged-p :end datum)
         collect datum into entries
         finally (return (values entries datum))))
@@ -87,21 +89,22 @@ missing."
   (unless (typep datum '(cons (eql :journal) (cons boolean (cons t (cons list null)))))
     (error "the journal in the file makes no sense"))
   (destructuring-bind (full-p end header) (rest datum)
-    (let ((journal (journal-from (append (list (list :ars-magna-journal +journal-version+ header))
-                                         entries
-                                         (list (list :end end))))))
+    (let ((journal (journal-from-data
+                    (append (list (list :ars-magna-journal +journal-version+ header))
+                            entries
+                            (list (list :end end))))))
       (setf (journal-full-p journal) full-p)
       journal)))
 
-(defun read-journal-of (reading head)
-  "Return the journal in READING, a saved run with the head HEAD, or NIL if the run keeps no
+(defun read-saved-journal (reader head)
+  "Return the journal in READER, a saved run with the head HEAD, or NIL if the run keeps no
 journal."
-  (let ((first (and (getf head :journal) (next-datum reading)))
+  (let ((first (and (getf head :journal) (next-datum reader)))
         (tick (getf head :tick)))
-    (multiple-value-bind (entries end) (read-entries reading)
+    (multiple-value-bind (entries end) (read-journal-entries reader)
       (unless (equal end (list :end tick))
         (error "the last line does not have the tick of the run"))
-      (when (next-line (reading-in reading)) (error "the file goes on after its last line"))
+      (when (next-data-line (line-reader-in reader)) (error "the file goes on after its last line"))
       (when (and entries (null first)) (error "the file has journal entries, but no journal"))
       (let ((journal (and first (journal-of-data first entries))))
         (when (and journal (not (if (journal-full-p journal)
@@ -112,15 +115,15 @@ journal."
 
 ;;; Putting the run together.
 
-(defun sole-object (type loaded)
-  "Return the only object of the kind TYPE in LOADED. Signals an error unless there is exactly one
+(defun only-object (type loader)
+  "Return the only object of the kind TYPE in LOADER. Signals an error unless there is exactly one
 object of TYPE."
-  (let ((objects (remove-if-not (lambda (object) (typep object type)) (loaded-objects loaded))))
+  (let ((objects (remove-if-not (lambda (object) (typep object type)) (loader-objects loader))))
     (unless (= 1 (length objects))
       (error "the file has ~R objects of the kind ~(~A~), but a run has one" (length objects) type))
     (aref objects 0)))
 
-(defun renamed-parameters (values settings)
+(defun parameter-vector (values settings)
   "Return VALUES, the values in SETTINGS, as a vector in the order of the current parameters.
 Parameters that are not in SETTINGS get their defaults."
   (unless (and (= (length values) (length settings))
@@ -143,20 +146,20 @@ Parameters that are not in SETTINGS get their defaults."
     (dolist (robot (world-robots world)) (check-robot robot world))
     (dolist (request requests)
       (check-request request)
-      (let ((resource (resource-of request)))
+      (let ((resource (occupied-resource request)))
         (must-hold (or (not (typep resource 'resource)) (eq timeline (timeline-of resource)))
                    "a request belongs to another run")))))
 
-(defun resource-of (request)
+(defun occupied-resource (request)
   "Return the resource that REQUEST occupies or frees: the resource of an operation, or the first
 argument of another request."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
-(defun complete-loading (simulation head loaded requests)
-  "Make SIMULATION, which is among the objects LOADED, ready to continue, with REQUESTS waiting.
+(defun complete-loading (simulation head loader requests)
+  "Make SIMULATION, which is among the objects LOADER, ready to continue, with REQUESTS waiting.
 Return SIMULATION."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
-    (destructuring-bind (agenda tick . events) (loaded-agenda loaded)
+    (destructuring-bind (agenda tick . events) (loader-agenda loader)
       (unless (eq agenda (timeline-agenda timeline)) (error "the agenda does not belong to the ~
                                                              timeline of the run"))
       (check-commands timeline events)
@@ -169,39 +172,39 @@ Return SIMULATION."
           (simulation-dice simulation) (and (getf head :dice)
                                             (lisps-dice-of-numbers (getf head :dice)))
           (simulation-known-parameters simulation)
-          (renamed-parameters (simulation-known-parameters simulation) (getf head :parameters))
+          (parameter-vector (simulation-known-parameters simulation) (getf head :parameters))
           (world-kicker-generation world) (- *kicker-generation*
                                              (if (getf head :kickers-old-p) 1 0)))
     simulation))
 
-(defun simulation-from (reading head octets)
-  "Return the simulation in READING, a file of OCTETS octets whose head HEAD has been read."
-  (let ((loaded (begin-loading octets)))
-    (read-numbers reading loaded)
-    (let* ((requests (read-contents reading loaded))
-           (simulation (sole-object 'simulation loaded)))
-      (sole-object 'world loaded)
-      (sole-object 'timeline loaded)
-      (setf (simulation-journal simulation) (read-journal-of reading head))
-      (complete-loading simulation head loaded requests))))
+(defun simulation-from-lines (reader head octets)
+  "Return the simulation in READER, a file of OCTETS octets whose head HEAD has been read."
+  (let ((loader (make-empty-loader octets)))
+    (read-object-definitions reader loader)
+    (let* ((requests (read-object-contents reader loader))
+           (simulation (only-object 'simulation loader)))
+      (only-object 'world loader)
+      (only-object 'timeline loader)
+      (setf (simulation-journal simulation) (read-saved-journal reader head))
+      (complete-loading simulation head loader requests))))
 
-(defun read-head (reading)
-  (let ((datum (next-datum reading)))
+(defun read-head (reader)
+  (let ((datum (next-datum reader)))
     (check-saved-head datum)
     (third datum)))
 
 ;;; Loading. The head is read first, so that an error can name the definitions that are missing.
 
-(defun saved-head (file)
+(defun read-saved-run-head (file)
   "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
-  (reading-file (in file :run 'damaged-simulation) (read-head (make-reading in 0 0))))
+  (reading-file (in file :run 'damaged-simulation) (read-head (make-line-reader in 0 0))))
 
 (defun read-simulation (file)
   "Return the simulation that is saved in FILE. Signals DAMAGED-SIMULATION and UNKNOWN-NAME."
   (reading-file (in file :run 'damaged-simulation)
-    (let* ((reading (make-reading in 0 0))
-           (head (read-head reading))
-           (simulation (simulation-from reading head (file-length in))))
+    (let* ((reader (make-line-reader in 0 0))
+           (head (read-head reader))
+           (simulation (simulation-from-lines reader head (file-length in))))
       (unless (= (getf head :tick) (simulation-tick simulation))
         (error "the tick of the run is not the tick in the head"))
       (unless (= (getf head :digest) (state-digest simulation))
@@ -211,18 +214,19 @@ Return SIMULATION."
 (defun check-saved-definitions (head)
   "Signal UNKNOWN-NAME if a robot in HEAD, the head of a saved run, is not defined. Signal
 DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed."
-  (let ((differences (differences-from head (mapcar #'find-blueprint (getf head :robots)))))
+  (let ((differences (header-differences head
+                                         (mapcar #'find-blueprint (getf head :robots)))))
     (when differences
       (restart-case (error 'different-definitions :differences differences
                                                   :file "saved run" :verb "load")
         (load-anyway ()
           :report "Load it all the same.")))))
 
-(defun load-saved (file anyway)
+(defun load-saved-run (file anyway)
   "Load the run in FILE as LOAD-SIMULATION does. Return the simulation, and a list (symbol value) of
 the parameters that DIRTY-SIMULATION would restore in it."
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
-  (let ((head (saved-head file)))
+  (let ((head (read-saved-run-head file)))
     (unless anyway (check-saved-definitions head))
     (values (read-simulation file) (settings-by-symbol (getf head :noise)))))
 
@@ -237,16 +241,16 @@ uses must be loaded. Nothing in FILE is executed. Signals:
 - DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since the run was
   saved, unless ANYWAY is true
 - WRONG-ARGUMENT unless FILE is a file name"
-  (values (load-saved file anyway)))
+  (values (load-saved-run file anyway)))
 
 (defun call-with-loaded-simulation (function file &key anyway keep)
-  "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADED-SIMULATION."
-  (multiple-value-bind (simulation noise) (load-saved file anyway)
+  "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADER-SIMULATION."
+  (multiple-value-bind (simulation noise) (load-saved-run file anyway)
     (call-with-parameters
      (settings-of simulation)
      (lambda ()
        (setf *noise-before-cleaning* noise)
-       (call-as-headless function simulation :keep keep)))))
+       (call-in-headless function simulation :keep keep)))))
 
 (addition with-loaded-simulation)
 (define-user-macro with-loaded-simulation ((file &key anyway keep) &body body)

@@ -13,7 +13,7 @@
 ;;; without it. A participant needs a method for PARTICIPANT-AFTER-TICK; the others are optional. If
 ;;; it is of a kind (DEFINE-KIND), the roles of its slots determine how it is copied and digested.
 
-(defmacro define-participation (name lambda-list documentation &body otherwise)
+(defmacro define-participant-function (name lambda-list documentation &body otherwise)
   "Define the generic function NAME, which participants may implement. OTHERWISE is the body of its
 default method."
   `(defgeneric ,name ,lambda-list
@@ -22,79 +22,79 @@ default method."
        (declare (ignorable ,@lambda-list))
        ,@otherwise)))
 
-(define-participation participant-after-tick (participant simulation)
+(define-participant-function participant-after-tick (participant simulation)
   "Let PARTICIPANT act after a tick of SIMULATION. The thread that owns the world calls this
 function."
   (values))
 
-(define-participation participant-after-ticks (participant simulation)
+(define-participant-function participant-after-ticks (participant simulation)
   "Let PARTICIPANT act when RUN-TICKS or RUN-UNTIL has passed ticks of the headless SIMULATION."
   (values))
 
-(define-participation participant-origin (participant)
+(define-participant-function participant-origin (participant)
   "Return the name of PARTICIPANT for messages and restarts, in the form that CALL-USER-CODE
 requires."
   "a participant of the run")
 
-(define-participation participant-busy-p (participant simulation)
+(define-participant-function participant-busy-p (participant simulation)
   "True if PARTICIPANT needs further ticks of SIMULATION, so that SIMULATION is not idle."
   nil)
 
-(define-participation participant-at-work-p (participant)
+(define-participant-function participant-at-work-p (participant)
   "True if PARTICIPANT is working, has a notification to process, or waits for a time. Any thread
 may call this function."
   nil)
 
-(define-participation participant-reseed (participant seed)
+(define-participant-function participant-reseed (participant seed)
   "Seed all dice of PARTICIPANT with the integer SEED."
   (values))
 
-(define-participation participant-digest (participant digest)
+(define-participant-function participant-digest (participant digest)
   "Add the state of PARTICIPANT to DIGEST."
   (digest-state participant digest))
 
-(define-participation participant-copy (participant simulation copier)
+(define-participant-function participant-copy (participant simulation copier)
   "Return the copy of PARTICIPANT for SIMULATION, a fork of its run that COPIER makes, or NIL if the
 fork needs no copy. By default, participants that DEFINE-KIND has defined are copied. See
 COPY-PLAN-VALUE."
   (and (kind-of participant) (forked participant copier)))
 
-(define-participation participant-place (participant value)
+(define-participant-function participant-place (participant value)
   "Return a text that says where PARTICIPANT refers to VALUE, or NIL."
   nil)
 
-(define-participation check-forkable (participant)
+(define-participant-function check-forkable (participant)
   "Signal MISUSE if code of PARTICIPANT has made this call, so that its run cannot be forked now."
   (values))
 
-(define-participation participant-at-rest (participant function)
+(define-participant-function participant-at-rest (participant function)
   "Call FUNCTION while PARTICIPANT is at rest, and return the value of FUNCTION. Return :BUSY if
 PARTICIPANT is working in another thread."
   (funcall function))
 
-(define-participation call-as-participant-makes-way (participant function)
+(define-participant-function call-as-participant-makes-way (participant function)
   "Call FUNCTION, which waits until PARTICIPANT is at rest, and return the value of FUNCTION.
 Meanwhile, PARTICIPANT stops working in another thread as soon as possible."
   (funcall function))
 
-(define-participation participant-clock-stopped (participant)
+(define-participant-function participant-clock-stopped (participant)
   "Let PARTICIPANT act when the clock of the run has stopped. Any thread may call this function."
   (values))
 
-(define-participation participant-end (participant simulation)
+(define-participant-function participant-end (participant simulation)
   "Let PARTICIPANT act when SIMULATION is over."
   (values))
 
-(define-participation participant-unfinished (participant)
+(define-participant-function participant-unfinished (participant)
   "Return a list of texts about unfinished work of PARTICIPANT, such as \"the plan p\". Unfinished
 work cannot be saved to a file."
   '())
 
-(define-participation participant-around-p (participant)
+(define-participant-function participant-around-p (participant)
   "True if code of PARTICIPANT has made this call, for example a step of a plan."
   nil)
 
-(define-participation participant-cut-off (participant)
+(define-participant-function participant-cut-off (participant)
   "Return a list of texts about work of PARTICIPANT that would have ended by itself but is cut off
 by the end of the run, such as \"the plan p\"."
   '())

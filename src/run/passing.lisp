@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(doubt-wait))
+(export '(check-wait-while-paused))
 
 ;;; Passing ticks.
 
@@ -11,7 +11,7 @@
     (reject-use "~(~A~): this simulation runs live, so its ticks pass by themselves. Use ~
                  (with-simulation (ROBOT) ...) or (stop-simulator)." operator)))
 
-(defun check-passable (simulation)
+(defun check-can-pass-ticks (simulation)
   "Signal MISUSE if this thread is already passing ticks of SIMULATION."
   (when (and (owner-p simulation)
              (or (simulation-ticking-p simulation)
@@ -30,7 +30,7 @@ if that thread passes ticks of SIMULATION."
   (answer-own-questions)
   (yield-thread))
 
-(defun pass-without-gate (count simulation)
+(defun pass-ticks-ignoring-gate (count simulation)
   "Pass COUNT ticks of SIMULATION, which this thread owns. Stop early if the run ends, or if an
 error in users' code has to be signalled."
   (let* ((timeline (simulation-timeline simulation)) (custody (timeline-custody timeline))
@@ -51,7 +51,7 @@ allows. Meanwhile no other code, not even a continuation, can pass ticks of SIMU
                       (message-queue-unsignalled (simulation-messages simulation)))
             ;; The gate may wait, or make a non-local exit.
             do (let ((now (if gate (min left (funcall gate simulation)) left)))
-                 (pass-without-gate now simulation)
+                 (pass-ticks-ignoring-gate now simulation)
                  (decf left now)))
       (setf (timeline-passing-p timeline) nil))))
 
@@ -84,13 +84,13 @@ restart CONTINUE passes the remaining ticks."
 
 (defun successor-of-fork (simulation)
   "Return SIMULATION or, if it is a fork that was rewound, its successor."
-  (if (fork-p simulation) (latest simulation) simulation))
+  (if (fork-p simulation) (latest-successor simulation) simulation))
 
 (defun pass-ticks-when-free (simulation count)
   "Pass COUNT ticks of SIMULATION as PASS-TICKS does, as soon as no other thread owns it."
   (flet ((pass () (pass-ticks count simulation)))
     (declare (dynamic-extent #'pass))
-    (flet ((pass-inside () (call-inside simulation #'pass) t)
+    (flet ((pass-inside () (call-in-simulation simulation #'pass) t)
            (wait () (await-custody simulation) nil))
       (declare (dynamic-extent #'pass-inside #'wait))
       (loop with custody = (timeline-custody (simulation-timeline simulation))
@@ -100,7 +100,7 @@ restart CONTINUE passes the remaining ticks."
   (check-headless simulation 'run-ticks)
   (check-not-over simulation 'run-ticks)
   (check-not-secluded simulation)
-  (check-passable simulation)
+  (check-can-pass-ticks simulation)
   (when *recorded-bindings* (warn-of-recorded-bindings (simulation-world simulation)))
   (loop with last = (+ (simulation-tick simulation) count)
         do (pass-ticks-when-free simulation (- last (simulation-tick simulation)))
@@ -172,9 +172,9 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
            (reject-use "await-idle: a plan would wait for itself. In a plan, wait for a fluent, ~
                         such as robot-stopped*."))
           ((wait-until-idle simulation seconds))
-          ((and (not given-p) (live-p simulation)) (warn-of-timeout simulation seconds)))))
+          ((and (not given-p) (live-p simulation)) (warn-of-await-timeout simulation seconds)))))
 
-(defun warn-of-timeout (simulation seconds)
+(defun warn-of-await-timeout (simulation seconds)
   "Queue a warning that SIMULATION was not idle after AWAIT-IDLE has waited SECONDS. Return NIL."
   (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
         (*message-queue* (simulation-messages simulation)))
@@ -198,10 +198,10 @@ Return true if it is idle."
              (when (settled-p simulation) (signal-semaphore idle))))
       (in-any-case
         (progn (add-observer #'look simulation)
-               (await-stillness idle seconds simulation))
+               (wait-for-idle idle seconds simulation))
         (remove-observer #'look simulation)))))
 
-(defun await-stillness (idle seconds simulation)
+(defun wait-for-idle (idle seconds simulation)
   "Wait at most SECONDS until SIMULATION is idle. Return true if it is idle. The semaphore IDLE is
 signalled when SIMULATION may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has
 failed."
@@ -209,10 +209,10 @@ failed."
         do (check-not-failed simulation)
         thereis (all-at-rest-p simulation)
         while (and (< (seconds-now) due) (live-p simulation))
-        do (doubt-wait 'await-idle simulation)
+        do (check-wait-while-paused 'await-idle simulation)
            (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
-(defun doubt-wait (operator simulation)
+(defun check-wait-while-paused (operator simulation)
   "If OPERATOR waits for a live SIMULATION that is paused, signal MISUSE if no user can resume it;
 otherwise queue a warning, once in a run."
   (when (stands-still-p simulation)

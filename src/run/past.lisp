@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(note-doing await-postponed-fork))
+(export '(record-outside-act await-postponed-fork))
 
 ;;; A run that keeps forks has a PAST: these forks, and its ACTS, everything done to the run since
 ;;; the oldest fork, in order: the entries of the journal, and requests to plans from outside. A
@@ -26,16 +26,16 @@ ARGUMENTS; ARGUMENTS are memorized. ASKER is a note of who made the act, or NIL.
   (arguments '() :type list :read-only t)
   (asker nil :read-only t))
 
-(defstruct (kept (:constructor make-kept (fork tick acts)) (:copier nil))
+(defstruct (fork-record (:constructor make-fork-record (fork tick acts)) (:copier nil))
   "A fork that a run keeps for rewinding. FORK was made at the end of TICK, after ACTS, the newest
 first."
   (tick 0 :type fixnum :read-only t)
   (fork nil :type simulation :read-only t)
   (acts '() :type list :read-only t))
 
-(defstruct (kept-past (:conc-name past-)
-                      (:constructor make-past (limit &key forks acts cost (count (length acts))))
-                      (:copier nil))
+(defstruct (run-past (:conc-name past-)
+                     (:constructor make-past (limit &key forks acts cost (count (length acts))))
+                     (:copier nil))
   "What is kept of a run's past: at most LIMIT forks, FORKS, and COUNT acts, ACTS, each list with
 the newest first. The next fork is made at the tick NEXT or later, and not before the time DUE, in
 seconds. If DUE has not come at the tick NEXT, the clock is read again PACE ticks later. ROLLED is
@@ -54,7 +54,7 @@ or NIL."
   (rolled nil)
   (warned-p nil :type boolean))
 
-(defun repeated-by-fork-p (request)
+(defun repeated-by-forks-p (request)
   "True if a fork makes REQUEST by itself, because the code that made REQUEST also runs in the
 fork."
   (or (request-forked-p request) (asked-inside-p request)))
@@ -63,7 +63,7 @@ fork."
   "Return the act for REQUEST, which SIMULATION performs. OPERATOR and ARGUMENTS are those of
 REQUEST; ARGUMENTS are externalized and memorized."
   (make-act :request (simulation-tick simulation) (request-phase request) 0
-            (repeated-by-fork-p request) operator arguments (request-asker request)))
+            (repeated-by-forks-p request) operator arguments (request-asker request)))
 
 (defun change-act (simulation operator arguments)
   "Return the act for a change by OPERATOR with ARGUMENTS at the current tick and phase."
@@ -72,7 +72,7 @@ REQUEST; ARGUMENTS are externalized and memorized."
               (timeline-moments timeline)
               (goes-on-in-forks-p) operator arguments nil)))
 
-(defun remember (simulation operator arguments &optional request)
+(defun record-act (simulation operator arguments &optional request)
   "If SIMULATION has a past, record that OPERATOR was called with ARGUMENTS, or that REQUEST asked
 for this call. ARGUMENTS are externalized unless OPERATOR is a function, see ACT."
   (let ((past (simulation-past simulation)))
@@ -103,13 +103,13 @@ since the last call, or NIL. Only in a headless run do all programs share the sa
       (setf (past-rolled past) (dice-rolled before))
       (if (eq before (past-rolled past)) nil (past-rolled past)))))
 
-(defun remember-dice (simulation)
+(defun record-dice (simulation)
   "Record the dice of programs in the past of SIMULATION if code that a fork may not repeat has
 rolled them."
   (let ((rolled (update-rolled-dice simulation (simulation-past simulation))))
-    (when rolled (remember simulation #'roll-back (list rolled)))))
+    (when rolled (record-act simulation #'roll-back (list rolled)))))
 
-(defun note-doing (simulation function &rest arguments)
+(defun record-outside-act (simulation function &rest arguments)
   "If SIMULATION has a past, record an act of a program outside the run that is not in the journal.
 A call of FUNCTION with ARGUMENTS repeats the act. Acts that a fork repeats by itself are not
 recorded. Return nothing."
@@ -117,8 +117,8 @@ recorded. Return nothing."
              (not (goes-on-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.
              (not (changing-phase-p (phase-in-this-thread (simulation-timeline simulation)))))
-    (when (eq simulation *simulation*) (remember-dice simulation))
-    (remember simulation function arguments))
+    (when (eq simulation *simulation*) (record-dice simulation))
+    (record-act simulation function arguments))
   (values))
 
 ;;; The part of the past before a moment.
@@ -156,36 +156,37 @@ before that."
   "The default of the option :KEEP of SIMULATOR: the number of forks that a live run keeps, so that
 REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T.")
 
-(defconstant +usual-forks+ 30 "How many forks a run keeps by default.")
-(defconstant +longest-pace+ 1024 "The most ticks that a run passes before it reads the clock.")
+(defconstant +default-forks+ 30 "How many forks a run keeps by default.")
+(defconstant +most-ticks-between-clock-reads+ 1024
+  "The most ticks that a run passes before it reads the clock.")
 
-(defconstant +least-cost+ 1d-4 "The least seconds that a fork is taken to cost.")
+(defconstant +least-fork-seconds+ 1d-4 "The least seconds that a fork is taken to cost.")
 
-(defparameter *keeping-share* 1/100
+(defparameter *fork-time-share* 1/100
   "The part of its time that a run may spend on keeping forks. With 1, a run keeps a fork at each
 tick.")
-(defparameter *most-kept-octets* (expt 2 28)
+(defparameter *most-fork-octets* (expt 2 28)
   "The estimated number of octets that the kept forks of a run may take at most.")
 
-(defun room-for-forks (simulation past)
+(defun most-forks (simulation past)
   "Return the number of forks that SIMULATION, which has PAST, may keep."
   (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
-    (clamp (floor *most-kept-octets* octets) 3 (max 3 (past-limit past)))))
+    (clamp (floor *most-fork-octets* octets) 3 (max 3 (past-limit past)))))
 
-(defun least-needed (forks)
+(defun least-needed-fork (forks)
   "FORKS is a list with the newest fork first. Return the fork, neither the first nor the last,
 whose removal leaves the smallest gap in proportion to its age."
-  (loop with now = (kept-tick (first forks))
+  (loop with now = (fork-record-tick (first forks))
         with best = nil and least = nil
         for (newer kept older) on forks
         while older
-        do (let ((loss (/ (- (kept-tick newer) (kept-tick older))
-                          (1+ (- now (kept-tick older))))))
+        do (let ((loss (/ (- (fork-record-tick newer) (fork-record-tick older))
+                          (1+ (- now (fork-record-tick older))))))
              (when (or (null least) (<= loss least))
                (setf best kept least loss)))
         finally (return best)))
 
-(defun warn-of-no-fork (simulation past condition)
+(defun warn-of-unkept-fork (simulation past condition)
   "Warn once that no fork of SIMULATION, which has PAST, can be kept because of CONDITION."
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
@@ -193,15 +194,16 @@ whose removal leaves the smallest gap in proportion to its age."
                          (simulation-tick simulation)
                          (string-right-trim "." (brief-text condition))))))
 
-(defun fork-to-keep (simulation past)
+(defun make-fork-to-keep (simulation past)
   "Return a fork of SIMULATION, which has PAST; :BUSY if a participant is busy; or NIL if no fork
 can be made."
-  (handler-case (call-nested #'participant-at-rest (simulation-participants simulation)
+  (handler-case (call-through-participants #'participant-at-rest
+                                           (simulation-participants simulation)
                              (lambda () (fork-now simulation nil '())))
     (misuse () :busy)
-    (error (condition) (warn-of-no-fork simulation past condition))))
+    (error (condition) (warn-of-unkept-fork simulation past condition))))
 
-(defun forget-if-full (simulation past)
+(defun discard-past-if-full (simulation past)
   "Discard the forks and acts of SIMULATION, which has PAST, if there are too many acts."
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
@@ -210,44 +212,44 @@ can be made."
                          (simulation-tick simulation)))))
 
 ;; The clock is coarse, so the cost is averaged over many forks.
-(defun note-cost (past began)
+(defun update-fork-cost (past began)
   "Update in PAST the average cost of a fork. The last fork was begun at the time BEGAN, in seconds,
 and has just been made."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
-          (past-due past) (if (< *keeping-share* 1)
-                              (+ began (/ (max cost +least-cost+) *keeping-share*))
+          (past-due past) (if (< *fork-time-share* 1)
+                              (+ began (/ (max cost +least-fork-seconds+) *fork-time-share*))
                               began))))
 
 (defun keep-fork (simulation past)
   "Keep a fork of SIMULATION, which is between ticks, in PAST, if a fork can be made. If a
 participant is busy, try again at the end of the next tick."
-  (forget-if-full simulation past)
+  (discard-past-if-full simulation past)
   (let* ((began (or (past-wanted past) (seconds-now)))
          (tick (simulation-tick simulation))
-         (fork (fork-to-keep simulation past)))
+         (fork (make-fork-to-keep simulation past)))
     (when (simulation-p fork)
-      (push (make-kept fork tick (past-acts past)) (past-forks past))
-      (loop with room = (room-for-forks simulation past)
+      (push (make-fork-record fork tick (past-acts past)) (past-forks past))
+      (loop with room = (most-forks simulation past)
             while (> (length (past-forks past)) room)
-            do (removef (past-forks past) (least-needed (past-forks past)))))
+            do (removef (past-forks past) (least-needed-fork (past-forks past)))))
     (setf (past-pace past) 1
           (past-next past) (1+ tick)
           (past-wanted past) (if (eq :busy fork) began nil))
     (unless (eq :busy fork)
-      (note-cost past began))))
+      (update-fork-cost past began))))
 
-(defconstant +looks-for-fork+ 100
+(defconstant +fork-checks+ 100
   "The number of times that a thread waiting for a fork checks whether the fork was made, before it
 gives up.")
 
 (defun await-postponed-fork (simulation)
   "If keeping a fork of SIMULATION was postponed because this thread was busy, wait until the fork
-is made at the end of the next tick. Give up after +LOOKS-FOR-FORK+ checks, because the ticks may
+is made at the end of the next tick. Give up after +FORK-CHECKS+ checks, because the ticks may
 have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
-      (loop repeat +looks-for-fork+
+      (loop repeat +fork-checks+
             while (past-wanted past)
             do (wait-a-while moment 0.002))
       (setf (past-wanted past) nil))))
@@ -256,7 +258,7 @@ have stopped."
   "Keep a fork of SIMULATION in PAST unless too much time was spent on keeping forks."
   (cond ((>= (seconds-now) (past-due past)) (keep-fork simulation past))
         (t (setf (past-next past) (+ (simulation-tick simulation) (past-pace past))
-                 (past-pace past) (min +longest-pace+ (* 2 (past-pace past)))))))
+                 (past-pace past) (min +most-ticks-between-clock-reads+ (* 2 (past-pace past)))))))
 
 ;;; Keeping forks on request.
 
@@ -264,7 +266,7 @@ have stopped."
   (lambda (value) (or (typep value 'boolean) (whole-p value 2 1000)))
   "a number of forks from 2 to 1000, T for 30 forks, or NIL for none")
 
-(defun begin-keeping (simulation limit)
+(defun begin-keeping-forks (simulation limit)
   "Make SIMULATION, which this thread owns, keep at most LIMIT forks from now on."
   (let ((past (setf (simulation-past simulation) (make-past limit))))
     (when (eq simulation *simulation*) (update-rolled-dice simulation past))
@@ -287,8 +289,8 @@ too. Return nothing. Signals WRONG-ARGUMENT, and MISUSE if the run is over."
     (check-not-over simulation 'keep-forks)
     (asking (simulation)
       (let ((past (simulation-past simulation))
-            (limit (if (eq t count) +usual-forks+ count)))
+            (limit (if (eq t count) +default-forks+ count)))
         (cond ((null count) (setf (simulation-past simulation) nil))
               (past (setf (past-limit past) limit))
-              (t (begin-keeping simulation limit))))))
+              (t (begin-keeping-forks simulation limit))))))
   (values))

@@ -12,17 +12,17 @@
 ;;; Saved runs have two extensions: @7 is the object with the number 7, and a list may end in
 ;;; ". tail". Unknown keywords are interned there.
 
-(defconstant +deepest+ 200 "The deepest nesting of lists.")
+(defconstant +deepest-nesting+ 200 "The deepest nesting of lists.")
 (defconstant +largest-datum+ 100000 "The most conses of a datum.")
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
   "True if DATUM is a tree of conses that is not circular, has at most +LARGEST-DATUM+ conses and is
-at most +DEEPEST+ levels deep."
+at most +DEEPEST-NESTING+ levels deep."
   (let ((left +largest-datum+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
-                     do (when (or (minusp (decf left)) (> depth +deepest+))
+                     do (when (or (minusp (decf left)) (> depth +deepest-nesting+))
                           (return-from tree-p nil))
                         (visit (pop datum) (1+ depth)))))
       (visit datum 1)
@@ -186,15 +186,16 @@ code."
                          (setf position end))))
             (1+ position))))
 
-(defvar *uninterned* (make-hash-table :test 'equal)
+(defvar *uninterned-symbols* (make-hash-table :test 'equal)
   "A hash table from texts to the uninterned symbols that were made for them.")
 
 (defun uninterned-symbol (text name)
-  "Return the uninterned symbol NAME for TEXT: the same symbol each time, from *UNINTERNED*."
-  (or (gethash text *uninterned*)
-      (setf (gethash text *uninterned*) (make-symbol name))))
+  "Return the uninterned symbol NAME for TEXT, from *UNINTERNED-SYMBOLS*: the same
+symbol each time."
+  (or (gethash text *uninterned-symbols*)
+      (setf (gethash text *uninterned-symbols*) (make-symbol name))))
 
-(defun symbol-called (text)
+(defun find-or-make-symbol (text)
   "Return the symbol that TEXT, PACKAGE::NAME, names; if there is no such symbol, an uninterned
 symbol."
   (let* ((colons (or (search "::" text) (error "a name has no package")))
@@ -203,7 +204,7 @@ symbol."
     (or (and package (find-symbol name package))
         (uninterned-symbol text name))))
 
-(defvar *numbered* nil
+(defvar *numbered-objects* nil
   "A vector of the objects that @1, @2 and so on refer to, from index 1 on; or NIL.")
 
 (defun numbered-object (word)
@@ -211,24 +212,24 @@ symbol."
   (let ((number (and (< 1 (length word) 12)
                      (digits-p word 1)
                      (parse-integer word :start 1))))
-    (if (and number (< 0 number (length *numbered*)))
-        (aref *numbered* number)
+    (if (and number (< 0 number (length *numbered-objects*)))
+        (aref *numbered-objects* number)
         (error "no object has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
-(defun keyword-called (name word)
+(defun find-or-make-keyword (name word)
   "Return the keyword NAME, which is written as WORD; if there is no such keyword, an uninterned
 symbol."
   (cond ((find-symbol name :keyword))
-        (*numbered* (make-keyword name))
+        (*numbered-objects* (make-keyword name))
         (t (uninterned-symbol word name))))
 
-(defun word-meaning (word)
+(defun word-value (word)
   "Return the number, NIL, T, keyword or numbered object that WORD stands for."
   (cond ((number-text-p word) (read-number word))
         ((string= word "nil") nil)
         ((string= word "t") t)
-        ((and *numbered* (char= #\@ (char word 0))) (numbered-object word))
-        ((bare-name-p (string-upcase word)) (keyword-called (string-upcase word) word))
+        ((and *numbered-objects* (char= #\@ (char word 0))) (numbered-object word))
+        ((bare-name-p (string-upcase word)) (find-or-make-keyword (string-upcase word) word))
         (t (error "~S is neither a number nor a name"
                   (subseq word 0 (min 40 (length word)))))))
 
@@ -236,11 +237,11 @@ symbol."
   (let ((end (or (position-if (lambda (char) (find char " ()\"|")) text :start start)
                  (length text))))
     (when (= start end) (error "the character ~A is in a wrong place" (char-at text start)))
-    (values (word-meaning (subseq text start end)) end)))
+    (values (word-value (subseq text start end)) end)))
 
 (defun tail-follows-p (text position)
   "True if TEXT has a dot and the tail of a dotted list at POSITION."
-  (and *numbered*
+  (and *numbered-objects*
        (char= #\. (char text position))
        (char= #\Space (char-at text (1+ position)))))
 
@@ -252,7 +253,8 @@ after it."
     (values tail end)))
 
 (defun read-list (text start depth)
-  (when (> depth +deepest+) (error "its lists are nested more than ~D deep" +deepest+))
+  (when (> depth +deepest-nesting+)
+    (error "its lists are nested more than ~D deep" +deepest-nesting+))
   (let ((position (1+ start)) (elements '()) (tail nil))
     (loop for char = (char-at text position)
           until (char= char #\))
@@ -271,5 +273,5 @@ the reason."
     (#\( (read-list text start (1+ depth)))
     (#\" (read-quoted text start))
     (#\| (multiple-value-bind (name end) (read-quoted text start)
-           (values (symbol-called name) end)))
+           (values (find-or-make-symbol name) end)))
     (t (read-word text start))))

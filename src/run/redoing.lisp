@@ -8,7 +8,7 @@
 ;;; live plan was slow then. If a plan does not repeat a request, it is made in place of the plan:
 ;;; the plan has DIVERGED, which can happen if it depends on state that forks do not copy.
 
-(defstruct (redoing (:constructor make-redoing (simulation acts)) (:copier nil))
+(defstruct (repetition (:constructor make-repetition (simulation acts)) (:copier nil))
   "The repetition of a past in SIMULATION. ACTS are the acts that are not yet repeated, the oldest
 first. HELD are the requests that SIMULATION has made by itself and that are not yet due, the oldest
 first. DIVERGED is the first tick at which an act could not be repeated exactly, or NIL."
@@ -17,9 +17,9 @@ first. DIVERGED is the first tick at which an act could not be repeated exactly,
   (held '() :type list)
   (diverged nil :type (or null fixnum)))
 
-(defun note-divergence (redoing)
-  (unless (redoing-diverged redoing)
-    (setf (redoing-diverged redoing) (simulation-tick (redoing-simulation redoing)))))
+(defun note-divergence (repetition)
+  (unless (repetition-diverged repetition)
+    (setf (repetition-diverged repetition) (simulation-tick (repetition-simulation repetition)))))
 
 (defun perform-act (act simulation)
   "Repeat ACT in SIMULATION, which is the current simulation."
@@ -28,13 +28,13 @@ first. DIVERGED is the first tick at which an act could not be repeated exactly,
         (apply operator arguments)
         (perform-operator operator arguments simulation (or (act-asker act) "the past")))))
 
-(defun repeat-act (act redoing)
+(defun repeat-act (act repetition)
   "Repeat ACT. If ACT has a function, an error is ignored, because the function failed the first
 time, too. If ACT has an operator, an error is recorded as a divergence."
-  (let* ((timeline (simulation-timeline (redoing-simulation redoing)))
+  (let* ((timeline (simulation-timeline (repetition-simulation repetition)))
          (before (timeline-inbox timeline)))
-    (handler-case (perform-act act (redoing-simulation redoing))
-      (error () (unless (functionp (act-operator act)) (note-divergence redoing))))
+    (handler-case (perform-act act (repetition-simulation repetition))
+      (error () (unless (functionp (act-operator act)) (note-divergence repetition))))
     ;; Requests made inside a tick must be kept when the run is rewound to that.
     (dolist (request (ldiff (timeline-inbox timeline) before))
       (setf (request-phase request) (act-phase act)))))
@@ -51,85 +51,85 @@ performed."
            (alike-p (first arguments) (first (act-arguments act)))
            (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
 
-(defun repeat-request (act redoing)
+(defun repeat-request (act repetition)
   "Post the same request that the fork itself has made, if there is one; otherwise repeat the
 request of ACT."
-  (let* ((held (redoing-held redoing))
+  (let* ((held (repetition-held repetition))
          (own (and (act-own-p act)
                    (find-if (lambda (request) (same-request-p request act)) held))))
-    (when (and (act-own-p act) (null own)) (note-divergence redoing))
-    (cond (own (setf (redoing-held redoing) (remove own held))
-               (post-again own (simulation-timeline (redoing-simulation redoing))))
-          (t (repeat-act act redoing)))))
+    (when (and (act-own-p act) (null own)) (note-divergence repetition))
+    (cond (own (setf (repetition-held repetition) (remove own held))
+               (post-again own (simulation-timeline (repetition-simulation repetition))))
+          (t (repeat-act act repetition)))))
 
 ;;; Passing ticks.
 
-(defun next-act (redoing test)
+(defun pop-due-act (repetition test)
   "If the next act is due and TEST is true of it, remove and return it. Otherwise return NIL."
-  (let ((act (first (redoing-acts redoing))))
+  (let ((act (first (repetition-acts repetition))))
     (when (and act
-               (<= (act-tick act) (simulation-tick (redoing-simulation redoing)))
+               (<= (act-tick act) (simulation-tick (repetition-simulation repetition)))
                (funcall test act))
-      (pop (redoing-acts redoing)))))
+      (pop (repetition-acts repetition)))))
 
-(defun redo-in-tick (redoing)
+(defun redo-in-tick (repetition)
   "Repeat the acts that were done in the current tick after the world had changed, up to the current
 moment; see BEGIN-MOMENT."
-  (loop with moments = (timeline-moments (simulation-timeline (redoing-simulation redoing)))
-        for act = (next-act redoing (lambda (act)
-                                      (and (eq :change (act-kind act))
-                                           (telling-phase-p (act-phase act))
-                                           (<= (act-moment act) moments))))
+  (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
+        for act = (pop-due-act repetition (lambda (act)
+                                            (and (eq :change (act-kind act))
+                                                 (telling-phase-p (act-phase act))
+                                                 (<= (act-moment act) moments))))
         while act
-        unless (act-own-p act) do (repeat-act act redoing)))
+        unless (act-own-p act) do (repeat-act act repetition)))
 
 ;; Changes that came before any request are made first, as they may cause requests of the fork
 ;; itself. These are then held, and each is let through at its position among the others.
-(defun redo-between-ticks (redoing)
+(defun redo-between-ticks (repetition)
   "Repeat the acts that were done before the next tick."
-  (loop for act = (next-act redoing (lambda (act) (eq :change (act-kind act))))
+  (loop for act = (pop-due-act repetition (lambda (act) (eq :change (act-kind act))))
         while act
-        unless (act-own-p act) do (repeat-act act redoing))
-  (setf (redoing-held redoing)
-        (append (redoing-held redoing)
-                (remove-if-not #'repeated-by-fork-p
+        unless (act-own-p act) do (repeat-act act repetition))
+  (setf (repetition-held repetition)
+        (append (repetition-held repetition)
+                (remove-if-not #'repeated-by-forks-p
                                (take-requests
-                                (simulation-timeline (redoing-simulation redoing))))))
-  (loop for act = (next-act redoing (constantly t))
+                                (simulation-timeline (repetition-simulation repetition))))))
+  (loop for act = (pop-due-act repetition (constantly t))
         while act
         do (if (eq :request (act-kind act))
-               (repeat-request act redoing)
-               (unless (act-own-p act) (repeat-act act redoing)))))
+               (repeat-request act repetition)
+               (unless (act-own-p act) (repeat-act act repetition)))))
 
-(defun ticks-to-go (redoing goal)
+(defun ticks-to-next-act (repetition goal)
   "Return how many ticks may pass before an act is to be repeated or GOAL is reached."
-  (let* ((simulation (redoing-simulation redoing)) (act (first (redoing-acts redoing))))
+  (let* ((simulation (repetition-simulation repetition)) (act (first (repetition-acts repetition))))
     (cond ((simulation-participants simulation) 1) ; They may make requests in any tick.
           (act (- (min goal (act-tick act)) (simulation-tick simulation)))
           (t (- goal (simulation-tick simulation))))))
 
 ;; The observer is called before the first participant acts, so earlier acts are repeated by then.
-(defun advance-to (goal redoing)
+(defun advance-to (goal repetition)
   "Pass ticks up to GOAL, and repeat all acts on the way."
-  (let* ((simulation (redoing-simulation redoing))
+  (let* ((simulation (repetition-simulation repetition))
          (timeline (simulation-timeline simulation))
-         (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick redoing))))
-    (setf (timeline-on-moment timeline) (lambda () (redo-in-tick redoing)))
+         (observer (lambda (simulation) (declare (ignore simulation)) (redo-in-tick repetition))))
+    (setf (timeline-on-moment timeline) (lambda () (redo-in-tick repetition)))
     (add-observer observer simulation)
-    (loop (redo-between-ticks redoing)
+    (loop (redo-between-ticks repetition)
           (when (>= (simulation-tick simulation) goal) (return))
-          (run-ticks (ticks-to-go redoing goal) simulation))
+          (run-ticks (ticks-to-next-act repetition goal) simulation))
     (remove-observer observer simulation)
     (setf (timeline-on-moment timeline) nil)))
 
-(defun redo (simulation acts goal)
+(defun repeat-acts (simulation acts goal)
   "Advance SIMULATION, a kept fork that is the current simulation, to the tick GOAL and repeat ACTS,
 which begin with the oldest. Return the tick at which a plan diverged, or NIL."
-  (let ((redoing (make-redoing simulation acts))
+  (let ((repetition (make-repetition simulation acts))
         (*repeated* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.
-    (advance-to goal redoing)
-    (dolist (request (redoing-held redoing))
+    (advance-to goal repetition)
+    (dolist (request (repetition-held repetition))
       (post-again request (simulation-timeline simulation)))
     (record-settings simulation)
-    (redoing-diverged redoing)))
+    (repetition-diverged repetition)))

@@ -138,29 +138,29 @@ reference, and SIMULATION to the simulation."
 ;;; replaced by references, as in a journal. A function is copied with the values it closes over, so
 ;;; that a function given to SCHEDULE acts on the run in which it is called.
 
-(defstruct (named (:constructor make-named (reference)) (:copier nil))
+(defstruct (object-placeholder (:constructor make-object-placeholder (reference)) (:copier nil))
   "A placeholder for the object of a run that REFERENCE, a value of EXTERNALIZE, names."
   (reference nil :type list :read-only t))
 
-(defun name-object (object)
+(defun placeholder-for (object)
   "Return the representation of OBJECT, which is not copied, in memorized arguments."
   (cond ((nameable-p object)
          (let ((reference (externalize object)))
-           (if (eq reference object) object (make-named reference))))
+           (if (eq reference object) object (make-object-placeholder reference))))
         ((null *simulation*) object)
-        ((eq object *simulation*) (make-named '(:the :simulation)))
-        ((eq object (simulation-world *simulation*)) (make-named '(:the :world)))
+        ((eq object *simulation*) (make-object-placeholder '(:the :simulation)))
+        ((eq object (simulation-world *simulation*)) (make-object-placeholder '(:the :world)))
         (t object)))
 
 (defun memorize-arguments (arguments)
   "Return a copy of the list ARGUMENTS in its current state, for RECALL-ARGUMENTS."
-  (copy-values arguments #'name-object))
+  (copy-values arguments #'placeholder-for))
 
 (defun recall-arguments (arguments simulation)
   "Return a copy of ARGUMENTS, a value of MEMORIZE-ARGUMENTS, with the objects of SIMULATION."
   (copy-values arguments (lambda (object)
-                           (if (named-p object)
-                               (internalize (named-reference object) simulation)
+                           (if (object-placeholder-p object)
+                               (internalize (object-placeholder-reference object) simulation)
                                object))))
 
 ;;; Comparing arguments of two runs.
@@ -182,4 +182,4 @@ the same class that have no reference. (Each run has its own copy of such object
   "True if ONE and OTHER, both externalized or memorized, can denote the same object in two runs."
   (and (tree-p one) (tree-p other) (alike-trees-p one other)))
 
-(define-shared named)
+(define-shared object-placeholder)

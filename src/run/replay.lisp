@@ -2,13 +2,13 @@
 
 (in-package :ars-magna.run)
 
-(export '(call-with-replay replaying repeated-words resolve-journal))
+(export '(call-with-replay replaying changed-definitions-sentence resolve-journal))
 
 (addition different-definitions replay-anyway)
 (document-restarts
  'replay-anyway "Replay the journal although the definitions have changed since its recording.")
 (define-condition different-definitions (ars-magna-error)
-  ((differences :initarg :differences :reader different-definitions-differences)
+  ((definition-differences :initarg :differences :reader different-definitions-differences)
    (file :initarg :file :initform "journal" :reader different-definitions-file)
    (verb :initarg :verb :initform "replay" :reader different-definitions-verb))
   (:report (lambda (condition stream)
@@ -21,10 +21,10 @@
   (:documentation "The definitions recorded in a journal or saved run are not those that are
 loaded."))
 
-(defun differences-from (header blueprints)
+(defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
 are those of the robots; a text says so if a robot is now in another map."
-  (append (differences (getf header :definitions))
+  (append (definition-differences (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
                 for other = (find-map (blueprint-map blueprint) nil)
@@ -35,31 +35,31 @@ are those of the robots; a text says so if a robot is now in another map."
 (defun check-definitions (header blueprints)
   "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if the definitions in HEADER are
 not the current definitions."
-  (let ((differences (differences-from header blueprints)))
+  (let ((differences (header-differences header blueprints)))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
         (replay-anyway ()
           :report "Replay it all the same.")))))
 
-(defun repeated-words (journal)
+(defun changed-definitions-sentence (journal)
   "Return a sentence about JOURNAL if its definitions are not the current definitions; or NIL."
   (let ((header (journal-header journal)))
-    (and (differences-from header (mapcar #'find-blueprint (getf header :robots)))
+    (and (header-differences header (mapcar #'find-blueprint (getf header :robots)))
          "The run is repeated with definitions that have changed since it was recorded.")))
 
 ;;; A run may have passed very many ticks without requests. Their repetition takes long, so it must
 ;;; be asked for.
 
-(defconstant +longest-silence+ 10000000
+(defconstant +most-empty-ticks+ 10000000
   "The largest number of ticks without a journal entry that a replay passes if :UNTIL is not
 given.")
 
-(defun check-silence (journal)
-  "Signal MISUSE if more than +LONGEST-SILENCE+ ticks pass between two entries of JOURNAL."
+(defun check-empty-ticks (journal)
+  "Signal MISUSE if more than +MOST-EMPTY-TICKS+ ticks pass between two entries of JOURNAL."
   (loop with before = 0
         for tick in (append (mapcar #'first (journal-entries journal))
                             (list (journal-end journal)))
-        do (when (> (- tick before) +longest-silence+)
+        do (when (> (- tick before) +most-empty-ticks+)
              (reject-use "The journal goes on to tick ~D without any entry after tick ~D. Give ~
                           :UNTIL, the last tick to repeat: (replay journal :until ~D), or :until ~
                           ~D for the whole journal."
@@ -108,7 +108,7 @@ repeated."
     (perform-entries (nthcdr before entries) (1+ before) simulation)
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
-(defun full-settings (settings)
+(defun complete-settings (settings)
   "Return a list (name value) for each parameter: from SETTINGS if it is there, else with the
 default."
   (loop for parameter in (all-parameters)
@@ -133,7 +133,7 @@ simulation when the entries before the first tick have been repeated."
          (header (journal-header journal))
          (blueprints (mapcar #'find-blueprint (getf header :robots))))
     (unless anyway (check-definitions header blueprints))
-    (unless until (check-silence journal))
+    (unless until (check-empty-ticks journal))
     (call-with-simulation
      (lambda ()
        (let ((simulation (current-simulation)))
@@ -144,7 +144,7 @@ simulation when the entries before the first tick have been repeated."
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)
-     :seed (getf header :seed) :parameters (full-settings (getf header :parameters)) :journal t
+     :seed (getf header :seed) :parameters (complete-settings (getf header :parameters)) :journal t
      :keep keep :thinking (getf header :thinking :free))))
 
 (addition with-replay)

@@ -23,7 +23,7 @@
         (reject-use "Map ~(~A~) has no robot. Define one: (defrobot NAME (~:*~(~A~) (X Y) ANGLE))."
                     (map-name map)))))
 
-(defun reject-robots (designators)
+(defun reject-robot-list (designators)
   "Signal UNKNOWN-NAME: the list DESIGNATORS was given instead of one robot."
   (error 'unknown-name
          :kind "robot or map" :name designators
@@ -38,7 +38,7 @@ returned."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
-                     ((consp designator) (reject-robots designator))
+                     ((consp designator) (reject-robot-list designator))
                      (t (reject-name "robot or map" designator
                                      (append (mapcar #'blueprint-name (all-blueprints))
                                              (mapcar #'map-name (all-maps))))))))
@@ -90,7 +90,7 @@ result."
   (let ((robot (ignore-errors (global-value name))))
     (when (robot-p robot) (retire-robot robot reason))))
 
-(defun move-robots (map)
+(defun remake-robots (map)
   "Make the robots that are defined in MAP, a new map, and retire those that do not fit into it."
   (dolist (blueprint (blueprints-in map))
     (let ((trouble (start-problem-text map (blueprint-x blueprint) (blueprint-y blueprint))))
@@ -101,7 +101,7 @@ result."
                    (map-name map) trouble))
           (settle-named-robot blueprint)))))
 
-(defun end-world (world reason)
+(defun end-world-run (world reason)
   "End the run of WORLD and retire its robots, for REASON. WORLD cannot be started again. Return
 false if another world has become resident in its map."
   (call-alone (ensure-timeline world)
@@ -114,7 +114,7 @@ false if another world has become resident in its map."
 (defun end-resident (map reason)
   "End the resident world of MAP for REASON. Another map has replaced MAP."
   ;; Another thread may rewind its run meanwhile, which makes another world resident.
-  (loop until (end-world (map-resident map) reason)))
+  (loop until (end-world-run (map-resident map) reason)))
 
 ;; A time limit must not leave the old world live: no name would lead to it.
 (defun end-resident-safely (map reason)
@@ -136,11 +136,11 @@ false if another world has become resident in its map."
     (in-any-case
       (when world (warn-of-ended-run old simulation new))
       (when world (end-resident-safely old reason))
-      (when new (move-robots new)))))
+      (when new (remake-robots new)))))
 
 (defmethod map-replaced ((old null) (new map))
   ;; There may be robots of a map that was undefined.
-  (move-robots new))
+  (remake-robots new))
 
 (defmethod reinstate ((map map))
   (let* ((world (map-resident map))

@@ -7,9 +7,9 @@
 ;;; file can have lines for, and arrays that exceed the memory. No code uses an object before it is
 ;;; complete.
 
-(defstruct (loaded (:constructor make-loaded (most-objects)) (:copier nil))
+(defstruct (loader (:constructor make-loader (most-objects)) (:copier nil))
   "The objects of a saved run that is being read. SHAPES contains the shape and fields of the object
-of each number, or NIL for an outer object."
+of each number, or NIL for an external object."
   (most-objects 0 :type integer :read-only t)
   (objects (make-array 64 :adjustable t :fill-pointer 0) :type vector :read-only t)
   (shapes (make-array 64 :adjustable t :fill-pointer 0) :type vector :read-only t)
@@ -23,44 +23,44 @@ of each number, or NIL for an outer object."
   (agenda nil)
   (tables '() :type list))
 
-(defun begin-loading (octets)
-  "Return an empty LOADED structure for a file of OCTETS octets."
-  (let ((loaded (make-loaded (floor octets 12))))
-    (add-loaded nil nil loaded)
-    loaded))
+(defun make-empty-loader (octets)
+  "Return an empty LOADER structure for a file of OCTETS octets."
+  (let ((loader (make-loader (floor octets 12))))
+    (add-object nil nil loader)
+    loader))
 
-(defun add-loaded (object shape loaded)
-  (when (< (loaded-most-objects loaded) (length (loaded-objects loaded)))
+(defun add-object (object shape loader)
+  (when (< (loader-most-objects loader) (length (loader-objects loader)))
     (error "the file announces more objects than it has lines"))
-  (vector-push-extend object (loaded-objects loaded))
-  (vector-push-extend shape (loaded-shapes loaded)))
+  (vector-push-extend object (loader-objects loader))
+  (vector-push-extend shape (loader-shapes loader)))
 
 ;;; Defining numbers.
 
-(defun add-outer (name loaded)
-  "Let the next number mean the outer object with the name NAME, (kind argument [more])."
+(defun add-external-object (name loader)
+  "Let the next number mean the external object with the name NAME, (kind argument [more])."
   (unless (typep name '(cons keyword (cons t (or null (cons t null)))))
-    (error "the name of an outer object makes no sense"))
-  (unless (= (loaded-next loaded) (length (loaded-objects loaded)))
+    (error "the name of an external object makes no sense"))
+  (unless (= (loader-next loader) (length (loader-objects loader)))
     (error "a definition is listed after the objects of the run; definitions must come first"))
-  (add-loaded (handler-case (apply #'outer-object name)
+  (add-object (handler-case (apply #'external-object name)
                 (unknown-name (trouble) (error trouble))
                 (error (trouble)
                   (error "~(~A~) ~A cannot be found: ~A" (first name)
                          (short-text (second name)) (one-line-text trouble))))
-              nil loaded)
+              nil loader)
   ;; It has no contents in the file.
-  (incf (loaded-next loaded)))
+  (incf (loader-next loader)))
 
-(defun new-array (element-type dimensions growth loaded)
-  (unless (and (member element-type *element-types* :test #'equal)
+(defun make-empty-array (element-type dimensions growth loader)
+  (unless (and (member element-type *savable-element-types* :test #'equal)
                (typep dimensions '(cons unsigned-byte list))
                (proper-list-of-p (lambda (size) (typep size '(unsigned-byte 32))) dimensions)
                (<= (length dimensions) 8)
                (member growth '(nil :adjustable :growing))
                (or (not (eq :growing growth)) (null (rest dimensions))))
     (error "an array makes no sense"))
-  (when (minusp (decf (loaded-elements-left loaded) (reduce #'* dimensions)))
+  (when (minusp (decf (loader-elements-left loader) (reduce #'* dimensions)))
     (error "the arrays would need more memory than there is"))
   (let ((growing-p (eq :growing growth)))
     (apply #'make-array (if growing-p (max 4 (first dimensions)) dimensions)
@@ -69,19 +69,19 @@ of each number, or NIL for an outer object."
            :fill-pointer (and growing-p (first dimensions))
            (if (eq t element-type) '(:initial-element nil) '()))))
 
-(defun new-object (shape fields loaded)
+(defun make-empty-object (shape fields loader)
   "Return a new object of SHAPE, (kind argument ...), without contents. For a structure, FIELDS are
 its slots."
   (destructuring-bind (kind &optional first second third) shape
     (ecase kind
       (:object (blank-object first fields))
-      (:array (new-array first second third loaded))
+      (:array (make-empty-array first second third loader))
       (:table (make-hash-table :test first))
       (:dice (make-dice 0))
       (:list (list nil))
       (:agenda (make-agenda)))))
 
-(defun fields-called (type names)
+(defun saved-slots (type names)
   "Return the slots of structures of TYPE. Signals an error unless the slots that are saved have the
 names NAMES."
   (unless (and (symbolp type)
@@ -104,23 +104,23 @@ names NAMES."
                          (cons (eql :agenda) (cons unsigned-byte null))
                          (cons (member :dice :list) null)))
     (error "the file has objects without a shape"))
-  (unless (or (not (eq :table (first shape))) (member (second shape) *table-tests*))
+  (unless (or (not (eq :table (first shape))) (member (second shape) *savable-table-tests*))
     (error "a hash table has a user-defined test")))
 
-(defun add-batch (kind count shape loaded)
+(defun add-new-objects (kind count shape loader)
   "Make COUNT new objects of KIND and SHAPE, for the next COUNT numbers."
   (let ((shape (cons kind shape)))
     (check-shape shape)
     (unless (and (integerp count)
-                 (<= 1 count (- (loaded-most-objects loaded) (length (loaded-objects loaded)))))
+                 (<= 1 count (- (loader-most-objects loader) (length (loader-objects loader)))))
       (error "the file announces more objects than it has lines"))
-    (let ((fields (and (eq :object kind) (fields-called (second shape) (third shape)))))
+    (let ((fields (and (eq :object kind) (saved-slots (second shape) (third shape)))))
       (loop repeat count
-            do (add-loaded (new-object shape fields loaded) (cons shape fields) loaded)))))
+            do (add-object (make-empty-object shape fields loader) (cons shape fields) loader)))))
 
 ;;; Filling objects.
 
-(defun put-field (value field object type)
+(defun store-slot (value field object type)
   (handler-case (funcall (kind-slot-writer field) value object)
     (error ()
       (error "the slot ~(~A~) of a ~(~A~) cannot have the value in the file"
@@ -129,15 +129,15 @@ names NAMES."
 (defun fill-object (object values fields type)
   "Store VALUES in the FIELDS of OBJECT that are saved, and initial values in its other fields."
   (dolist (field fields)
-    (put-field (cond ((not (slot-kept-p field)) (funcall (kind-slot-initial field)))
-                     (values (pop values))
-                     (t (error "there are too few values for a ~(~A~)" type)))
-               field object type))
+    (store-slot (cond ((not (slot-kept-p field)) (funcall (kind-slot-initial field)))
+                      (values (pop values))
+                      (t (error "there are too few values for a ~(~A~)" type)))
+                field object type))
   (when values (error "there are too many values for a ~(~A~)" type)))
 
-(defun put-elements (array count element loaded)
+(defun store-elements (array count element loader)
   "Store ELEMENT in ARRAY, COUNT times, from the current position on."
-  (let ((start (loaded-position loaded)))
+  (let ((start (loader-position loader)))
     (unless (and (typep count '(integer 1)) (<= count (- (element-count array) start)))
       (error "there are too many elements for an array"))
     ;; ELEMENT may be an object that has not been filled, and so cannot be shown.
@@ -145,44 +145,44 @@ names NAMES."
       (error "an element of an array of ~(~S~) cannot be of type ~(~A~)"
              (array-element-type array) (class-name (class-of element))))
     (loop for index from start repeat count do (setf (row-major-aref array index) element))
-    (incf (loaded-position loaded) count)))
+    (incf (loader-position loader) count)))
 
-(defun fill-text (text values loaded)
+(defun fill-text (text values loader)
   (let ((part (and (typep values '(cons string null)) (first values))))
-    (unless (and part (<= (length part) (- (length text) (loaded-position loaded))))
+    (unless (and part (<= (length part) (- (length text) (loader-position loader))))
       (error "the contents of a string make no sense"))
-    (replace text part :start1 (loaded-position loaded))
-    (incf (loaded-position loaded) (length part))))
+    (replace text part :start1 (loader-position loader))
+    (incf (loader-position loader) (length part))))
 
-(defun fill-array (array values loaded)
+(defun fill-array (array values loader)
   "Store the elements in VALUES in ARRAY, from the current position on. True if ARRAY is full now."
-  (cond ((stringp array) (fill-text array values loaded))
+  (cond ((stringp array) (fill-text array values loader))
         ((proper-list-p values)
          (loop for (count . rest) on values by #'cddr
                do (unless rest (error "an array has a repeat count without an element"))
-                  (put-elements array count (first rest) loaded))))
-  (= (element-count array) (loaded-position loaded)))
+                  (store-elements array count (first rest) loader))))
+  (= (element-count array) (loader-position loader)))
 
-(defun collect-values (values count loaded)
+(defun collect-values (values count loader)
   "Add VALUES to the values read from earlier lines. True if there are COUNT values now."
   (unless (proper-list-p values) (error "the contents of an object are no list"))
-  (setf (loaded-values loaded) (revappend values (loaded-values loaded)))
-  (incf (loaded-position loaded) (length values))
-  (when (< count (loaded-position loaded)) (error "there are too many values for an object"))
-  (= count (loaded-position loaded)))
+  (setf (loader-values loader) (revappend values (loader-values loader)))
+  (incf (loader-position loader) (length values))
+  (when (< count (loader-position loader)) (error "there are too many values for an object"))
+  (= count (loader-position loader)))
 
-(defun fill-from (object shape fields values loaded)
+(defun store-line-contents (object shape fields values loader)
   "Store VALUES, the contents of a line, in OBJECT. True if OBJECT is complete."
   (ecase (first shape)
-    (:array (fill-array object values loaded))
-    (:object (when (collect-values values (count-if #'slot-kept-p fields) loaded)
-               (fill-object object (reverse (loaded-values loaded)) fields (second shape))
+    (:array (fill-array object values loader))
+    (:object (when (collect-values values (count-if #'slot-kept-p fields) loader)
+               (fill-object object (reverse (loader-values loader)) fields (second shape))
                t))
-    (:table (when (collect-values values (* 2 (third shape)) loaded)
-              (push (cons object (reverse (loaded-values loaded))) (loaded-tables loaded))
+    (:table (when (collect-values values (* 2 (third shape)) loader)
+              (push (cons object (reverse (loader-values loader))) (loader-tables loader))
               t))
-    (:agenda (when (collect-values values (1+ (second shape)) loaded)
-               (setf (loaded-agenda loaded) (cons object (reverse (loaded-values loaded))))
+    (:agenda (when (collect-values values (1+ (second shape)) loader)
+               (setf (loader-agenda loader) (cons object (reverse (loader-values loader))))
                t))
     (:dice (unless (typep values '(cons (unsigned-byte 64) null)) (error "the state of dice makes ~
                                                                           no sense"))
@@ -193,27 +193,27 @@ names NAMES."
            (cdr object) (cdr values))
      t)))
 
-(defun fill-next (line loaded)
+(defun process-contents-line (line loader)
   "Store the contents in LINE, a list (object content...), in the object. The object must be the
-next object of LOADED."
-  (let* ((number (loaded-next loaded))
-         (object (and (< number (length (loaded-objects loaded)))
-                      (aref (loaded-objects loaded) number))))
+next object of LOADER."
+  (let* ((number (loader-next loader))
+         (object (and (< number (length (loader-objects loader)))
+                      (aref (loader-objects loader) number))))
     (unless (and object (consp line) (eq object (first line)))
       (error "the contents of number ~D are missing" number))
-    (destructuring-bind (shape . fields) (aref (loaded-shapes loaded) number)
-      (when (fill-from object shape fields (rest line) loaded)
-        (incf (loaded-next loaded))
-        (setf (loaded-position loaded) 0
-              (loaded-values loaded) '())))))
+    (destructuring-bind (shape . fields) (aref (loader-shapes loader) number)
+      (when (store-line-contents object shape fields (rest line) loader)
+        (incf (loader-next loader))
+        (setf (loader-position loader) 0
+              (loader-values loader) '())))))
 
-(defun all-objects-complete-p (loaded)
-  "True if all objects of LOADED are complete."
-  (= (loaded-next loaded) (length (loaded-objects loaded))))
+(defun all-objects-complete-p (loader)
+  "True if all objects of LOADER are complete."
+  (= (loader-next loader) (length (loader-objects loader))))
 
-(defun fill-tables (loaded)
-  "Fill the hash tables of LOADED. All objects that may be keys are complete by now."
-  (loop for (table . values) in (loaded-tables loaded)
+(defun fill-hash-tables (loader)
+  "Fill the hash tables of LOADER. All objects that may be keys are complete by now."
+  (loop for (table . values) in (loader-tables loader)
         do (loop for (key value) on values by #'cddr
                  do (setf (gethash key table) value))
            (unless (= (* 2 (hash-table-count table)) (length values))

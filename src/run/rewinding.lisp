@@ -22,7 +22,7 @@ clock of the current simulation, return that. Otherwise return NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
 
-(defun check-place-to-rewind (simulation)
+(defun check-rewind-allowed-here (simulation)
   "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not the current
 simulation."
   (cond ((goes-on-in-forks-p)
@@ -47,9 +47,9 @@ simulation."
 (defun earliest-tick (simulation)
   "Return the earliest tick that SIMULATION can be rewound to, or NIL if it keeps no forks."
   (let ((past (simulation-past simulation)))
-    (and past (past-forks past) (kept-tick (first (last (past-forks past)))))))
+    (and past (past-forks past) (fork-record-tick (first (last (past-forks past)))))))
 
-(defun check-past (simulation)
+(defun check-keeps-forks (simulation)
   "Signal MISUSE if SIMULATION has no past to go back to."
   (unless (earliest-tick simulation)
     (reject-use "rewind: ~A keeps no forks to go back to. Keep forks from its beginning, ~
@@ -57,7 +57,7 @@ simulation."
                  on by (keep-forks)."
                 (simulation-name simulation))))
 
-(defun check-how-far (ticks simulation)
+(defun check-rewind-distance (ticks simulation)
   "Signal WRONG-ARGUMENT unless SIMULATION can be rewound by TICKS ticks."
   (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
@@ -76,7 +76,7 @@ requests that were made but not performed before that."
       (setf acts (append (pending-acts simulation) acts)))
     (multiple-value-bind (done asked) (acts-until tick acts)
       (values (make-past (past-limit past)
-                         :forks (remove-if (lambda (kept) (> (kept-tick kept) tick))
+                         :forks (remove-if (lambda (kept) (> (fork-record-tick kept) tick))
                                            (past-forks past))
                          :acts done
                          :cost (past-cost past))
@@ -93,11 +93,11 @@ requests that were made but not performed before that."
   "Return a copy of the run of PAST at the end of the tick TICK, with the requests ASKED waiting;
 and the tick at which a plan diverged while the past was repeated, or NIL."
   (let* ((kept (first (past-forks past)))
-         (run (await-fork (kept-fork kept) nil '()))
-         (acts (reverse (ldiff (append asked (past-acts past)) (kept-acts kept))))
+         (run (await-fork (fork-record-fork kept) nil '()))
+         (acts (reverse (ldiff (append asked (past-acts past)) (fork-record-acts kept))))
          (done-p nil))
     (unwind-protect
-         (let ((diverged (call-inside run (lambda () (redo run acts tick)))))
+         (let ((diverged (call-in-simulation run (lambda () (repeat-acts run acts tick)))))
            (setf (simulation-past run) past
                  done-p t)
            (values run diverged))
@@ -151,7 +151,7 @@ robots."
     (end-simulation old reason)
     (setf (simulation-past old) nil)))
 
-(defun hand-over-errors (new old)
+(defun move-errors (new old)
   "Move the errors that users' code has signalled at the end of OLD to the messages of NEW."
   (dolist (message (take-messages (simulation-messages old)))
     (when (eq :error (message-kind message))
@@ -161,14 +161,14 @@ robots."
   "Give NEW the variables, world and errors of OLD, which had reached the tick FROM."
   (let ((current-resident-world-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
-    (note-rewound from new)
+    (record-rewind from new)
     (when current-p (set-variables new old))
     (when current-resident-world-p (make-resident new))
     (unless (fork-p old)
       (setf (simulation-environment new) '()
             (simulation-variables new) (simulation-variables old)
             (timeline-fork-p (simulation-timeline new)) nil))
-    (hand-over-errors new old)))
+    (move-errors new old)))
 
 (defun replace-owned-run (new old then)
   "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called
@@ -211,22 +211,22 @@ signal MISUSE."
 
 ;;; The journal.
 
-(defun note-rewound (from &optional (simulation (current-simulation)))
+(defun record-rewind (from &optional (simulation (current-simulation)))
   "Record in the journal of SIMULATION that the run was rewound from the tick FROM to the current
 tick."
-  (note simulation 'rewound (list from)))
+  (record-operation simulation 'rewound (list from)))
 
-(define-operator 'rewound '(integer) #'note-rewound)
+(define-operator 'rewound '(integer) #'record-rewind)
 
 (defvar *rewinding-lock* (make-lock "rewinding")
   "The lock held by the thread that rewinds a run: only one thread at a time can rewind.")
 
-(defun rewind-now (ticks simulation)
+(defun rewind-with-lock (ticks simulation)
   "Rewind SIMULATION by TICKS as REWIND does. The caller holds *REWINDING-LOCK*."
   (multiple-value-bind (tick past asked)
       (asking (simulation)
-        (check-past simulation)
-        (check-how-far ticks simulation)
+        (check-keeps-forks simulation)
+        (check-rewind-distance ticks simulation)
         (let ((tick (- (simulation-tick simulation) ticks)))
           (multiple-value-call #'values tick (past-until tick simulation))))
     (multiple-value-bind (run diverged) (repeat-past past asked tick)
@@ -256,9 +256,9 @@ the thread of any clock, and if SIMULATION is over."
     (check-argument rewind ticks (typep ticks 'unsigned-byte)
                     "a whole number of ticks, 0 or more")
     (check-not-over simulation 'rewind)
-    (check-place-to-rewind simulation)
+    (check-rewind-allowed-here simulation)
     (call-when-free *rewinding-lock*
                     (lambda ()
                       ;; Another thread may have been first.
                       (check-not-over simulation 'rewind)
-                      (rewind-now ticks simulation)))))
+                      (rewind-with-lock ticks simulation)))))

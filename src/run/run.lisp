@@ -3,7 +3,7 @@
 (in-package :ars-magna.run)
 
 (export '(simulation simulation-over simulation-agenda simulation-ticking-p simulation-thread
-          latest add-participant remove-participant headless-p end-simulation))
+          latest-successor add-participant remove-participant headless-p end-simulation))
 
 (addition state-digest)
 
@@ -107,8 +107,8 @@ steps). See SET-THINKING."
   "True inside a tick of SIMULATION, while its world changes."
   (timeline-ticking-p (simulation-timeline simulation)))
 
-(declaim (inline noting-p))
-(defun noting-p (simulation)
+(declaim (inline recording-p))
+(defun recording-p (simulation)
   "True if requests to SIMULATION are recorded, in a journal or for rewinding."
   (or (simulation-journal simulation) (simulation-past simulation)))
 
@@ -132,7 +132,7 @@ works."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
-(defun latest (simulation)
+(defun latest-successor (simulation)
   "Return SIMULATION or, if it was rewound, its successor."
   (let ((line (simulation-line simulation)))
     (if line (first line) simulation)))
@@ -149,7 +149,7 @@ do not refer to each other, so all but the last can be garbage-collected."
 
 (defvar *simulations-lock* (make-lock "simulations"))
 
-(defun residents-queue ()
+(defun resident-message-queue ()
   "Return the message queue for runs of resident worlds: *MESSAGE-QUEUE*, or inside a headless run
 its global value."
   (if (and *simulation* (headless-p *simulation*))
@@ -163,7 +163,8 @@ its global value."
         (with-lock (*simulations-lock*)
           (or (timeline-run timeline)
               (make-simulation world (lambda (simulation)
-                                       (setf (simulation-messages simulation) (residents-queue))
+                                       (setf (simulation-messages simulation)
+                                             (resident-message-queue))
                                        (begin-journal simulation))))))))
 
 (defun resolve-simulation (designator operator)
@@ -195,7 +196,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 (defun remove-observer (function &optional (simulation (current-simulation)))
   "Stop calling FUNCTION after the ticks of SIMULATION or, if SIMULATION has been rewound, of its
 successor."
-  (let ((simulation (latest simulation)))
+  (let ((simulation (latest-successor simulation)))
     (asking (simulation)
       (removef (simulation-observers simulation) function)))
   (values))
@@ -278,7 +279,7 @@ the next tick. Runs in the modes :FREE and :CHARGED are the same on every machin
 ;;; The end.
 
 ;; A time limit may come at any moment. It must not keep plans from being told of the end.
-(defun tell-of-end (simulation)
+(defun notify-of-end (simulation)
   "Notify the robots and participants of SIMULATION that the run is over. Interrupts are deferred."
   (in-any-case
     (call-each #'call-run-enders (simulation-robots simulation))
@@ -300,7 +301,7 @@ in progress or waiting, are interrupted; further requests are refused."
              (setf (timeline-over timeline) reason)
              (in-any-case
                (stop-pacing timeline)
-               (tell-of-end simulation)
+               (notify-of-end simulation)
                (progn (call-each (lambda (request) (perform request timeline))
                                  (take-requests timeline))
                       (abandon timeline (mapcan #'robot-resources robots)))))))))))

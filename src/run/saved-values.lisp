@@ -4,7 +4,7 @@
 
 ;;; The first lines define the numbers, in order:
 ;;;
-;;;   (found map "ARS-WORLDS::OFFICE")           an outer object, by its name
+;;;   (found map "ARS-WORLDS::OFFICE")           an external object, by its name
 ;;;   (new object 31 |...::THING| ("NAME" ...))  how many objects of a shape there are, and the
 ;;;   (new array 2 |...::T| (75) nil)            slots whose values follow
 ;;;
@@ -17,7 +17,7 @@ the first element and a space before each other element."
   (loop for tail = list then (cdr tail)
         for separator = beginning then #\Space
         while (and (consp tail)
-                   (or (eq tail list) (null (number-of tail inventory))))
+                   (or (eq tail list) (null (object-number tail inventory))))
         do (write-char separator out)
            (write-value (car tail) inventory out)
         finally (when tail
@@ -26,7 +26,7 @@ the first element and a space before each other element."
 
 (defun write-value (value inventory out)
   "Write VALUE to OUT. If VALUE has a number in INVENTORY, write the number instead."
-  (let ((number (and (not (typep value '(or symbol fixnum))) (number-of value inventory))))
+  (let ((number (and (not (typep value '(or symbol fixnum))) (object-number value inventory))))
     (cond (number (format out "@~D" number))
           ((consp value) (write-elements value inventory out #\()
            (write-char #\) out))
@@ -37,7 +37,7 @@ the first element and a space before each other element."
 (defun element-count (array)
   (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
 
-(defun write-run (array start inventory out)
+(defun write-repeated-elements (array start inventory out)
   "Write the number of equal elements of ARRAY from START on, and the element. Return the index of
 the next different element."
   (let* ((element (row-major-aref array start))
@@ -48,21 +48,21 @@ the next different element."
     (write-value element inventory out)
     end))
 
-(defun write-part (array start inventory out)
+(defun write-array-part (array start inventory out)
   "Write the elements of ARRAY from START on that fit into a line. Return the end index."
   (cond ((stringp array)
-         (let ((end (min (length array) (+ start (* 10 +longest-row+)))))
+         (let ((end (min (length array) (+ start (* 10 +most-elements-in-line+)))))
            (write-char #\Space out)
            (write-quoted (subseq array start end) #\" out)
            end))
-        (t (loop repeat +longest-row+
+        (t (loop repeat +most-elements-in-line+
                  while (< start (element-count array))
-                 do (setf start (write-run array start inventory out)))
+                 do (setf start (write-repeated-elements array start inventory out)))
            start)))
 
-(defun values-in (object fields)
+(defun object-contents (object fields)
   "Return the contents of OBJECT, which is neither an array nor a cons, as a list for
-LOADED-VALUES."
+LOADER-VALUES."
   (typecase object
     (dice (list (dice-state object)))
     (agenda (cons (agenda-tick object) (pending-events object)))
@@ -71,32 +71,32 @@ LOADED-VALUES."
                   (nreverse values)))
     (t (loop for field in fields collect (funcall (kind-slot-reader field) object)))))
 
-(defun write-row (values inventory out)
+(defun write-values-line (values inventory out)
   "Write the first elements of VALUES, as many as fit into a line. Return the others."
-  (loop repeat +longest-row+
+  (loop repeat +most-elements-in-line+
         while values
         do (write-char #\Space out)
            (write-value (pop values) inventory out))
   values)
 
-(defun write-line-of (object more inventory out)
+(defun write-object-line (object more inventory out)
   "Write the next line for OBJECT to OUT. MORE are the values that are left to write, or an index if
 OBJECT is an array. Return what is left after this line, in the same form, or NIL."
   (typecase object
     (cons (write-elements object inventory out) nil)
-    (array (let ((end (write-part object more inventory out)))
+    (array (let ((end (write-array-part object more inventory out)))
              (and (< end (element-count object)) end)))
-    (t (write-row more inventory out))))
+    (t (write-values-line more inventory out))))
 
-(defun object-lines (object fields inventory seal)
+(defun write-object-lines (object fields inventory seal)
   "Call SEAL with each line for the contents of OBJECT. For a structure, FIELDS are its slots."
   (let ((more (typecase object
                 (cons nil)
                 (array 0)
-                (t (values-in object fields)))))
+                (t (object-contents object fields)))))
     (loop do (funcall seal (with-output-to-string (out)
-                             (format out "(@~D" (number-of object inventory))
-                             (setf more (write-line-of object more inventory out))
+                             (format out "(@~D" (object-number object inventory))
+                             (setf more (write-object-line object more inventory out))
                              (write-char #\) out)))
           while more)))
 
@@ -110,9 +110,9 @@ numbers."
     (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
                        ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))
 
-(defun inventory-lines (inventory seal)
+(defun write-inventory-lines (inventory seal)
   "Call the function SEAL with each line, a string, of the text of INVENTORY."
-  (loop for (nil . name) in (inventory-outer inventory)
+  (loop for (nil . name) in (inventory-external-objects inventory)
         do (funcall seal (datum-text (cons :found name))))
   (let ((batches (batches-in-order inventory)))
     (dolist (batch batches) (funcall seal (batch-line batch)))
@@ -120,4 +120,4 @@ numbers."
     (with-plain-syntax
       (dolist (batch batches)
         (loop for object across (batch-members batch)
-              do (object-lines object (batch-fields batch) inventory seal))))))
+              do (write-object-lines object (batch-fields batch) inventory seal))))))

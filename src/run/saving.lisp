@@ -6,7 +6,7 @@
 ;;; the objects, see saved-values.lisp; the waiting requests; the journal, if the run keeps one; and
 ;;; the end.
 
-(defconstant +saved-version+ 1)
+(defconstant +saved-run-version+ 1)
 (define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
   :documentation "The first line of files that hold saved runs.")
 (note-kind-of-file :run +saved-title+
@@ -38,21 +38,21 @@ progress."))
     (scheduled t)
     (withdrawal (withdrawal-continuation request))))
 
-(defun requests-waiting (simulation)
+(defun waiting-requests (simulation)
   "Return the requests that wait for the next tick of SIMULATION, in order."
   (reverse (timeline-inbox (simulation-timeline simulation))))
 
-(defun events-waiting (simulation)
+(defun waiting-events (simulation)
   (pending-events (simulation-agenda simulation)))
 
 (defun unsavable-texts (simulation journal)
   "Return a list of texts about the parts of SIMULATION and JOURNAL that cannot be saved."
   (append (loop for text in (unfinished-in-participants simulation)
                 collect (format nil "~A is under way" text))
-          (loop for event in (events-waiting simulation)
+          (loop for event in (waiting-events simulation)
                 when (holds-function-p event)
                   collect (format nil "an event of SCHEDULE waits for tick ~D" (event-time event)))
-          (loop for request in (requests-waiting simulation)
+          (loop for request in (waiting-requests simulation)
                 when (holds-function-p request)
                   collect (if (typep request 'scheduled)
                               "an event of SCHEDULE was requested"
@@ -61,22 +61,22 @@ progress."))
                (some (lambda (entry) (unprintable-in (cddr entry))) (journal-entries journal))
                (list "its journal has entries with functions in them, as those of PUT-KICKER"))))
 
-(defun stripped-copy (simulation)
+(defun copy-without-unsavable-parts (simulation)
   "Return a copy of SIMULATION without the parts that cannot be saved."
   (let* ((copy (copy-without-participants simulation)) (timeline (simulation-timeline copy)))
-    (dolist (event (events-waiting copy))
+    (dolist (event (waiting-events copy))
       (when (holds-function-p event) (cancel-event (timeline-agenda timeline) event)))
     (setf (timeline-inbox timeline) (remove-if #'holds-function-p (timeline-inbox timeline)))
     copy))
 
-(defun call-with-savable (function simulation without-p)
+(defun call-with-savable-run (function simulation without-p)
   "Call FUNCTION with SIMULATION and its journal. If either has parts that cannot be saved, leave
 these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
   (let* ((journal (and (simulation-journal simulation) (journal-up-to-now simulation)))
          (texts (unsavable-texts simulation journal)))
     (cond ((null texts) (funcall function simulation journal))
           (without-p
-           (funcall function (stripped-copy simulation)
+           (funcall function (copy-without-unsavable-parts simulation)
                     (and journal (notany #'unprintable-in (journal-entries journal)) journal)))
           (t (error 'unsavable :name (simulation-name simulation) :parts texts)))))
 
@@ -91,13 +91,13 @@ these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
 (defun commands-under-way (simulation)
   "Return the users' commands that are in progress or waiting in SIMULATION, in the form of
 definitions."
-  (loop for request in (append (events-waiting simulation) (requests-waiting simulation))
+  (loop for request in (append (waiting-events simulation) (waiting-requests simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
         when (and entry (users-p entry))
           collect (definition-of :command entry)))
 
-(defun programs-head (simulation)
+(defun head-for-programs (simulation)
   "Return the part of the head of a saved run that concerns programs in SIMULATION: the noise that
 DIRTY-SIMULATION would restore, and the dice of CL:RANDOM. For a live run there are no dice, because
 each of its threads has its own."
@@ -106,8 +106,9 @@ each of its threads has its own."
     (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
            (and dice (list :dice (lisps-dice-numbers dice))))))
 
-(defun head-of (simulation programs journal)
-  "Return the head for the file in which SIMULATION is saved. PROGRAMS is a value of PROGRAMS-HEAD."
+(defun saved-run-head (simulation programs journal)
+  "Return the head for the file in which SIMULATION is saved. PROGRAMS is a value of
+HEAD-FOR-PROGRAMS."
   (let ((used (append (definitions-of simulation)
                       (current-definitions (commands-under-way simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
@@ -121,19 +122,20 @@ each of its threads has its own."
            :definitions (remove-duplicates used :test #'same-definition-p :from-end t)
            programs)))
 
-(defun write-saved (simulation journal programs out)
-  "Write SIMULATION and JOURNAL, its journal or NIL, to OUT. PROGRAMS is a value of PROGRAMS-HEAD."
-  (let* ((requests (requests-waiting simulation))
+(defun write-saved-run (simulation journal programs out)
+  "Write SIMULATION and JOURNAL, its journal or NIL, to OUT. PROGRAMS is a value of
+HEAD-FOR-PROGRAMS."
+  (let* ((requests (waiting-requests simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
-    (flet ((seal (text) (setf sum (write-sealed text sum out))))
+    (flet ((seal (text) (setf sum (write-checksummed-line text sum out))))
       (write-line +saved-title+ out)
-      (seal (datum-text (list :ars-magna-run +saved-version+
-                              (head-of simulation programs journal))))
-      (inventory-lines inventory #'seal)
+      (seal (datum-text (list :ars-magna-run +saved-run-version+
+                              (saved-run-head simulation programs journal))))
+      (write-inventory-lines inventory #'seal)
       (with-plain-syntax
         (dolist (request requests)
-          (seal (format nil "(waiting @~D)" (number-of request inventory)))))
+          (seal (format nil "(waiting @~D)" (object-number request inventory)))))
       (seal (datum-text '(:waiting)))
       (when journal
         (seal (datum-text (list :journal (journal-full-p journal) (journal-end journal)
@@ -151,7 +153,7 @@ each of its threads has its own."
       (reject-use "The run in ~(~A~) cannot be saved, because the written file could not be loaded ~
                    again: ~A. An older file is unchanged. (simulator ROBOT) starts a run that can ~
                    be saved."
-                  name (reason-of-refusal trouble)))))
+                  name (damage-reason trouble)))))
 
 (defun write-simulation (simulation file without-p)
   "Write SIMULATION, which is between ticks, to FILE; if WITHOUT-P is true, without the parts that
@@ -161,10 +163,10 @@ cannot be saved. Return the truename of FILE."
   (check-not-over simulation 'save-simulation)
   (when (eq simulation *simulation*) (record-settings simulation))
   (record-progress-checked (simulation-world simulation))
-  (let ((programs (programs-head simulation)))
-    (call-with-savable
+  (let ((programs (head-for-programs simulation)))
+    (call-with-savable-run
      (lambda (simulation journal)
-       (write-file-anew (lambda (out) (write-saved simulation journal programs out)) file
+       (write-file-anew (lambda (out) (write-saved-run simulation journal programs out)) file
                         "the run" :kind :run
                         :check (lambda (path)
                                  (check-loadable path (simulation-name simulation)))))

@@ -41,7 +41,7 @@ such a file."
 
 ;;; Writing.
 
-(defun write-sealed (text sum out)
+(defun write-checksummed-line (text sum out)
   "Write TEXT to OUT as a line with its check sum, and return this check sum. SUM is the check sum
 of the previous line."
   (when (<= (- +longest-line+ 10) (length text))
@@ -54,7 +54,7 @@ of the previous line."
 
 ;;; Reading.
 
-(defun read-short-line (in)
+(defun read-limited-line (in)
   "Return the next line of IN, or NIL at the end. If the line is longer than +LONGEST-LINE+, return
 only its beginning."
   (let* ((last nil)
@@ -93,22 +93,22 @@ Signals an error if LINE is damaged."
       (unless (= end (length text)) (error "the line has more than one datum"))
       (values datum sum))))
 
-(defun next-line (in)
+(defun next-data-line (in)
   "Return the next line of IN that is not a comment, or NIL at the end."
-  (loop for line = (read-short-line in)
+  (loop for line = (read-limited-line in)
         unless (and line (comment-line-p line)) return line))
 
 ;;; Files.
 
 (defun call-with-saved-text (function file)
-  "Call FUNCTION with a stream of the octets of FILE, for NEXT-LINE. Signals an error if FILE is not
-a regular file or is too long."
+  "Call FUNCTION with a stream of the octets of FILE, for NEXT-DATA-LINE. Signals an error if FILE
+is not a regular file, or is too long."
   (let ((trouble (unusable-file-text file)))
     (when trouble (error "~A" trouble)))
   (with-open-file (in file :external-format :latin-1)
     (when (< +longest-file+ (file-length in))
       (error "the file has ~D bytes, more than a saved file can have" (file-length in)))
-    (let ((*uninterned* (make-hash-table :test 'equal)))
+    (let ((*uninterned-symbols* (make-hash-table :test 'equal)))
       (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
@@ -122,7 +122,7 @@ error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
       (error damage :file file :reason (or (file-advice file kind)
                                            (one-line-text trouble))))))
 
-(defun reason-of-refusal (trouble)
+(defun damage-reason (trouble)
   "Return the reason of the error TROUBLE, which READING-FILE has signalled, as a part of a
 sentence."
   (if (typep trouble 'damaged-file)
@@ -133,7 +133,7 @@ sentence."
   "Run BODY with IN bound to a stream of FILE. See CALL-READING-FILE for KIND and DAMAGE."
   `(call-reading-file (lambda (,in) ,@body) ,file ,kind ,damage))
 
-(defun check-format (found expected)
+(defun check-file-format (found expected)
   "Signal an error unless FOUND, the format number of a file, is EXPECTED."
   (unless (eql expected found)
     (error "another version of the simulator wrote the file, in format ~A; this version reads ~

@@ -19,7 +19,7 @@
             (camera-last-view camera) last-view
             (camera-last-view-tick camera) tick))))
 
-(defun inside-name (part)
+(defun container-name (part)
   "Return the name of the container that PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
@@ -49,13 +49,13 @@ slots with the roles :STATE and :MEMORY."))
           :angle (camera-angle camera)
           :field-of-view (camera-field-of-view camera)
           :resolution (camera-resolution camera)
-          :inside (inside-name camera))))
+          :inside (container-name camera))))
 
 (defmethod part-status ((hand hand))
   (list :number (hand-index hand)
         :strength (hand-strength hand)
         :holds (and (hand-holding hand) (princ-to-string (hand-holding hand)))
-        :inside (inside-name hand)))
+        :inside (container-name hand)))
 
 (defmethod part-status ((bin storage-bin))
   (list :number (storage-bin-index bin)
@@ -76,22 +76,22 @@ slots with the roles :STATE and :MEMORY."))
 
 ;;; Commands in progress, and who issued them.
 
-(defun part-name (resource)
+(defun resource-part-name (resource)
   "Return the name of RESOURCE, a string, or NIL if RESOURCE is a robot."
   (if (robot-p resource) nil (princ-to-string resource)))
 
-(defun under-way-status (resource)
+(defun command-in-progress-status (resource)
   "Return a list of one plist, which describes the command in progress on RESOURCE and who issued
 it; or NIL."
   (multiple-value-bind (name asker) (under-way resource)
-    (when name (list (list :part (part-name resource) :command name :for asker)))))
+    (when name (list (list :part (resource-part-name resource) :command name :for asker)))))
 
 (defun interrupted-status (resource)
   "Return a list of one plist, which describes the last interruption on RESOURCE; or NIL."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (destructuring-bind (what asker by by-asker tick) interruption
-        (list (list :part (part-name resource) :command what :for asker
+        (list (list :part (resource-part-name resource) :command what :for asker
                     :by by :by-for by-asker :tick tick))))))
 
 ;;; All of it.
@@ -114,7 +114,7 @@ it; or NIL."
      (list :place (robot-last-place robot)
            :thinking (simulation-thinking (robot-simulation robot))
            :live (live-p (robot-simulation robot))
-           :under-way (mapcan #'under-way-status resources)
+           :under-way (mapcan #'command-in-progress-status resources)
            :interrupted (mapcan #'interrupted-status resources)
            :failed (last-failure robot)
            :designators (mapcar #'designator-status (live-designators robot))))))
@@ -149,7 +149,7 @@ Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robo
   (let ((robot (resolve-robot robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
 
-(defun under-way-facts (status)
+(defun commands-in-progress-text (status)
   (format nil "~{~A~^; ~}"
           (loop for entry in (getf status :under-way)
                 collect (destructuring-bind (&key part command for) entry
@@ -160,7 +160,7 @@ Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robo
     (known-facts
      "Stands in" (format nil "~(~A~) at (~{~,2F~^,~}), heading ~,2F, tick ~D" (getf status :map)
                          (getf status :position) (getf status :angle) (getf status :tick))
-     "Carries out" (and (getf status :under-way) (under-way-facts status))
+     "Carries out" (and (getf status :under-way) (commands-in-progress-text status))
      "Holds" (listed (remove nil (loop for hand in (getf status :hands)
                                            collect (getf hand :holds))))
      "Carries in its bins" (listed (loop for bin in (getf status :bins)

@@ -10,7 +10,7 @@
 ;;; may leave a tick by a non-local exit such as THROW. The timeline records which phases have
 ;;; begun, and the others are run first.
 
-(defmacro in-phases ((place) &body phases)
+(defmacro run-phases ((place) &body phases)
   "Run PHASES, lists (name form...), in order. PLACE holds the number of the last phase that has
 begun; skip the phases up to this number. PLACE is 0 before the first phase and after the last
 phase."
@@ -21,15 +21,15 @@ phase."
                         ,@forms))
      (setf ,place 0)))
 
-(declaim (inline begin-changing end-changing))
-(defun begin-changing (timeline world)
+(declaim (inline begin-world-changes end-world-changes))
+(defun begin-world-changes (timeline world)
   "Allow this thread to change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
         (world-writer world) (current-thread))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
-(defun end-changing (timeline world)
+(defun end-world-changes (timeline world)
   (setf (timeline-ticking-p timeline) nil
         (world-writer world) nil))
 
@@ -39,7 +39,7 @@ phase."
 SIMULATION keeps a journal or forks."
   (when (or (timeline-pacing timeline)
             (timeline-inbox timeline)
-            (noting-p simulation))
+            (recording-p simulation))
     (record-settings simulation)))
 
 (defun set-parameter (name value)
@@ -50,20 +50,20 @@ change is recorded at the same point of the new journal."
 
 (define-operator 'parameter '(name datum) #'set-parameter)
 
-(defun set-cleaning (settings)
+(defun set-noise-to-restore (settings)
   "Make DIRTY-SIMULATION restore SETTINGS, lists (name value). A replay calls this for an entry of
 the repeated journal."
   (setf *noise-before-cleaning* (settings-by-symbol settings))
   (record-settings *simulation*))
 
-(define-operator 'cleaning '(datum) #'set-cleaning)
+(define-operator 'cleaning '(datum) #'set-noise-to-restore)
 
 (defun perform-requests (simulation timeline)
   "Perform the requests to SIMULATION that were made since the last tick, the oldest first."
   (call-each (lambda (request)
-               (when (noting-p simulation)
+               (when (recording-p simulation)
                  (destructuring-bind (operator . arguments) (request-entry request)
-                   (note simulation operator arguments request)))
+                   (record-operation simulation operator arguments request)))
                (perform request timeline))
              (take-requests timeline)))
 
@@ -90,7 +90,7 @@ the repeated journal."
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))
 
-(defun tell-observers (simulation)
+(defun call-observers (simulation)
   (let ((*tick-dice* nil))
     (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
                (simulation-observers simulation))))
@@ -122,19 +122,19 @@ thread that owns the world calls this function."
     (declare (type timeline timeline) (type world world))
     (let ((*tick-dice* (timeline-tick-dice timeline)))
       (unwind-protect
-           (in-phases ((timeline-phase timeline))
-             (:requests (when (simulation-past simulation) (remember-dice simulation))
-                        (begin-changing timeline world)
+           (run-phases ((timeline-phase timeline))
+             (:requests (when (simulation-past simulation) (record-dice simulation))
+                        (begin-world-changes timeline world)
                         (record-changed-parameters simulation timeline)
                         (when (timeline-inbox timeline) (perform-requests simulation timeline)))
              (:events (advance-agenda (timeline-agenda timeline)))
              (:kickers (run-kickers world))
              (:settling (unless (world-settled-p world) (settle world)))
-             (:continuations (end-changing timeline world)
+             (:continuations (end-world-changes timeline world)
                              (extend-journal simulation)
                              (deliver-notifications timeline))
-             (:observers (when (simulation-observers simulation) (tell-observers simulation))
-                         (when (simulation-past simulation) (remember-dice simulation)))
+             (:observers (when (simulation-observers simulation) (call-observers simulation))
+                         (when (simulation-past simulation) (record-dice simulation)))
              (:participants (when (simulation-participants simulation)
                               (let-participants-act simulation)))
              (:keeping (keep-fork-if-due simulation)))

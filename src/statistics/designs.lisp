@@ -24,7 +24,7 @@ numbers. The first dimension has no polynomial.")
 
 (define-constant +sobol-bits+ 32)
 
-(defun next-direction (directions degree coefficients)
+(defun next-direction-number (directions degree coefficients)
   "Return the direction number that follows DIRECTIONS, a list with the last one first, for a
 polynomial with DEGREE and COEFFICIENTS."
   (let* ((oldest (nth (1- degree) directions))
@@ -41,7 +41,7 @@ polynomial with DEGREE and COEFFICIENTS."
       (loop for place from 1 to +sobol-bits+
             do (push (cond ((zerop degree) (ash 1 (- +sobol-bits+ place)))
                            ((<= place degree) (ash (pop odds) (- +sobol-bits+ place)))
-                           (t (next-direction directions degree coefficients)))
+                           (t (next-direction-number directions degree coefficients)))
                      directions))
       (coerce (reverse directions) 'simple-vector))))
 
@@ -59,7 +59,7 @@ below 2^32."
 ;;; Each dimension has its own dice, so another dimension does not change the others. A larger
 ;;; :RANDOM or :SOBOL design begins with the points of a smaller one; a Latin hypercube does not.
 
-(defun latin-numbers (count dice)
+(defun latin-hypercube-numbers (count dice)
   "Return COUNT random numbers drawn from DICE, one in each of COUNT equal parts of [0, 1), in
 random order."
   (let ((places (make-array count)))
@@ -85,5 +85,5 @@ of two. :SOBOL has at most +MOST-DIMENSIONS+ dimensions."
                for dice = (make-dice seed (format nil "~(~A~) ~D" kind dimension))
                collect (ecase kind
                          (:random (loop repeat count collect (roll dice)))
-                         (:latin-hypercube (latin-numbers count dice))
+                         (:latin-hypercube (latin-hypercube-numbers count dice))
                          (:sobol (shifted-sobol-numbers count dimension dice))))))

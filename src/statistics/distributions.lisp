@@ -100,7 +100,7 @@ above X, 0 or more (Abramowitz and Stegun 26.4.19)."
 
 ;;;; The normal distribution
 
-(defun normal-probability (z)
+(defun normal-cdf (z)
   "Return the probability that a standard normal variable is below Z (DLMF 7.11.2)."
   (declare (type double-float z))
   (let ((half (/ (* z z) 2)))
@@ -116,8 +116,8 @@ from X^0 on."
                    coefficients :from-end t)))
     `(/ ,(horner above) ,(horner below))))
 
-(declaim (inline middle-quantile near-tail-quantile far-tail-quantile))
-(defun middle-quantile (q)
+(declaim (inline normal-middle-quantile normal-near-tail-quantile normal-far-tail-quantile))
+(defun normal-middle-quantile (q)
   (declare (type double-float q))
   (let ((r (- .180625d0 (* q q))))
     (* q (ratio-of-polynomials r
@@ -128,7 +128,7 @@ from X^0 on."
             2.1213794301586595867d4 3.9307895800092710610d4 2.8729085735721942674d4
             5.2264952788528545610d3)))))
 
-(defun near-tail-quantile (r)
+(defun normal-near-tail-quantile (r)
   (declare (type double-float r))
   (ratio-of-polynomials r
     (1.42343711074968357734d0 4.63033784615654529590d0 5.76949722146069140550d0
@@ -138,7 +138,7 @@ from X^0 on."
      1.48103976427480074590d-1 1.51986665636164571966d-2 5.47593808499534494600d-4
      1.05075007164441684324d-9)))
 
-(defun far-tail-quantile (r)
+(defun normal-far-tail-quantile (r)
   (declare (type double-float r))
   (ratio-of-polynomials r
     (6.65790464350110377720d0 5.46378491116411436990d0 1.78482653991729133580d0
@@ -154,10 +154,11 @@ from X^0 on."
   (declare (type double-float p) #.*hot*)
   (let ((q (- p .5d0)))
     (if (<= (abs q) .425d0)
-        (middle-quantile q)
+        (normal-middle-quantile q)
         (let* ((tail (if (minusp q) p (- 1 p)))
                (r (sqrt (- (logarithm (the (double-float (0d0)) tail)))))
-               (size (if (<= r 5) (near-tail-quantile (- r 1.6d0)) (far-tail-quantile (- r 5)))))
+               (size (if (<= r 5) (normal-near-tail-quantile (- r 1.6d0))
+                             (normal-far-tail-quantile (- r 5)))))
           (declare (type (double-float 0d0) r))
           (if (minusp q) (- size) size)))))
 
@@ -171,7 +172,7 @@ CONFIDENCE."
 
 ;;; Some functions take both X and Y = 1 - X, so that neither loses digits near 1.
 
-(defun log-power (y x exponent)
+(defun log-complement-power (y x exponent)
   "Return EXPONENT times the logarithm of Y, where X = 1 - Y."
   (declare (type double-float y x exponent))
   (if (< x .1d0)
@@ -185,8 +186,8 @@ at least 1/2."
   (declare (type double-float a b x y))
   (let ((n (+ a b)))
     (cond ((zerop n) 0d0)
-          ((zerop a) (log-power y x b))
-          ((zerop b) (log-power x y a))
+          ((zerop a) (log-complement-power y x b))
+          ((zerop b) (log-complement-power x y a))
           (t (+ (- (stirling-error n) (stirling-error a) (stirling-error b)
                    (deviance a (* n x)) (deviance b (* n y)))
                 (/ (logarithm (/ n (* 2 pi a b))) 2))))))

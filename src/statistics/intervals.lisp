@@ -30,7 +30,8 @@ says; near 0 and 1 it may contain it less often, unlike EXACT-INTERVAL. Without 
 are 0 and 1; without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless
 TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
-  (wilson-bounds successes trials (normal-critical-value (check-share wilson-interval confidence))))
+  (wilson-bounds successes trials
+                 (normal-critical-value (check-unit-share wilson-interval confidence))))
 
 (defun exact-low (successes trials tail)
   "Return the rate of success at which SUCCESSES or more successes in TRIALS trials have the
@@ -46,7 +47,7 @@ and Pearson 1934; Newcombe 1998, method 5). The interval contains the true proba
 often as CONFIDENCE says, whatever that probability is, so it is wider than WILSON-INTERVAL. For the
 bounds without trials, successes or failures, and for errors, see WILSON-INTERVAL."
   (check-trials exact-interval successes trials)
-  (let ((tail (/ (- 1 (check-share exact-interval confidence)) 2)))
+  (let ((tail (/ (- 1 (check-unit-share exact-interval confidence)) 2)))
     (values (nth-value 0 (exact-low successes trials tail))
             (nth-value 1 (exact-low (- trials successes) trials tail)))))
 
@@ -87,7 +88,7 @@ unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is be
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
   (check-count paired-proportion-interval neither (- +largest+ both first second))
-  (let ((z (normal-critical-value (check-share paired-proportion-interval confidence)))
+  (let ((z (normal-critical-value (check-unit-share paired-proportion-interval confidence)))
         (trials (+ both first second neither)))
     (if (zerop trials)
         (values -1d0 1d0)
@@ -104,7 +105,7 @@ unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is be
         (values nil nil)
         (let ((mean (mean-of sample))
               (reach (* (student-critical-value confidence (double (1- size)))
-                        (deviation-of sample size))))
+                        (mean-standard-error sample size))))
           (values (- mean reach) (+ mean reach))))))
 
 (addition student-interval)
@@ -117,7 +118,7 @@ samples of 30, and in 94 of 100 samples of 50. BOOTSTRAP-INTERVAL is no better f
 distributions. If all numbers are equal, both bounds are that number; for fewer than two numbers,
 both bounds are NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE
 between 0 and 1."
-  (let ((confidence (check-share student-interval confidence)))
+  (let ((confidence (check-unit-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
 (defun check-same-length (operator name seconds firsts)
@@ -135,13 +136,13 @@ the STUDENT-INTERVAL of the differences FIRSTS - SECONDS (Student 1908). FIRSTS 
 lists or vectors whose elements form pairs, such as the ticks of two plans with the same seeds. For
 fewer than two pairs, both bounds are NIL. Signals WRONG-ARGUMENT as STUDENT-INTERVAL does, and if
 FIRSTS and SECONDS have different lengths."
-  (let ((confidence (check-share mean-difference-interval confidence))
+  (let ((confidence (check-unit-share mean-difference-interval confidence))
         (firsts (sample 'mean-difference-interval 'firsts firsts))
         (others (sample 'mean-difference-interval 'seconds seconds)))
     (check-same-length 'mean-difference-interval 'seconds seconds firsts)
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
-(defun outer-rank (size tail)
+(defun median-bound-rank (size tail)
   "Return the largest R for which, with a probability of at most TAIL, the median of the
 distribution is below the R-th smallest of SIZE numbers drawn from it; or 0 if there is no such R."
   (let ((low 0) (high size))
@@ -160,10 +161,10 @@ distribution. The bounds are two of NUMBERS, as far from the least and the great
 allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values are NIL if there are too
 few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15,
 and CONFIDENCE between 0 and 1."
-  (let* ((confidence (check-share median-interval confidence))
-         (sample (sorted (sample 'median-interval 'numbers numbers)))
+  (let* ((confidence (check-unit-share median-interval confidence))
+         (sample (sort-sample (sample 'median-interval 'numbers numbers)))
          (size (length sample))
-         (rank (outer-rank size (/ (- 1 confidence) 2))))
+         (rank (median-bound-rank size (/ (- 1 confidence) 2))))
     (if (zerop rank)
         (values nil nil nil)
         (values (aref sample (1- rank)) (aref sample (- size rank))
@@ -171,7 +172,7 @@ and CONFIDENCE between 0 and 1."
 
 ;;;; Any statistic, by the bootstrap
 
-(defparameter *most-groups* 500
+(defparameter *most-jackknife-groups* 500
   "The largest number of groups of the jackknife, which estimates skewness.")
 
 (defun checked-statistic (function)
@@ -194,10 +195,10 @@ and CONFIDENCE between 0 and 1."
 (defun resample-statistics (sample function resamples dice)
   (let ((drawn (make-array (length sample) :element-type 'double-float))
         (values (make-array resamples :element-type 'double-float)))
-    (dotimes (i resamples (sorted values))
+    (dotimes (i resamples (sort-sample values))
       (setf (aref values i) (funcall function (draw-resample sample drawn dice))))))
 
-(defun sample-without (sample group groups)
+(defun sample-without-group (sample group groups)
   (declare (type doubles sample) (type fixnum group groups))
   (coerce (loop for x across sample for i of-type fixnum from 0
                 unless (= group (mod i groups)) collect x)
@@ -206,9 +207,9 @@ and CONFIDENCE between 0 and 1."
 (defun bootstrap-acceleration (sample function)
   "Return the acceleration of the statistic FUNCTION for SAMPLE, by the jackknife, in groups if
 SAMPLE is large (Efron and Tibshirani 1993, formula 14.15)."
-  (let* ((groups (min (length sample) *most-groups*))
+  (let* ((groups (min (length sample) *most-jackknife-groups*))
          (left (coerce (loop for group below groups
-                             collect (funcall function (sample-without sample group groups)))
+                             collect (funcall function (sample-without-group sample group groups)))
                        'doubles))
          (mean (mean-of left)) (squares 0d0) (cubes 0d0)
          (influences (map 'doubles (lambda (value) (- mean value)) left)))
@@ -217,7 +218,7 @@ SAMPLE is large (Efron and Tibshirani 1993, formula 14.15)."
              (incf cubes (* (expt influence 2) influence)))
     (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))
 
-(defun bias (values found)
+(defun bootstrap-bias (values found)
   "Return the bias correction: the number of standard deviations from the middle of VALUES to FOUND.
 Some of VALUES may be equal to FOUND (Efron and Tibshirani 1993, formula 14.14)."
   (declare (type doubles values) (type double-float found))
@@ -225,22 +226,22 @@ Some of VALUES may be equal to FOUND (Efron and Tibshirani 1993, formula 14.14).
          (below (+ (count found values :test #'>) (/ (count found values :test #'=) 2))))
     (normal-quantile (double (/ (clamp below 1/2 (- size 1/2)) size)))))
 
-(defun corrected-share (z bias acceleration)
+(defun corrected-quantile-share (z bias acceleration)
   "Return the corrected probability of the quantile for the bound at Z standard deviations (Efron
 and Tibshirani 1993, formula 14.10)."
   (declare (type double-float z bias acceleration))
   (let* ((off (+ bias z)) (rest (- 1 (* acceleration off))))
-    (cond ((plusp rest) (normal-probability (+ bias (/ off rest))))
+    (cond ((plusp rest) (normal-cdf (+ bias (/ off rest))))
           ((plusp off) 1d0)
           (t 0d0))))
 
 (defun bootstrap-bounds (sample function z resamples dice)
   (let* ((found (funcall function (copy-seq sample)))
          (values (resample-statistics sample function resamples dice))
-         (bias (bias values found))
+         (bias (bootstrap-bias values found))
          (acceleration (bootstrap-acceleration sample function)))
     (flet ((bound (z)
-             (sorted-quantile values (corrected-share z bias acceleration))))
+             (sorted-quantile values (corrected-quantile-share z bias acceleration))))
       (values (bound (- z)) (bound z)))))
 
 (addition bootstrap-interval)
@@ -262,7 +263,7 @@ the bounds are the same each time.
 
 Signals WRONG-ARGUMENT unless NUMBERS and the values of STATISTIC are from -1e15 to 1e15, RESAMPLES
 from 100 to 1e7, and CONFIDENCE between 0 and 1."
-  (let ((z (normal-critical-value (check-share bootstrap-interval confidence)))
+  (let ((z (normal-critical-value (check-unit-share bootstrap-interval confidence)))
         (sample (sample 'bootstrap-interval 'numbers numbers))
         (function (case statistic
                     (:mean #'mean-of)

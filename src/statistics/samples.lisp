@@ -8,14 +8,14 @@
   "A sample, as functions of this package use it internally."
   '(simple-array double-float (*)))
 
-(defun elements-p (value test)
+(defun every-element-p (value test)
   "True if VALUE is a list or vector whose elements all pass TEST."
   (and (or (vectorp value) (proper-list-p value)) (every test value)))
 
 (defun sample (operator name numbers)
   "Return NUMBERS, the argument NAME of OPERATOR, as a fresh vector of double-floats. Signals
 WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15."
-  (unless (elements-p numbers #'quantity-p)
+  (unless (every-element-p numbers #'quantity-p)
     (reject-argument operator name numbers "a list or vector of numbers from -1e15 to 1e15"))
   (map 'doubles #'double numbers))
 
@@ -23,14 +23,14 @@ WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15.
   "Return SHARE as a double-float: the single-float .95 is .95, not 0.949999988."
   (double (if (typep share 'single-float) (rationalize share) share)))
 
-(defun inner-share-p (value)
+(defun inside-unit-interval-p (value)
   "True if VALUE is a number between 0 and 1, at least 1e-12 from both."
   (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
-(defmacro check-share (operator place)
+(defmacro check-unit-share (operator place)
   "Return the value of PLACE as a double-float. Signal WRONG-ARGUMENT unless it is between 0 and 1."
   `(progn
-     (check-argument ,operator ,place (inner-share-p ,place)
+     (check-argument ,operator ,place (inside-unit-interval-p ,place)
                      "a number between 0 and 1, such as .95, at least 1e-12 from both")
      (as-written ,place)))
 
@@ -96,7 +96,7 @@ cubed. The power is 1 unless all numbers of SAMPLE are very small."
   (declare (type doubles sample) (type double-float factor))
   (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
 
-(defun deviation-of (sample &optional (size 1))
+(defun mean-standard-error (sample &optional (size 1))
   "Return the estimated standard deviation of the mean of SIZE numbers from the distribution of
 which SAMPLE, at least two numbers, is a sample."
   (let ((factor (magnification sample)))
@@ -114,7 +114,7 @@ which SAMPLE, at least two numbers, is a sample."
                        (prog1 (aref from i) (incf i))
                        (prog1 (aref from j) (incf j)))))))
 
-(defun sorted (sample)
+(defun sort-sample (sample)
   "Sort SAMPLE in place, by merging runs of 1, 2, 4 and more numbers. Return SAMPLE."
   (declare (type doubles sample))
   (let* ((size (length sample)) (from sample)
@@ -137,7 +137,7 @@ which SAMPLE, at least two numbers, is a sample."
           (+ below (* part (- (aref sample (1+ index)) below)))))))
 
 (defun median-of (sample)
-  (sorted-quantile (sorted (copy-seq (the doubles sample))) .5d0))
+  (sorted-quantile (sort-sample (copy-seq (the doubles sample))) .5d0))
 
 ;;; For other layers.
 
@@ -151,4 +151,4 @@ Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
   "Return the median of NUMBERS, a list or vector; or NIL if NUMBERS is empty. Signals
 WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
   (let ((sample (sample 'median 'numbers numbers)))
-    (when (plusp (length sample)) (sorted-quantile (sorted sample) .5d0))))
+    (when (plusp (length sample)) (sorted-quantile (sort-sample sample) .5d0))))

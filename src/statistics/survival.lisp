@@ -4,12 +4,12 @@
 
 ;;; If one time is an event and an equal time is censored, the censoring counts as later.
 
-(defun check-survival (operator times-name times events-name events)
+(defun check-survival-arguments (operator times-name times events-name events)
   "Signal WRONG-ARGUMENT unless TIMES and EVENTS are valid and have the same length. TIMES-NAME and
 EVENTS-NAME are their names as arguments of OPERATOR."
-  (unless (elements-p times #'amount-p)
+  (unless (every-element-p times #'amount-p)
     (reject-argument operator times-name times "a list or vector of numbers from 0 to 1e15"))
-  (unless (elements-p events (lambda (event) (member event '(t nil 1 0))))
+  (unless (every-element-p events (lambda (event) (member event '(t nil 1 0))))
     (reject-argument operator events-name events
                      "a list or vector of T or 1 (done at that time) and NIL or 0 (censored)"))
   (check-same-length operator events-name events times))
@@ -26,7 +26,7 @@ START."
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
 
-(defun map-moments (function dated)
+(defun map-event-times (function dated)
   "For each time at which an event occurs, call FUNCTION with the start and end index of the
 elements of DATED with that time."
   (loop with start = 0
@@ -62,8 +62,8 @@ LOW and HIGH are the bounds of the survival at the time of the step, by Greenwoo
 scale of log(-log) (Kalbfleisch and Prentice 2002, chapter 1). The formula gives no bounds for a
 survival of 0: then LOW is 0, and HIGH is that of the previous step, or 1. Signals WRONG-ARGUMENT
 unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is between 0 and 1."
-  (check-survival 'survival-curve 'times times 'events events)
-  (let* ((z (normal-critical-value (check-share survival-curve confidence)))
+  (check-survival-arguments 'survival-curve 'times times 'events events)
+  (let* ((z (normal-critical-value (check-unit-share survival-curve confidence)))
          (dated (sorted-events times events)) (size (length dated))
          (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
     (flet ((note (start end)
@@ -74,7 +74,7 @@ unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is b
                (multiple-value-bind (low high) (survival-bounds survival variance z highest)
                  (push (list (first (aref dated start)) at-risk done survival low high) steps)
                  (setf highest high)))))
-      (map-moments #'note dated))
+      (map-event-times #'note dated))
     (nreverse steps)))
 
 (addition median-survival)
@@ -119,7 +119,7 @@ variance. Elements of the first group are marked."
                                         (count-done dated start end))
                (incf expected mean)
                (incf variance spread))))
-      (map-moments #'note dated))
+      (map-event-times #'note dated))
     (values observed expected variance)))
 
 (addition log-rank-test)
@@ -129,8 +129,8 @@ Peto 1972). Times and events are as for SURVIVAL-CURVE. The other values are chi
 degree of freedom; the number of trials of the first group that were done; and the expected number.
 If the groups cannot be compared, for example because one is empty, p is 1 and chi-square is 0.
 Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
-  (check-survival 'log-rank-test 'first-times first-times 'first-events first-events)
-  (check-survival 'log-rank-test 'second-times second-times 'second-events second-events)
+  (check-survival-arguments 'log-rank-test 'first-times first-times 'first-events first-events)
+  (check-survival-arguments 'log-rank-test 'second-times second-times 'second-events second-events)
   (multiple-value-bind (observed expected variance)
       (log-rank-sums (merge 'vector (sorted-events first-times first-events t)
                             (sorted-events second-times second-events) #'< :key #'first))

@@ -31,17 +31,17 @@ integers from 0 to 1e9."
 ;;; observed sum counts as one of the draws (Harrison 2012, "Conservative hypothesis tests and
 ;;; confidence intervals using importance sampling").
 
-(defun negative-share (x)
+(defun negative-sign-probability (x)
   "Return the probability of a negative sign if the odds of a positive sign are e^(2X), with X >=
 0."
   (declare (type double-float x))
   (let ((odds (exponential (* -2 (min x 300d0)))))
     (/ odds (+ 1 odds))))
 
-(defun tilted-mean (sizes tilt)
+(defun mean-tilted-sum (sizes tilt)
   (declare (type doubles sizes) (type double-float tilt))
   (loop for size across sizes
-        sum (* size (- 1 (* 2 (negative-share (* size tilt))))) of-type double-float))
+        sum (* size (- 1 (* 2 (negative-sign-probability (* size tilt))))) of-type double-float))
 
 (defun find-tilt (sizes sum)
   "Return the tilt of random signs for which the mean of the sum of SIZES, of which the largest is
@@ -50,12 +50,12 @@ integers from 0 to 1e9."
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
     (loop repeat 40
           for middle of-type double-float = (/ (+ low high) 2)
-          do (if (< (tilted-mean sizes middle) sum) (setf low middle) (setf high middle)))
+          do (if (< (mean-tilted-sum sizes middle) sum) (setf low middle) (setf high middle)))
     low))
 
 (defun log-of-cosh (x)
   (declare (type double-float x))
-  (- x (logarithm (* 2 (- 1 (negative-share x))))))
+  (- x (logarithm (* 2 (- 1 (negative-sign-probability x))))))
 
 (defun tilted-sum (sizes shares dice)
   (declare (type doubles sizes shares) (type dice dice) #.*hot*)
@@ -65,11 +65,11 @@ integers from 0 to 1e9."
         do (incf sum (if (< (roll dice) share) (- size) size))
         finally (return sum)))
 
-(defun tail-share (sizes sum grain resamples dice)
+(defun tilted-tail-probability (sizes sum grain resamples dice)
   "Return the probability that the sum of SIZES, which are at most 1, with random signs is at least
 SUM or at most -SUM. The probability is estimated by RESAMPLES draws of tilted signs."
   (let* ((tilt (find-tilt sizes sum))
-         (shares (map 'doubles (lambda (size) (negative-share (* size tilt))) sizes))
+         (shares (map 'doubles (lambda (size) (negative-sign-probability (* size tilt))) sizes))
          (logs (loop for size across sizes sum (log-of-cosh (* size tilt)))))
     (flet ((weight (sum) (exponential (max -700d0 (- logs (* tilt sum))))))
       (/ (loop with weights = (weight sum)
@@ -83,8 +83,8 @@ SUM or at most -SUM. The probability is estimated by RESAMPLES draws of tilted s
   "Return the probability that the sum of SIZES with random signs is at least SUM or at most -SUM,
 estimated by importance sampling, for small probabilities."
   (let ((largest (reduce #'max sizes)))
-    (min 1d0 (tail-share (map 'doubles (lambda (size) (/ size largest)) sizes)
-                         (/ sum largest) (/ grain largest) resamples dice))))
+    (min 1d0 (tilted-tail-probability (map 'doubles (lambda (size) (/ size largest)) sizes)
+                                      (/ sum largest) (/ grain largest) resamples dice))))
 
 ;;;; The permutation test
 
@@ -93,7 +93,7 @@ estimated by importance sampling, for small probabilities."
 ;;; are kept sorted, with their probabilities; each difference doubles them, except for equal sums,
 ;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
-(defparameter *most-sums* (expt 2 18)
+(defparameter *most-exact-sums* (expt 2 18)
   "The largest product of the number of sums and the number of differences left, for the exact
 test.")
 
@@ -134,7 +134,7 @@ probability. Sums closer than GRAIN are joined."
   (loop with sums = (cons (coerce '(0d0) 'doubles) (coerce '(1d0) 'doubles))
         for size across sizes
         for left downfrom (length sizes)
-        when (> (* left (length (the doubles (car sums)))) *most-sums*)
+        when (> (* left (length (the doubles (car sums)))) *most-exact-sums*)
           do (return nil)
         do (setf sums (merge-sums sums size grain))
         finally (return (loop for found across (the doubles (car sums))
@@ -149,13 +149,13 @@ at most -SUM. The observed sum counts as a draw, so the share is never 0 (Phipso
                          count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
        (1+ resamples))))
 
-(defconstant +small-share+ .05d0
+(defconstant +rare-share-limit+ .05d0
   "The largest p value that is estimated again with tilted signs if RARE-TOO is true.")
 
 (defun share-by-draws (sizes sum grain resamples seed rare-too)
   "Return the DRAWN-SHARE. If it is small and RARE-TOO is true, return the RARE-SHARE instead."
   (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
-    (if (and rare-too (<= share +small-share+))
+    (if (and rare-too (<= share +rare-share-limit+))
         (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
         share)))
 
@@ -178,7 +178,7 @@ for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES a
   (check-resampling permutation-test resamples seed)
   (let* ((sample (sample 'permutation-test 'differences differences))
          (sum (abs (sum sample)))
-         (sizes (sorted (map 'doubles #'abs (remove-if #'zerop sample))))
+         (sizes (sort-sample (map 'doubles #'abs (remove-if #'zerop sample))))
          (grain (* 1d-13 (sum sizes)))
          (exact (exact-share sizes sum grain)))
     (if exact
@@ -194,7 +194,7 @@ for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES a
 significant, the probability that any of these results is wrong is at most .05. The order is kept,
 and equal p values have equal results. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to
 1."
-  (check-argument holm-adjusted p-values (elements-p p-values #'probability-p)
+  (check-argument holm-adjusted p-values (every-element-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
   (let ((shares (map 'doubles #'as-written p-values)))
     (loop with worth = 0d0
@@ -216,7 +216,7 @@ these intervals is wrong is at most LEVEL (Bonferroni's inequality, spent as in 
 1983). Signals WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and
 1."
   (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
-  (/ (check-share sequential-level level) (* look (1+ look))))
+  (/ (check-unit-share sequential-level level) (* look (1+ look))))
 
 (defun log-evidence (successes trials rate)
   (declare (type double-float rate))
@@ -233,7 +233,7 @@ LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard, Ramdas, McAul
 2021). Without trials the evidence is 0; a value below 0 supports RATE. Signals WRONG-ARGUMENT
 unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
   (check-trials rate-evidence successes trials)
-  (log-evidence successes trials (check-share rate-evidence rate)))
+  (log-evidence successes trials (check-unit-share rate-evidence rate)))
 
 (addition rate-verdict)
 (defun rate-verdict (successes trials rate &key (level .05d0))
@@ -242,6 +242,7 @@ success is above or below RATE; or NIL if they do not show either yet. You may c
 after each trial and stop when the value is not NIL: if the probability is RATE, this ever happens
 with a probability of at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
   (check-trials rate-verdict successes trials)
-  (let ((rate (check-share rate-verdict rate)))
-    (when (>= (log-evidence successes trials rate) (- (logarithm (check-share rate-verdict level))))
+  (let ((rate (check-unit-share rate-verdict rate)))
+    (when (>= (log-evidence successes trials rate)
+              (- (logarithm (check-unit-share rate-verdict level))))
       (if (> successes (* rate trials)) :above :below))))

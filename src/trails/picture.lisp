@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.trails)
 
-(export '(save-bundle))
+(export '(save-picture-of-ways))
 
 (defparameter *outcome-looks*
   '(("success" 0 #x0C3C9C 3/2 nil "succeeded") ("limit" 4 #xB07000 2 (6 3) "came to the limit")
@@ -22,7 +22,7 @@ above others.")
   "Return the opacity of each way if COUNT ways have the same outcome."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
-(defun draw-line-of-way (canvas points look)
+(defun draw-way-outline (canvas points look)
   "Draw a line with LOOK through POINTS, x y ... in pixels."
   (destructuring-bind (marker color width dashes words) look
     (declare (ignore marker words))
@@ -33,7 +33,7 @@ above others.")
 (defun draw-way (canvas way)
   (let ((look (outcome-look way)))
     (dolist (points (pieces-in-pixels (way-pieces way)))
-      (when (cddr points) (draw-line-of-way canvas points look)))))
+      (when (cddr points) (draw-way-outline canvas points look)))))
 
 (defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
@@ -50,7 +50,7 @@ above others.")
                   (< (abs (- y (robot-image-y robot))) 1/10)))
            (snapshot-robots snapshot)))
 
-(defun starts-of (ways snapshot)
+(defun start-points (ways snapshot)
   "Return the points (x y), in metres, at which WAYS begin, without duplicates and without the
 points at which SNAPSHOT shows a robot."
   (remove-duplicates (loop for way in ways
@@ -65,14 +65,14 @@ points at which SNAPSHOT shows a robot."
   (draw-jump-dots canvas (jumps-between (pieces-in-pixels (way-pieces way)))
                   (second (outcome-look way))))
 
-(defun draw-marker-of (canvas look x y)
+(defun draw-end-marker (canvas look x y)
   (draw-marker canvas (first look) x y 4 (if in-color* (second look) black*)))
 
 (defun draw-end (canvas way)
   (let ((piece (first (last (way-pieces way)))))
     (when piece
       (destructuring-bind (x . y) (first (last piece))
-        (draw-marker-of canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
+        (draw-end-marker canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
   "Draw WAYS so faint that many of them can be distinguished, above the dots of their jumps."
@@ -83,27 +83,28 @@ points at which SNAPSHOT shows a robot."
       (when (rest (way-pieces way)) (draw #'draw-jumps way)))
     (dolist (way ways) (draw #'draw-way way))))
 
-(defun bundle-entry (look opacity text)
+(defun outcome-legend-entry (look opacity text)
   (entry-with-sample (canvas x y) text
     (with-opacity (canvas opacity)
-      (draw-line-of-way canvas (list (- x 8) y (+ x 8) y) look))
-    (with-opacity (canvas +end-opacity+) (draw-marker-of canvas look (+ x 4) y))))
+      (draw-way-outline canvas (list (- x 8) y (+ x 8) y) look))
+    (with-opacity (canvas +end-opacity+) (draw-end-marker canvas look (+ x 4) y))))
 
-(defun outcome-entries (ways what)
+(defun outcome-legend-entries (ways what)
   "Return the entries of the legend for the outcomes of WAYS. WHAT is the noun for a trial, such as
 \"trial\"."
   (loop for (outcome . look) in *outcome-looks*
         for ended = (ways-of-outcome outcome ways)
         for count = (length (remove-duplicates (mapcar #'way-trial ended)))
         when (plusp count)
-          collect (bundle-entry look (way-opacity (length ended))
-                                (format nil "~A: ~D ~A~P" (first (last look)) count what count))))
+          collect (outcome-legend-entry look (way-opacity (length ended))
+                                        (format nil "~A: ~D ~A~P" (first (last look))
+                                                count what count))))
 
-(defun bundle-entries (snapshot ways what)
+(defun ways-legend-entries (snapshot ways what)
   "Return the entries of the legend for WAYS in the world of SNAPSHOT. For WHAT see
-OUTCOME-ENTRIES."
-  (append (outcome-entries ways what)
-          (and (starts-of ways snapshot)
+OUTCOME-LEGEND-ENTRIES."
+  (append (outcome-legend-entries ways what)
+          (and (start-points ways snapshot)
                (list (entry-with-sample (canvas x y) "start of a way"
                        (draw-way-start canvas x y black*))))
           (jump-entries (loop for way in ways collect (pieces-in-pixels (way-pieces way)))
@@ -113,7 +114,7 @@ OUTCOME-ENTRIES."
   "Return the opacity of the map below the ways. COLOR-P is true for a picture in colours."
   (if color-p 1/2 1))
 
-(defun draw-bundle (canvas snapshot ways layers)
+(defun draw-world-and-ways (canvas snapshot ways layers)
   "Draw the world of SNAPSHOT and WAYS in it. In a picture in colours the map is faint. The ends of
 WAYS are drawn above robots and things."
   (let ((ways (loop for (outcome) in *outcome-looks* append (ways-of-outcome outcome ways))))
@@ -121,18 +122,18 @@ WAYS are drawn above robots and things."
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)
     (with-opacity (canvas +end-opacity+) (draw-arrows-of canvas ways))
-    (loop for (x y) in (starts-of ways snapshot)
+    (loop for (x y) in (start-points ways snapshot)
           do (draw-way-start canvas (to-pixels x) (to-pixels y) black*))
     (draw-movers canvas snapshot (remove :names layers))
     (dolist (way ways)
       (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
     (when (member :names layers) (draw-names canvas snapshot layers))))
 
-(defun bundle-text (snapshot ways what &rest look &key layers in-color &allow-other-keys)
-  "Return an SVG document that shows SNAPSHOT and WAYS in it. For WHAT see OUTCOME-ENTRIES, for LOOK
-see FRAMED-TEXT."
-  (apply #'framed-text snapshot (lambda (canvas) (draw-bundle canvas snapshot ways layers))
-         :more (bundle-entries snapshot ways what)
+(defun ways-picture-svg (snapshot ways what &rest look &key layers in-color &allow-other-keys)
+  "Return an SVG document that shows SNAPSHOT and WAYS in it. For WHAT see OUTCOME-LEGEND-ENTRIES,
+and for LOOK see FRAMED-TEXT."
+  (apply #'framed-text snapshot (lambda (canvas) (draw-world-and-ways canvas snapshot ways layers))
+         :more (ways-legend-entries snapshot ways what)
          :legend (list :opacity (map-opacity in-color)) look))
 
 (defun ways-in-part (part ways)
@@ -154,8 +155,9 @@ an empty text. WHAT is the noun for a trial."
           (format nil " Not shown, outside of this part: the ways of ~D ~A~P." unseen what unseen)
           ""))))
 
-(defun save-bundle (operator what file snapshot ways-of own-title subtitle
-                    &key part title (layers (remove :tracks *picture-layers*)) (in-color t) scale)
+(defun save-picture-of-ways (operator what file snapshot ways-of own-title subtitle
+                             &key part title (layers (remove :tracks *picture-layers*))
+                               (in-color t) scale)
   "Save in FILE a picture of SNAPSHOT and of the ways that the function WAYS-OF returns. Return the
 truename of FILE. Errors name OPERATOR. WHAT is the noun for a trial. At the top are TITLE, by
 default OWN-TITLE, and SUBTITLE. PART (left top right bottom), in cells, is the part of the map to
@@ -166,7 +168,7 @@ show, or NIL for the whole map. Signals WRONG-ARGUMENT, before WAYS-OF is called
            (all (funcall ways-of))
            (ways (ways-in-part part all)))
       (save-svg (with-broken-graphics-reported
-                  (bundle-text snapshot ways what
+                  (ways-picture-svg snapshot ways what
                                :title (or title own-title)
                                :subtitle (concatenate 'string subtitle
                                                       (not-shown-text what all ways))

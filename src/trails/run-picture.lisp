@@ -8,7 +8,7 @@
 (defconstant +note-size+ 12 "The height of the font of notes, in pixels.")
 (defconstant +note-step+ 16 "The distance between lines of notes, in pixels.")
 
-(defun robot-of (moment simulation)
+(defun robot-of-moment (moment simulation)
   "Return the robot in SIMULATION that MOMENT names. If MOMENT names no robot, return the only robot
 of SIMULATION, or NIL if there are several."
   (let ((robots (simulation-robots simulation)))
@@ -16,74 +16,75 @@ of SIMULATION, or NIL if there are several."
         (find (moment-robot moment) robots :key #'robot-name :test #'same-name-p)
         (and (null (rest robots)) (first robots)))))
 
-(defun place-moment (moment simulation)
+(defun moment-with-position (moment simulation)
   "Return MOMENT, which is at the current tick. If MOMENT has no position, return a copy with the
 position of its robot, if the robot is known."
-  (let ((robot (robot-of moment simulation)))
+  (let ((robot (robot-of-moment moment simulation)))
     (if (or (moment-x moment) (null robot))
         moment
         (make-moment (moment-tick moment) (moment-kind moment) (moment-text moment)
                      (robot-x robot) (robot-y robot) (robot-name robot)))))
 
-(defun check-robots-of (moments simulation)
+(defun check-moment-robots (moments simulation)
   "Signal WRONG-ARGUMENT unless the robots named in MOMENTS, an argument of SAVE-RUN-PICTURE, are in
 SIMULATION."
   (dolist (moment moments)
-    (when (and (moment-robot moment) (not (robot-of moment simulation)))
+    (when (and (moment-robot moment) (not (robot-of-moment moment simulation)))
       (reject-argument 'save-run-picture :moments (moment-robot moment)
                        (format nil "names of robots of the run, if any: ~{~(~A~)~^, ~}"
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
-(defun watch-run (journal until own)
+(defun replay-for-picture (journal until own)
   "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; lists of the name
 of each robot and the pieces of its way; the moments found; and the user's moments OWN with their
 positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
       (flet ((look (simulation)
-               (setf trails (note-places simulation trails))
+               (setf trails (update-trails simulation trails))
                (funcall watch simulation)
                (dolist (moment own)
                  (when (= (moment-tick moment) (simulation-tick simulation))
-                   (push (place-moment moment simulation) placed)))))
+                   (push (moment-with-position moment simulation) placed)))))
         (call-with-replay
          (lambda ()
-           (check-robots-of own (current-simulation))
+           (check-moment-robots own (current-simulation))
            (values (take-snapshot (simulation-world (current-simulation)))
-                   (loop for trail in (reverse (note-places (current-simulation) trails))
-                         collect (cons (robot-name (trail-robot trail)) (pieces-along trail)))
+                   (loop for trail in (reverse (update-trails (current-simulation) trails))
+                         collect (cons (robot-name (trail-robot trail))
+                                       (trail-pieces-in-order trail)))
                    (append (funcall seen) (moments-in-remarks journal until))
                    (reverse placed)))
          journal :until until :observer #'look :beginning #'look)))))
 
 ;;; Ways.
 
-(defun moved-p (way)
+(defun way-moved-p (way)
   "True if WAY, a list of a robot's name and pieces, has more than one point or piece."
   (and (or (cddr way) (rest (second way))) t))
 
 (defun draw-robot-ways (canvas ways)
   "Draw WAYS, lists of a robot's name and the pieces of its way, in the order of the robots."
   (let* ((moved (loop for way in ways for position from 0
-                      when (moved-p way)
+                      when (way-moved-p way)
                         collect (cons position (pieces-in-pixels (rest way))))))
     (draw-way-lines canvas (loop for (position . pieces) in moved
                                  collect (make-way-line position pieces)))
     (draw-way-marks canvas (loop for (position (x y)) in moved
                                  collect (list 'draw-way-start x y (nth-ink position))))))
 
-(defconstant +tile+ 6 "The side of the boxes that cover a line, in pixels.")
+(defconstant +tile-size+ 6 "The side of the boxes that cover a line, in pixels.")
 
 (defun boxes-along (points)
   "Return a list of boxes that together cover the line through POINTS, x y ... in pixels."
   (let ((tiles (make-hash-table :test #'equal)))
     (loop for (x y next-x next-y) on points by #'cddr
           while next-y
-          do (loop for (x y) in (points-along x y next-x next-y (/ +tile+ 2))
-                   do (setf (gethash (cons (floor x +tile+) (floor y +tile+)) tiles) t)))
+          do (loop for (x y) in (points-along x y next-x next-y (/ +tile-size+ 2))
+                   do (setf (gethash (cons (floor x +tile-size+) (floor y +tile-size+)) tiles) t)))
     (loop for (column . row) being the hash-keys of tiles
-          collect (list (* +tile+ column) (* +tile+ row)
-                        (* +tile+ (1+ column)) (* +tile+ (1+ row))))))
+          collect (list (* +tile-size+ column) (* +tile-size+ row)
+                        (* +tile-size+ (1+ column)) (* +tile-size+ (1+ row))))))
 
 (defun moved-robot-entry (name position)
   "Return an entry of the legend for the robot NAME and its way. POSITION is the position of the
@@ -99,18 +100,18 @@ visible."
         for way in ways
         for position from 0
         for name = (first way)
-        if (and (moved-p way) (way-visible-p (pieces-in-pixels (rest way)) box))
+        if (and (way-moved-p way) (way-visible-p (pieces-in-pixels (rest way)) box))
           collect (moved-robot-entry (drawn-name name) position)
         else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
                collect (robot-entry (drawn-name name) position)))
 
 (defun start-seen-p (way snapshot)
   "True if the ring at the start of WAY is visible in the part of the map that SNAPSHOT shows."
-  (and (moved-p way)
+  (and (way-moved-p way)
        (destructuring-bind (x . y) (first (second way))
          (way-visible-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
 
-(defun run-entries (snapshot ways spots)
+(defun run-legend-entries (snapshot ways spots)
   "Return the entries of the legend for WAYS and SPOTS of a run. SNAPSHOT shows the end of the run."
   (append (robot-entries-with-ways snapshot ways)
           (when (some (lambda (way) (start-seen-p way snapshot)) ways)
@@ -146,7 +147,7 @@ pixels wide. Return the Y below the last note."
                (incf y +note-step+)))
     y))
 
-(defun moments-in (part moments)
+(defun moments-in-part (part moments)
   "Return a list of the MOMENTS that have no position or are in PART (left top right bottom) of the
 map; and a list of the others. If PART is NIL, return MOMENTS."
   (flet ((elsewhere-p (moment)
@@ -161,12 +162,12 @@ map; and a list of the others. If PART is NIL, return MOMENTS."
 (defun spots-and-notes-in (part moments limit several-p reach)
   "Return the values of SPOTS-AND-NOTES for the MOMENTS in PART, with an additional note that counts
 the other moments."
-  (multiple-value-bind (moments others) (moments-in part moments)
+  (multiple-value-bind (moments others) (moments-in-part part moments)
     (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
       (values spots
               (append notes (not-shown-note "Not shown, outside of this part" others))))))
 
-(defun run-picture-text (snapshot ways moments &key limit title subtitle layers in-color scale)
+(defun run-picture-svg (snapshot ways moments &key limit title subtitle layers in-color scale)
   "Return an SVG document that shows a run with WAYS and MOMENTS. SNAPSHOT shows the end of the
 run."
   (multiple-value-bind (spots notes)
@@ -174,7 +175,7 @@ run."
                           (and (rest ways) t)
                           ;; Rings nearer than this would look like one.
                           (/ (* 2 +ring-radius+) (drawn-scale scale snapshot layers)))
-    (let ((more (run-entries snapshot ways spots)))
+    (let ((more (run-legend-entries snapshot ways spots)))
       (with-output-to-string (out)
         (with-map-svg (canvas out snapshot :layers layers :in-color in-color :scale scale)
           (multiple-value-bind (width height left)
@@ -186,7 +187,7 @@ run."
                       (draw-notes canvas notes (max 8 left) (+ height 16)
                                   (- width left 16))))))))))
 
-(defun check-run-picture (journal moments until &key kinds limit title layers scale)
+(defun check-run-picture-arguments (journal moments until &key kinds limit title layers scale)
   "Check the arguments of SAVE-RUN-PICTURE. Return MOMENTS as a list of moments. Signals
 WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
@@ -223,13 +224,14 @@ SAVE-PICTURE. Signals WRONG-ARGUMENT, the errors of REPLAY, and MISUSE without t
 needs or if there is no journal."
   (let* ((kind (picture-kind 'save-run-picture file))
          (journal (resolve-journal journal 'save-run-picture))
-         (own (check-run-picture journal moments until :kinds kinds :limit limit :title title
+         (own (check-run-picture-arguments journal moments until
+                                           :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
-    (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (watch-run journal until own))
+    (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (replay-for-picture journal until own))
       (save-svg (with-broken-graphics-reported
-                  (run-picture-text (snapshot-of-part snapshot part 'save-run-picture) ways
+                  (run-picture-svg (snapshot-of-part snapshot part 'save-run-picture) ways
                                     (sort-moments (append (moments-of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
-                                    :subtitle (and anyway (repeated-words journal))
+                                    :subtitle (and anyway (changed-definitions-sentence journal))
                                     :in-color in-color :scale scale))
                 file kind))))

@@ -70,7 +70,7 @@ ticks, or with all ticks if MOST is NIL."
                 (ticks-text (sort (mapcar #'moment-tick (moment-group-moments group)) #'<) most)
                 (moment-group-words group))))
 
-(defparameter *kind-words*
+(defparameter *moment-kind-nouns*
   '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
     (:stow "thing stowed" "things stowed") (:failure "failure of a command" "failures of commands")
     (:plan "plan that failed or was ended" "plans that failed or were ended")
@@ -84,7 +84,7 @@ list if there are no MOMENTS."
   (when moments
     (list (list nil (format nil "~A: ~{~A~^, ~}."
                             words
-                            (loop for (kind one several) in *kind-words*
+                            (loop for (kind one several) in *moment-kind-nouns*
                                   for count = (count kind moments :key #'moment-kind)
                                   when (plusp count)
                                     collect (format nil "~D ~A" count
@@ -99,7 +99,7 @@ list if there are no MOMENTS."
 (defconstant +longest-reason+ 40 "The largest number of characters of the reason why a plan
 failed.")
 
-(defun short-reason (reason)
+(defun shorten-reason (reason)
   "Return REASON, a text about why a plan failed, abridged and without code."
   (let* ((prefix "Plan failure ")
          (own-p (eql 0 (search prefix reason)))
@@ -116,15 +116,16 @@ failed.")
                     (why (and at (list (moment-robot moment) (subseq text at)))))
                (cond ((not (and at (member (moment-kind moment) '(:plan :part)))) moment)
                      ((and (eq :plan (moment-kind moment)) (member why told :test #'equal))
-                      (moment-with-text moment (format nil "~Afailed by that" (subseq text 0 at))))
+                      (copy-moment-with-text moment
+                        (format nil "~Afailed by that" (subseq text 0 at))))
                      (t (push why told)
-                        (moment-with-text moment
+                        (copy-moment-with-text moment
                           (format nil "~A~A~A" (subseq text 0 at) +reason-mark+
-                                  (short-reason (subseq text
+                                  (shorten-reason (subseq text
                                                         (+ at (length +reason-mark+)))))))))))
       (mapcar #'brief moments))))
 
-(defun moment-with-text (moment text)
+(defun copy-moment-with-text (moment text)
   (make-moment (moment-tick moment) (moment-kind moment) text (moment-x moment) (moment-y moment)
                (moment-robot moment) (moment-code moment)))
 
@@ -180,7 +181,7 @@ thing lies at the spot, for example because it was released there, the ring is a
                   collect (box (thing-image-x image) (thing-image-y image)
                                (max 4 (to-pixels 1/2)))))))
 
-(defun places-around (x y radius)
+(defun number-positions-around (x y radius)
   "Return a list of points (x y), the nearest first, at which the number of a spot at X, Y with a
 ring of RADIUS could be drawn."
   (loop for distance in '(12 20 30 42 56)
@@ -188,7 +189,7 @@ ring of RADIUS could be drawn."
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))
                      collect (point-at-distance x y angle (+ radius distance)))))
 
-(defun free-place-p (place shown taken)
+(defun free-position-p (place shown taken)
   "True if a number at PLACE, a point (x y), is inside the box SHOWN and does not overlap any of the
 boxes TAKEN."
   (destructuring-bind (x y) place
@@ -197,7 +198,7 @@ boxes TAKEN."
            (every #'>= (subseq shown 2) (subseq box 2))
            (notany (lambda (other) (overlap-p box other)) taken)))))
 
-(defun move-inside (shown place)
+(defun nearest-position-inside (shown place)
   "Return the point nearest to PLACE at which a number is completely inside the box SHOWN. If SHOWN
 is too small, return its middle."
   (let ((reach (1+ +number-radius+)))
@@ -207,14 +208,14 @@ is too small, return its middle."
                  (clamp at (+ low reach) (- high reach)))))
       (mapcar #'within place shown (subseq shown 2)))))
 
-(defun place-for-number (shown x y radius taken rather-not)
+(defun number-position (shown x y radius taken rather-not)
   "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS. The number is
 inside the box SHOWN and, if possible, does not overlap the boxes TAKEN and RATHER-NOT; TAKEN are
 more important."
-  (let ((places (places-around x y radius)))
-    (flet ((free (taken) (find-if (lambda (place) (free-place-p place shown taken)) places)))
+  (let ((places (number-positions-around x y radius)))
+    (flet ((free (taken) (find-if (lambda (place) (free-position-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
-          (move-inside shown (first places))))))
+          (nearest-position-inside shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
   "Draw a ring of RADIUS around the spot at X, Y, its number TEXT at PLACE, and a line between
@@ -233,7 +234,7 @@ list of the boxes around the numbers."
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
              (radius (ring-radius snapshot x y))
-             (place (place-for-number (pixels-of (shown-part snapshot)) x y radius
-                                      (append boxes spared) ways)))
+             (place (number-position (pixels-of (shown-part snapshot)) x y radius
+                                     (append boxes spared) ways)))
         (push (box-around (first place) (second place) +number-radius+) boxes)
         (draw-spot canvas x y radius place (princ-to-string (spot-number spot)))))))

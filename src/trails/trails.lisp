@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.trails)
 
-(export '(note-places ways-along straightened))
+(export '(update-trails trails-to-ways simplify-line))
 
 (define-record (way (:constructor make-way (trial outcome pieces)))
   "The way that a robot went in a trial."
@@ -21,40 +21,41 @@ or NIL" :writable)
   (pieces '() list "the pieces, like those of a way, but the latest piece first and in each piece
 the latest point first" :writable))
 
-(defun note-point (trail x y)
+(defun extend-trail (trail x y)
   "Extend the last piece of TRAIL to X, Y."
   (unless (equal (cons x y) (first (first (trail-pieces trail))))
     (push (cons x y) (first (trail-pieces trail)))))
 
-(defun note-placement (trail)
+(defun begin-trail-piece (trail)
   "Begin a new piece of TRAIL at the point where its robot has been put. The robot may have driven
 on since then."
   (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
     (setf (trail-placements trail) (robot-placements robot))
     (push '() (trail-pieces trail))
-    (when begun-p (note-point trail (robot-put-x robot) (robot-put-y robot)))))
+    (when begun-p (extend-trail trail (robot-put-x robot) (robot-put-y robot)))))
 
-(defun note-place (trail)
+(defun update-trail (trail)
   (let ((robot (trail-robot trail)))
-    (unless (eql (trail-placements trail) (robot-placements robot)) (note-placement trail))
-    (note-point trail (robot-x robot) (robot-y robot))))
+    (unless (eql (trail-placements trail) (robot-placements robot)) (begin-trail-piece trail))
+    (extend-trail trail (robot-x robot) (robot-y robot))))
 
-(defun note-places (simulation trails)
+(defun update-trails (simulation trails)
   "Add the current positions of the robots of SIMULATION to TRAILS, a list of their trails. A robot
 without a trail gets one at the front. Return the list."
   (dolist (robot (simulation-robots simulation) trails)
-    (note-place (or (find robot trails :key #'trail-robot)
-                    (first (push (make-trail robot) trails))))))
+    (update-trail (or (find robot trails :key #'trail-robot)
+                      (first (push (make-trail robot) trails))))))
 
-(defun pieces-along (trail)
+(defun trail-pieces-in-order (trail)
   (reverse (mapcar #'reverse (trail-pieces trail))))
 
-(defun ways-along (trails trial outcome)
+(defun trails-to-ways (trails trial outcome)
   "Return the ways of the trial TRIAL, which ended with OUTCOME, from TRAILS, a value of
-NOTE-PLACES. A trial without trails, which failed at once, has one way without points, so that the
+UPDATE-TRAILS. A trial without trails, which failed at once, has one way without points, so that the
 trial is counted."
   (if trails
-      (loop for trail in (reverse trails) collect (make-way trial outcome (pieces-along trail)))
+      (loop for trail in (reverse trails) collect (make-way trial outcome
+                                                          (trail-pieces-in-order trail)))
       (list (make-way trial outcome '()))))
 
 ;;; A way has a point for each tick. Nearly straight parts need only their ends.
@@ -69,7 +70,7 @@ are equal."
                       (clamp (/ (+ (* dx (- x x1)) (* dy (- y y1))) square) 0 1))))
       (sqrt (+ (expt (- x x1 (* share dx)) 2) (expt (- y y1 (* share dy)) 2))))))
 
-(defun straightened (points tolerance)
+(defun simplify-line (points tolerance)
   "Return a simplified line: a list of some of POINTS, such that all other points are at most
 TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (let ((points (coerce points 'simple-vector)) (kept '()))
@@ -92,7 +93,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
 (defun pieces-in-pixels (pieces)
   "Return the PIECES of a way as lists x y ... in pixels, simplified for drawing."
   (loop for piece in pieces
-        collect (loop for (x . y) in (straightened piece (/ 1/2 graphics-scale*))
+        collect (loop for (x . y) in (simplify-line piece (/ 1/2 graphics-scale*))
                       collect (to-pixels x) collect (to-pixels y))))
 
 ;;;; A run as a table
@@ -137,7 +138,7 @@ robots with these names."
              (write-rows simulation names out))))
     (call-with-replay (constantly nil) journal :until until :observer #'look :beginning #'look)))
 
-(defun check-trajectory (file every until robots journal)
+(defun check-trajectory-arguments (file every until robots journal)
   (check-argument save-trajectory file
                   (and (typep file '(or string pathname)) (not (many-files-p file))
                        (pathname-name file))
@@ -167,7 +168,7 @@ FILE may be new, empty, or a table that SAVE-TRAJECTORY has written, which is re
 WRONG-ARGUMENT, UNKNOWN-NAME, the errors of REPLAY, and MISUSE if there is no journal, or if FILE is
 another file or cannot be written. After an error FILE is unchanged."
   (let ((journal (resolve-journal journal 'save-trajectory)) (robots (ensure-list robots)))
-    (check-trajectory file every until robots journal)
+    (check-trajectory-arguments file every until robots journal)
     (check-not-foreign file :trajectory "trajectory")
     (let ((text (with-output-to-string (out)
                   (replaying (anyway)

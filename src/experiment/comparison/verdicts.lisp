@@ -8,7 +8,7 @@
 
 (defun decimals-of-second-digit (size)
   "Return the position after the decimal point of the second significant digit of SIZE."
-  (- 1 (power-of-ten (rational size))))
+  (- 1 (decimal-exponent (rational size))))
 
 (defun useful-decimals (difference)
   "Return the number of decimals to which the numbers of DIFFERENCE, a difference of means, are
@@ -26,9 +26,9 @@ rounded."
 
 (defun scientific-text (number decimals)
   "Return the text of NUMBER with a power of ten, rounded to DECIMALS decimals."
-  (let* ((power (power-of-ten number))
+  (let* ((power (decimal-exponent number))
          (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
-    (format nil "~Ae~D" (without-zeros text) power)))
+    (format nil "~Ae~D" (strip-trailing-zeros text) power)))
 
 (defun mean-text (value decimals)
   "Return the text of VALUE, rounded to DECIMALS decimals; with a power of ten if it is far from 1."
@@ -37,7 +37,7 @@ rounded."
     (cond ((and (zerop number) (< 9 decimals)) "0")
           ;; A small number beside very large ones is not written as 0.
           ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
-          ((or (zerop number) (<= -6 (power-of-ten number) 14))
+          ((or (zerop number) (<= -6 (decimal-exponent number) 14))
            (decimal-text number (max 0 decimals)))
           (t (scientific-text number decimals)))))
 

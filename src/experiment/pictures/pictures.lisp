@@ -72,7 +72,7 @@ or the directory cannot be made."
   "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the paths of the trial's robots."
   (let ((trails '()) (watched-p nil))
     (flet ((look (simulation)
-             (setf trails (note-places simulation trails))))
+             (setf trails (update-trails simulation trails))))
       (let ((result (run-trial experiment condition trial
                                :gate (lambda (simulation)
                                        (unless watched-p
@@ -80,7 +80,7 @@ or the directory cannot be made."
                                          (look simulation)
                                          (add-observer #'look simulation))
                                        +largest+))))
-        (ways-along trails trial (result-outcome result))))))
+        (trails-to-ways trails trial (result-outcome result))))))
 
 (defun ways-of-trials (experiment condition trials)
   (prepare-trials experiment condition)
@@ -129,7 +129,7 @@ missing."
                    (call-in-trial (lambda ()
                                     (take-snapshot (simulation-world (current-simulation))))
                                   experiment condition (first trials))))))
-    (apply #'save-bundle 'save-ways-picture "trial" file start
+    (apply #'save-picture-of-ways 'save-ways-picture "trial" file start
            (lambda () (ways-of-trials experiment condition trials))
            (or (question-of (experiment-name experiment))
                (string-downcase (experiment-name experiment)))

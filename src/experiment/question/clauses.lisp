@@ -46,10 +46,11 @@
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
                  (value (exponential (+ start (* share (- (logarithm (float high 1d0)) start))))))
-            (round-to-power-of-ten value (- (power-of-ten (rational value)) (1- +design-digits+)))))
+            (round-to-power-of-ten value (- (decimal-exponent (rational value))
+                                            (1- +design-digits+)))))
     ((nil) (let ((width (- (rational high) (rational low))))
              (round-to-power-of-ten (+ (rational low) (* (rational share) width))
-                                    (- (power-of-ten width) (1- +design-digits+)))))))
+                                    (- (decimal-exponent width) (1- +design-digits+)))))))
 
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists

@@ -149,7 +149,7 @@ are too large or too small for four digits."
   (let ((largest (reduce #'max numbers :key #'abs :initial-value 0)))
     (cond ((every (lambda (number) (= number (round number))) numbers) (if (< largest 1e9) 0 nil))
           ((not (< 1/1000 largest 1e9)) nil)
-          (t (max 0 (- 3 (power-of-ten (rational largest))))))))
+          (t (max 0 (- 3 (decimal-exponent (rational largest))))))))
 
 (defun number-formatter-for (numbers)
   (let ((decimals (decimals-for numbers)))

@@ -140,7 +140,7 @@ reason deadlock."
 
 (defun no-ticks-text ()
   "Return a sentence if no tick has passed in this trial although commands were given; else NIL."
-  (let ((undone (and (zerop (simulation-tick)) (undone-text (current-simulation)))))
+  (let ((undone (and (zerop (simulation-tick)) (undone-requests-text (current-simulation)))))
     (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
 
 (defun note-unfinished (result values)
