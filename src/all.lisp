@@ -2,5 +2,5 @@
 
 (in-package :ars-magna.faces)
 
-(fill-faces)
+(export-marked-names)
 (lock-packages)

@@ -5,7 +5,7 @@
 ;;; What they export is marked where it is defined, by PUBLIC and ADDITION. The system ARS-MAGNA
 ;;; marks more than its core: see src/all.lisp.
 
-(fill-faces)
+(export-marked-names)
 
 (define-user-package :ars-user
   (:documentation "The package to work in. It uses Common Lisp, ARS and NISP; XLIB is a nickname of

@@ -16,7 +16,7 @@ servers call."
          for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
          when (and symbol (fboundp symbol)) collect symbol)))
 
-(defun joined-p (inspector)
+(defun inspector-extended-p (inspector)
   "True if the generic function INSPECTOR already has the simulator's method."
   (find-method (fdefinition inspector) '(:around) (list (find-class 'structure-object)) nil))
 
@@ -27,7 +27,7 @@ servers call."
   (list (format nil "  ~(~22A~) " name) (list :value value) (format nil "~@[  ~A~]" text)
         '(:newline)))
 
-(defun window-of (object)
+(defun inspector-contents (object)
   "Return the contents of the inspector's window for OBJECT: its properties, as of FACTS, then its
 slots."
   (append (list (prin1-to-string object) '(:newline))
@@ -36,7 +36,7 @@ slots."
                 append (list* (format nil "~A:" title) '(:newline)
                               (loop for slot in slots append (apply #'slot-line slot))))))
 
-(defun known-object-p (object)
+(defun describable-p (object)
   "True if the simulator can describe OBJECT: it is of a kind, or has FACTS."
   (and (or (kind-of object) (facts object)) t))
 
@@ -48,9 +48,9 @@ server, SWANK or SLYNK, was loaded later. Return a list of the names of the serv
 were found."
   (loop for inspector in (inspectors)
         collect (package-name (symbol-package inspector))
-        unless (joined-p inspector)
+        unless (inspector-extended-p inspector)
           do (eval `(defmethod ,inspector :around ((object structure-object))
-                      (if (known-object-p object) (window-of object) (call-next-method))))))
+                      (if (describable-p object) (inspector-contents object) (call-next-method))))))
 
 (join-editors)
 
@@ -101,7 +101,7 @@ lists."
 
 (wrap-function 'inspect
                (lambda (inspect object)
-                 (if (known-object-p object)
+                 (if (describable-p object)
                      (inspect-briefly inspect object)
                      (funcall inspect object))))
 
@@ -139,4 +139,4 @@ lists."
       (when (and hooks (boundp hooks))
         (setf (global-value hooks) (adjoin 'note-editor-gone (global-value hooks)))))))
 
-(attend *inquiry-hooks* watch-editors)
+(add-listener *inquiry-hooks* watch-editors)

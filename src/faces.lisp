@@ -8,7 +8,7 @@ all layers.")
 
 (in-package :ars-magna.faces)
 
-(defun tell-addition (symbol)
+(defun document-addition (symbol)
   "Append the remark that SYMBOL is an addition to the manual to all documentation strings of
 SYMBOL."
   (dolist (kind '(function variable type))
@@ -19,7 +19,7 @@ SYMBOL."
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
 ;;; function can be set and is not marked as SETTABLE, a face has its own symbol for it.
 
-(defun only-read-p (symbol)
+(defun read-only-for-users-p (symbol)
   "True if users may call the function named SYMBOL but not SETF it. (The simulator's layers may.)"
   (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
 
@@ -32,27 +32,27 @@ function."
                  PLACE-ROBOT, MOVE-THING and SET-ATTRIBUTE, which the journal records."
                 symbol)))
 
-(defun own-symbol-in (face name)
+(defun ensure-own-symbol (face name)
   "Return the symbol named NAME whose home is the package FACE."
   (let ((present (find-symbol name face)))
     (unless (or (null present) (eq (find-package face) (symbol-package present)))
       (unintern present face))
     (intern name face)))
 
-(defun reader-in (symbol face)
+(defun read-only-symbol (symbol face)
   "Return a symbol, whose home is the package FACE, that names the same function as SYMBOL. Users
 cannot SETF it."
-  (let ((reader (own-symbol-in face (symbol-name symbol))))
+  (let ((reader (ensure-own-symbol face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)
           (fdefinition `(setf ,reader)) (reject-setting symbol))
     reader))
 
-(defun show (symbol face)
+(defun export-symbol (symbol face)
   "Make the package FACE export SYMBOL. If users must not SETF the function SYMBOL, export a symbol
 of FACE that names the same function."
-  (when (addition-p symbol) (tell-addition symbol))
-  (let ((shown (if (only-read-p symbol) (reader-in symbol face) symbol)))
+  (when (addition-p symbol) (document-addition symbol))
+  (let ((shown (if (read-only-for-users-p symbol) (read-only-symbol symbol face) symbol)))
     (shadowing-import (list shown) face)
     (export (list shown) face)))
 
@@ -70,47 +70,47 @@ extended versions."))
   "The packages for users, with their documentation. Each exports the symbols that are marked for
 it.")
 
-(defun fill-all-faces ()
+(defun export-all-marked-names ()
   "Make the packages ARS and NISP export the symbols that are marked for them."
   (loop for (face . documentation) in *faces*
         do (unlock-package (ensure-face face documentation))
            (dolist (symbol (public-symbols face))
-             (show symbol face))))
+             (export-symbol symbol face))))
 
-(defmacro fill-faces ()
+(defmacro export-marked-names ()
   "Define the packages ARS and NISP. They export the symbols that are marked when this form is
 evaluated (see PUBLIC). See reading 29."
   '(eval-when (:compile-toplevel :load-toplevel :execute)
-     (fill-all-faces)))
+     (export-all-marked-names)))
 
 ;;; Locks. A user who by accident defines a function, type or variable called as one of ours is told
 ;;; so, instead of changing the simulator.
 
-(defparameter *open-packages*
+(defparameter *unlocked-packages*
   '("ARS-MAGNA.SLOTS" "ARS-MAGNA.BUILD" "ARS-MAGNA.TESTS" "ARS-MAGNA.CLI" "ARS-MAGNA.CLIM"
     "ARS-MAGNA.FIVEAM" "ARS-MAGNA.MANUAL")
   "Packages of the project that are not locked, because users' packages do not use them.")
 
-(defun our-packages ()
+(defun packages-to-lock ()
   "Return a list of the packages to lock: ARS, NISP and the packages of the layers. The packages of
 slot accessors and of tools are not locked."
   (remove-if-not (lambda (package)
                    (let ((name (package-name package)))
                      (or (member name '("ARS" "NISP") :test #'string=)
                          (and (starts-with-subseq "ARS-MAGNA." name)
-                              (not (member name *open-packages* :test #'string=))))))
+                              (not (member name *unlocked-packages* :test #'string=))))))
                  (list-all-packages)))
 
 (defun lock-packages ()
   "Lock the simulator's packages, so that users cannot redefine its functions. Later definitions are
 not marked as the simulator's."
   (setf *marking-p* nil)
-  (mapc #'lock-package (our-packages)))
+  (mapc #'lock-package (packages-to-lock)))
 
 (defun unlock-packages ()
   "Unlock the simulator's packages, so that the system can be loaded again."
   (setf *marking-p* t)
-  (mapc #'unlock-package (our-packages)))
+  (mapc #'unlock-package (packages-to-lock)))
 
 ;;; The prompt is a separate system, which nothing here depends on.
 

@@ -21,7 +21,7 @@ MALFORMED-DEFINITION if one does not exist."
                              missing))))
   (mapcar #'find-package names))
 
-(defun standard-named (name)
+(defun standard-symbol (name)
   "Return the symbol of Common Lisp named NAME, or NIL."
   (multiple-value-bind (symbol status) (find-symbol name :cl)
     (and (eq status :external) symbol)))
@@ -30,7 +30,7 @@ MALFORMED-DEFINITION if one does not exist."
   "Return a list of the names for which PACKAGE exports another symbol than Common Lisp does."
   (let ((names '()))
     (do-external-symbols (symbol package names)
-      (unless (member (standard-named (symbol-name symbol)) (list nil symbol))
+      (unless (member (standard-symbol (symbol-name symbol)) (list nil symbol))
         (push (symbol-name symbol) names)))))
 
 (defun shadowing-options (packages settled)
@@ -48,7 +48,7 @@ symbols. If several packages extend a name, the last one is used. The names SETT
           (loop for (key nil . names) in options
                 when (eq key :shadowing-import-from) append names)))
 
-(defun clashes (packages settled)
+(defun conflicting-names (packages settled)
   "Return a list of the names under which PACKAGES export different symbols, without the names
 SETTLED."
   (let ((symbols (make-hash-table :test #'equal)))
@@ -67,7 +67,7 @@ SETTLED."
 (defun check-clashes (definition packages settled)
   "Signal MALFORMED-DEFINITION if PACKAGES export different symbols under a name that is not in
 SETTLED."
-  (let ((names (clashes packages settled)))
+  (let ((names (conflicting-names packages settled)))
     (when names
       (let ((package (package-exporting (first names) packages)))
         (reject-clause definition (cons :use (mapcar #'package-name packages))
@@ -125,6 +125,6 @@ the package. See reading 213."
 
 (defun greet ()
   "If a user has typed the form that loaded the system, print how to begin."
-  (when (and (null *load-truename*) (null *compile-file-truename*) (debugger-p))
+  (when (and (null *load-truename*) (null *compile-file-truename*) (debugger-available-p))
     (format t "~&; ARS MAGNA is loaded. To begin, type (in-package :ars-user), then (in-readtable ~
                :nisp).~%; (ars:define-user-package :mine) makes a package of your own.~%")))

@@ -84,7 +84,7 @@ argument of."
           ;; The name that DEFSTRUCT gives its readers' parameter.
           (and (typep parameters '(cons symbol null))
                (string= "INSTANCE" (first parameters))
-               (host:lisps-own-p (first parameters)))))))
+               (host:lisp-symbol-p (first parameters)))))))
 
 (defun shown-lambda-list (symbol)
   "Return the lambda list of the function SYMBOL. Of a generic one, its code has none of its own."

@@ -190,13 +190,13 @@
     (:no-error (name) (fail "~S was found" name))))
 
 (test versions.that-were-not-tried-are-told
-  (is (null (host:untried-host-text "2.2.9.debian")))
-  (is (null (host:untried-host-text "2.4")))
-  (is (search "newer" (host:untried-host-text "2.6.5")))
-  (is (search "newer" (host:untried-host-text "2.10.0-abc")))
-  (is (search "newer" (host:untried-host-text "3")))
-  (is (search "older" (host:untried-host-text "2.2.8")))
-  (is (search "older" (host:untried-host-text "1.5.9"))))
+  (is (null (host:untested-version-text "2.2.9.debian")))
+  (is (null (host:untested-version-text "2.4")))
+  (is (search "newer" (host:untested-version-text "2.6.5")))
+  (is (search "newer" (host:untested-version-text "2.10.0-abc")))
+  (is (search "newer" (host:untested-version-text "3")))
+  (is (search "older" (host:untested-version-text "2.2.8")))
+  (is (search "older" (host:untested-version-text "1.5.9"))))
 
 (test implementation.names-are-found-in-code
   (is (equal '("sb-ext:gc" "sb-posix" "sb-c")

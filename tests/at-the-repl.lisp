@@ -196,7 +196,7 @@ listing what it is given and what it takes for the buffer's package."
   "Return the rows of the trajectory that SAVE-TRAJECTORY writes, given ARGUMENTS."
   (uiop:with-temporary-file (:pathname path :type "csv")
     (apply #'trails:save-trajectory path arguments)
-    (mapcar #'base:csv-texts (file-lines path))))
+    (mapcar #'base:csv-fields (file-lines path))))
 
 (test trajectories.say-where-robots-were
   (with-skater (:journal t)

@@ -13,14 +13,14 @@
 
 (test paths.know-the-home-directory
   (let ((home (user-homedir-pathname)))
-    (is (equal home (base:path-called "~")))
-    (is (equal (merge-pathnames "x.svg" home) (base:path-called "~/x.svg")))
-    (is (equal (merge-pathnames "results/" home) (base:path-called "~/results" :directory t)))
-    (is (string= "a~b" (base:native-name (base:path-called "a~b"))))))
+    (is (equal home (base:path-of-name "~")))
+    (is (equal (merge-pathnames "x.svg" home) (base:path-of-name "~/x.svg")))
+    (is (equal (merge-pathnames "results/" home) (base:path-of-name "~/results" :directory t)))
+    (is (string= "a~b" (base:native-name (base:path-of-name "a~b"))))))
 
 (test files.that-cannot-be-written-are-told-of-in-a-sentence
-  (handler-case (base:write-file-anew (lambda (out) (write-string "x" out))
-                                      (base:native-path "/no/such/directory/x") "the picture")
+  (handler-case (base:overwrite-file (lambda (out) (write-string "x" out))
+                                     (base:native-path "/no/such/directory/x") "the picture")
     (base:misuse (condition)
       (is (string= (format nil "The picture cannot be written to /no/such/directory/x: there is ~
                                 no such directory. An existing file is unchanged; give the name of ~
@@ -31,7 +31,7 @@
 (test files.whose-names-stand-for-many-are-refused-for-that
   "Also those that Lisp cannot take for a pathname."
   (dolist (name '("a*b" "no/such/x?" "a[b" "a?[b"))
-    (handler-case (base:write-file-anew (lambda (out) (write-string "x" out)) name "the picture")
+    (handler-case (base:overwrite-file (lambda (out) (write-string "x" out)) name "the picture")
       (base:misuse (condition)
         (is (search (format nil "written to ~A: its name has wildcards; in a Lisp string" name)
                     (princ-to-string condition))))
@@ -41,7 +41,7 @@
   "A file that is made for a while, and a stream, are nothing that a user knows."
   (flet ((reason (function)
            (handler-case (progn (funcall function) nil)
-             (error (trouble) (base:unwritten-reason trouble)))))
+             (error (trouble) (base:write-failure-text trouble)))))
     (is (string= "no file can be made in that directory"
                  (reason (lambda () (open "/proc/self/x-tmp" :direction :output)))))
     (flet ((fill-device ()
@@ -110,8 +110,8 @@
 (test atomic.swaps-only-what-is-there
   (let ((shared (make-shared :list '(1))) (list (list 2)))
     (is (equal '(0 1) (base:atomic-push 0 (shared-list shared))))
-    (is-false (base:swap-if (shared-list shared) nil list))
-    (is-true (base:swap-if (shared-list shared) (shared-list shared) list))
+    (is-false (base:swap-if-eq (shared-list shared) nil list))
+    (is-true (base:swap-if-eq (shared-list shared) (shared-list shared) list))
     (is (eq list (base:compare-and-swap (shared-list shared) list '())))
     (is (null (shared-list shared)))))
 
@@ -132,13 +132,13 @@
   (uiop:with-temporary-file (:pathname old)
     (let ((new (base:native-path (format nil "~A [new]*" (base:native-name old)))))
       (with-open-file (out new :direction :output) (write-string "new" out))
-      (is-true (base:plain-file-p new))
+      (is-true (base:regular-file-p new))
       (base:replace-file old new)
       (is (string= "new" (base:read-file-into-string old)))
       (is (null (base:existing-path new)))
       (signals error (base:replace-file old new))
-      (signals error (base:plain-file-p new))))
-  (is-false (base:plain-file-p (uiop:temporary-directory))))
+      (signals error (base:regular-file-p new))))
+  (is-false (base:regular-file-p (uiop:temporary-directory))))
 
 (test commands.run-and-answer
   (is (equal '(0 "two words") (multiple-value-list
@@ -158,7 +158,7 @@
 
 (test files.without-use-are-refused-in-words
   (loop for (name . words) in '(("" . "no name") ("/no/such/file" . "no such file")
-                                ("/tmp/" . "a directory") ("/tmp/a*.jrn" . "many files"))
+                                ("/tmp/" . "a directory") ("/tmp/a*.jrn" . "wildcards"))
         do (is (search words (base:unusable-file-text name)))
            (signals run:damaged-journal (run:read-journal name))))
 
@@ -168,7 +168,7 @@
      #'princ (base:native-path (format nil "/tmp/a~C" (code-char #xFFFD))))))
 
 (defun write-word (file)
-  (base:write-file-anew (lambda (out) (write-string "word" out)) file "the word"))
+  (base:overwrite-file (lambda (out) (write-string "word" out)) file "the word"))
 
 (test files.with-write-protection-are-not-replaced
   "Also by the superuser, who may write any."
@@ -201,7 +201,7 @@
   (call-in-directory
    (lambda (directory)
      (let* ((host (machine-instance)) (dead 999999999)
-            (mine (format nil "ars-magna-~A-~D-TMP1" host (base:process-number)))
+            (mine (format nil "ars-magna-~A-~D-TMP1" host (base:process-id)))
             (others (list mine (format nil "ars-magna-~A-" host)
                           (format nil "ars-magna-x~A-~D-TMP1" host dead) "ars-magna-1")))
        (dolist (name (cons (format nil "ars-magna-~A-~D-TMPX" host dead) others))
@@ -237,7 +237,7 @@
 
 (test room.is-there-when-it-was-made
   (let ((octets (floor (sb-ext:bytes-consed-between-gcs) 2)))
-    (base:make-room octets)
+    (base:collect-garbage-early octets)
     (let ((collections (host:collections))
           (made (loop repeat (floor octets 200000) collect (make-string 25000))))
       (is (plusp (length made)))
@@ -256,9 +256,9 @@
                                         (sb-thread:release-foreground)
                                         (base:signal-semaphore left)))
                                     "needs the terminal")))
-    (is-true (base:wait-patiently left 60))
+    (is-true (base:wait-while-serving left 60))
     (base:join-thread thread)
-    (is-false (base:wait-patiently left 0.01))))
+    (is-false (base:wait-while-serving left 0.01))))
 
 (test relative-names.begin-at-one-place-for-the-system-and-for-lisp
   (call-in-directory
@@ -268,11 +268,11 @@
        (base:make-directories #p"a/b/")
        (is-true (uiop:directory-exists-p (merge-pathnames "a/b/" directory)))
        (is-true (base:make-new-directory #p"a/c/"))
-       (let ((file (base:path-called "a/b/words.txt")))
-         (base:write-file-anew (lambda (out) (write-string "some words" out)) file "the text")
+       (let ((file (base:path-of-name "a/b/words.txt")))
+         (base:overwrite-file (lambda (out) (write-string "some words" out)) file "the text")
          (is (null (base:unusable-file-text file)))
          (is (string= "some words" (base:file-text file)))
          (base:truncate-file file 4)
          (is (string= "some" (base:file-text file)))
-         (base:replace-file (base:path-called "a/c/other") file))
+         (base:replace-file (base:path-of-name "a/c/other") file))
        (is-true (base:existing-path (merge-pathnames "a/c/other" directory)))))))

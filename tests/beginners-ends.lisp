@@ -165,7 +165,7 @@
 
 (test compilation-units.are-not-told-of-in-our-threads-when-lisp-is-left
   (flet ((told-p (left-p leaving-p own-p)
-           (let ((host::*leaving-p* leaving-p) (host::*own-thread-p* own-p) (told nil))
+           (let ((host::*exiting-p* leaving-p) (host::*own-thread-p* own-p) (told nil))
              (host::report-unit-end (lambda (left-p) (declare (ignore left-p)) (setf told t))
                                     left-p)
              told)))
@@ -175,7 +175,8 @@
     (is (not (told-p t t t)))))
 
 (test functions.that-the-prompt-calls-otherwise-are-named
-  (is-true (has-words-p (definitions::function-slip-text 'hand-grasp) "write ars:hand-grasp-desig"))
+  (is-true (has-words-p (definitions::undefined-function-text 'hand-grasp)
+                        "write ars:hand-grasp-desig"))
   (is-true (has-words-p (language:advice-on-call 'rpl-hand-grasp)
                         "plans use the function rpl-hand-grasp-desig"))
   (is (null (language:advice-on-call 'driver:rpl-robot-turn))))

@@ -160,7 +160,7 @@
     (run:end-simulation time:*simulation* "it is enough")
     (dolist (function '(driver:run-plan driver:begin-plan))
       (is-true (has-words-p (handler-case (funcall function (plan-of 1))
-                              (base:outlived (condition) (princ-to-string condition))
+                              (base:run-is-over-error (condition) (princ-to-string condition))
                               (:no-error (&rest values) (princ-to-string values)))
                             "is over" "it is enough" "(simulator ROBOT) starts another")))))
 

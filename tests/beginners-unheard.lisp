@@ -78,7 +78,7 @@
 
 (test doubts.are-plain-warnings-but-in-compiled-files
   (flet ((style-p ()
-           (handler-case (base:doubt-definition "perhaps")
+           (handler-case (base:warn-of-style "perhaps")
              (style-warning () t)
              (warning () nil))))
     (is (not (style-p)))
@@ -94,7 +94,7 @@
                    ~{(obj t~D (0.5 0.5) ((:size 1)))~%~})~%"
               (loop for i below 60 collect i))
       :close-stream
-      (is (> 5 (calls-of 'definitions::look-for-definitions
+      (is (> 5 (calls-of 'definitions::find-definitions-in-text
                          (lambda ()
                            (handler-bind ((warning (lambda (warning)
                                                      (incf told)

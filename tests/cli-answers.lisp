@@ -18,14 +18,14 @@
                      (restart-name (first (cli::restarts-to-offer condition)))))
              (invoke-restart 'cli::answer "(a b) 7")))
       (base:with-debugger-hook (#'answer)
-        (let ((stream (base:input-of-programs base:*front-end* (make-string-input-stream ""))))
+        (let ((stream (base:program-input base:*front-end* (make-string-input-stream ""))))
           (is (equal '(a b) (read stream)))
           (is (equal 7 (read stream))))))))
 
 (test answers.are-read-from-elsewhere-where-nobody-sits
   (let ((cli::*session* nil))
-    (is (equal '(a b) (read (base:input-of-programs base:*front-end*
-                                                    (make-string-input-stream "(a b)")))))))
+    (is (equal '(a b) (read (base:program-input base:*front-end*
+                                                (make-string-input-stream "(a b)")))))))
 
 (test answers.are-for-what-runs-in-other-threads
   (let ((time:*simulation* nil))

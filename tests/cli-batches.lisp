@@ -102,9 +102,9 @@ turn 1" "--rate" "free" options)))
 (test scripts.count-errors-of-lines-while-a-plan-is-under-way
   "Those of the plan are its own; those of other lines are not."
   (multiple-value-bind (objects status)
-      (run-script "(def-interp-proc wait-a-while () (wait-time 3))
+      (run-script "(def-interp-proc wait-and-serve () (wait-time 3))
 pause
-plan wait-a-while
+plan wait-and-serve
 (error-set \"own\")
 resume" "--rate" "free" "--json")
     (is (= 1 status))

@@ -261,7 +261,7 @@
   (loop with never = (base:make-semaphore "never")
         repeat 6000                     ; a minute, which only a hang reaches
         until *went-on*
-        do (base:wait-a-while never 0.01)))
+        do (base:wait-and-serve never 0.01)))
 
 (test break.of-another-thread-is-answered-in-a-line-that-waits-for-it
   (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere-and-wait)" "nonsense" "turn"

@@ -52,9 +52,9 @@
 
 (test complaints.have-nothing-that-a-terminal-obeys
   (let ((text (complaint (format nil "no~C[31m~Csuch~C" #\Esc (code-char 0) (code-char #x9B)))))
-    (is (notany #'cli::obeyed-p text))
+    (is (notany #'cli::control-character-p text))
     (is-true (has-words-p text "NO^[[31M^@SUCH?"))
-    (is (notany #'cli::obeyed-p
+    (is (notany #'cli::control-character-p
                 (first (type-batch (format nil "(error-set \"a~Cb\")" #\Esc)))))))
 
 (test complaints.say-whose-name-it-is-and-how-to-have-it

@@ -60,7 +60,7 @@
   (let ((session (cli:make-session :input (make-instance 'cli::typed-text :by-hand-p t
                                                          :octets (make-string-input-stream ""))))
         (messages (let ((base:*message-queue* (base:make-message-queue))
-                        (definitions::*told-of* "a plan"))
+                        (definitions::*request-origin* "a plan"))
                     (loop repeat 30 do (base:message-set "Camera 0 turned"))
                     (base:take-messages))))
     (flet ((text () (first (cli::notes-on-messages session messages)))

@@ -53,7 +53,7 @@
      (lambda (simulation)
        (is (mentions-p (progress-text-of simulation) "a program has broken")))
      ;; As code that enters a debugger does.
-     robot #'base:note-waiting)))
+     robot #'base:note-debugger-waiting)))
 
 (test progress.names-users-code-that-does-not-return
   (in-studio (robot)

@@ -160,7 +160,7 @@ each stop that the task is at, and of what tick that is, and of the tick."
     (ars-magna.rpl.seeing:step-task task)
     (flet ((answer (condition hook)
              (declare (ignore condition hook))
-             (ars-magna.host:tell-listeners cli:*break-hooks*)
+             (ars-magna.host:call-listeners cli:*break-hooks*)
              (let ((tree (window::plan-look-tree look)))
                (push (list (rpl:task-image-form (first (rpl:tree-image-rows tree)))
                            (ars-magna.rpl:tree-image-tick tree)
@@ -195,7 +195,7 @@ each stop that the task is at, and of what tick that is, and of the tick."
               (interface (window::plan-interface-of simulation))
               (look (window::watcher-plans (window::window-watcher window))))
          (ars-magna.rpl-robot::call-holding
-          (lambda () (ars-magna.host:tell-listeners cli:*break-hooks*)) interface)
+          (lambda () (ars-magna.host:call-listeners cli:*break-hooks*)) interface)
          (is (equal "(wait-time 3)"
                     (rpl:task-image-form
                      (first (rpl:tree-image-rows (window::plan-look-tree look))))))))

@@ -127,10 +127,11 @@
 
 (test own-definitions.set-back-what-is-current-in-whatever-order
   "A file that is loaded again meanwhile may list the variables in another order."
-  (let ((base:*kept-variables* (list* '*one-thing* '*another-thing* base:*kept-variables*)))
+  (let ((base:*variables-to-restore* (list* '*one-thing* '*another-thing*
+                                             base:*variables-to-restore*)))
     (base:with-own-definitions ()
       (setf *one-thing* 3)
-      (setf base:*kept-variables* (reverse base:*kept-variables*)))
+      (setf base:*variables-to-restore* (reverse base:*variables-to-restore*)))
     (is (equal '(1 2) (list *one-thing* *another-thing*)))))
 
 (test own-definitions.can-be-made-again

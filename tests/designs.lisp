@@ -168,7 +168,7 @@
 (test directories.are-called-as-told
   (with-directories (directory)
     (dolist (name '("a*b" "a?b" "[ab]" "a\\b"))
-      (let ((name (format nil "~A~A" (base:native-name (base:path-called directory)) name)))
+      (let ((name (format nil "~A~A" (base:native-name (base:path-of-name directory)) name)))
         (define-for-test (:robots ars-worlds:dot) (:trials 1) (:run t))
         (experiment:run-experiment 'question :workers 1 :stream nil :directory name)
         (is (= 2 (length (file-lines (base:native-path (format nil "~A/rows.csv" name))))))))))

@@ -11,7 +11,7 @@
 (defun placed (name) (uiop:strcat *place* name))
 
 (defun call-in-place (function)
-  (let* ((dice (base:make-dice (base:process-number) "places"))
+  (let* ((dice (base:make-dice (base:process-id) "places"))
          (*place* (format nil "~Aars magna 'é' ~36R/" (uiop:native-namestring
                                                        (uiop:temporary-directory))
                           (base:roll-index 1000000 dice)))

@@ -13,7 +13,7 @@
     (let ((lines (series-lines directory)))
       (is (equal '("experiment" "fingerprint" "condition" "max-speed*" "mark" "seed" "trial" "tick"
                    "x" "phase" "what" "rolled" "chance")
-                 (experiment::csv-texts (first lines))))
+                 (experiment::csv-fields (first lines))))
       (is (= (+ 1 (* 4 3 9)) (length lines)))
       (is-true (search ",driving,'=a," (third lines)))
       (is (equal (loop for condition in '("1" "2")
@@ -24,7 +24,7 @@
                                                                             (princ-to-string
                                                                              tick))))))
                  (loop for line in (rest lines)
-                       for texts = (experiment::csv-texts line)
+                       for texts = (experiment::csv-fields line)
                        collect (list (nth 3 texts) (nth 4 texts) (nth 6 texts) (nth 7 texts))))))))
 
 (test series.are-the-same-however-they-came-about

@@ -133,7 +133,7 @@
 ;;; Nothing else changes.
 
 (defun row-without-fingerprint (line)
-  (let ((texts (experiment::csv-texts line))) (cons (first texts) (cddr texts))))
+  (let ((texts (experiment::csv-fields line))) (cons (first texts) (cddr texts))))
 
 (test each-tick.changes-no-run
   "Also where dice are rolled and a plan waits in vain."

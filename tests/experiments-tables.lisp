@@ -59,10 +59,10 @@
     (let ((lines (table-lines directory)))
       (is (equal '("experiment" "fingerprint" "condition" "max-speed*" "seed" "trial" "outcome"
                    "reason" "ticks" "way" "wet" "digest" "error")
-                 (experiment::csv-texts (first lines))))
+                 (experiment::csv-fields (first lines))))
       (is (= 25 (length lines)))
       (loop for line in (rest lines)
-            for texts = (experiment::csv-texts line)
+            for texts = (experiment::csv-fields line)
             for index from 0
             do (is (= 13 (length texts)))
                (is (equal (list "walk" (if (< index 12) "max-speed*=1" "max-speed*=2"))
@@ -77,7 +77,7 @@
     (walk directory :trials 3)
     (let ((lines (file-lines (uiop:subpathname directory "machine.csv"))))
       (is (= 7 (length lines)))
-      (is (= 7 (length (experiment::csv-texts (second lines))))))
+      (is (= 7 (length (experiment::csv-fields (second lines))))))
     (let ((text (base:file-text (uiop:subpathname directory "experiment.txt"))))
       (is (search "(run-experiment 'walk :trials 3" text))
       (is (search "defexperiment walk" text))
@@ -101,7 +101,7 @@
 
 (test lines.with-quotes-and-commas-come-back
   (let ((texts '("a,b" "\"" "" "c \"d\", e" "ü")))
-    (is (equal texts (experiment::csv-texts
+    (is (equal texts (experiment::csv-fields
                       (string-right-trim '(#\Newline) (experiment::csv-line texts)))))))
 
 ;;; The same however it came about.
@@ -337,7 +337,7 @@
 
 (defun changed-cell (line column text)
   "Return LINE, of a table, with TEXT for the cell numbered COLUMN."
-  (let ((texts (experiment::csv-texts line)))
+  (let ((texts (experiment::csv-fields line)))
     (setf (nth column texts) text)
     (string-right-trim '(#\Newline) (experiment::csv-line texts))))
 

@@ -85,9 +85,9 @@ if there is no fork. And how often somebody was asked."
   (:documentation "What belongs to somebody."))
 
 (defmethod base:copy-plan-value ((account account) fork)
-  (base:note-copy account
-                  (make-instance 'account :owner (base:forked (account-owner account) fork))
-                  fork))
+  (base:record-copy account
+                    (make-instance 'account :owner (base:forked (account-owner account) fork))
+                    fork))
 
 (test copies.as-users-say
   (let* ((owner (list "me")) (ledger (make-ledger owner))

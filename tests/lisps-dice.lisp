@@ -64,14 +64,14 @@
 (test random.is-what-sbcl-says-for-the-seed
   "Seeding is put off until the first roll, which changes nothing; copies made before are alike."
   (dolist (seed '(0 1 -1 4 123456789012345678901234567890))
-    (let* ((state (base:seeded-lisps-dice seed))
+    (let* ((state (base:seeded-random-state seed))
            (copy (make-random-state state))
-           (short (ldb (byte 32 0) (basics::mix-word (ldb (byte 64 0) seed))))
+           (short (ldb (byte 32 0) (basics::mix-bits (ldb (byte 64 0) seed))))
            (numbers (numbers-of (sb-ext:seed-random-state short))))
       (is (equal numbers (numbers-of state)))
       (is (equal numbers (numbers-of copy)))
       (is (equal numbers (let ((*random-state* (make-random-state copy)))
-                           (base:reseed-lisps-dice seed)
+                           (base:reseed-random-state seed)
                            (numbers-of *random-state*)))))))
 
 (test random.says-something-else-in-each-tick

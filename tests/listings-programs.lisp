@@ -92,11 +92,11 @@ it does not return."
     (run:start-clock simulation :rate :free)
     (unwind-protect
          (progn
-           (base:start-thread (base:spread-specials (lambda ()
-                                                      (setf value (funcall function)
-                                                            returned t))
-                                                    'time:*simulation* 'base:*message-queue*
-                                                    'valet '*home*)
+           (base:start-thread (base:function-with-specials (lambda ()
+                                                             (setf value (funcall function)
+                                                                   returned t))
+                                                           'time:*simulation* 'base:*message-queue*
+                                                           'valet '*home*)
                               "a listing")
            (await (lambda () returned)))
       (run:stop-clock simulation))

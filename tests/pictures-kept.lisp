@@ -14,7 +14,7 @@
     (with-directories (place)
       (let ((file (merge-pathnames "keep.png" place)))
         (ensure-directories-exist file)
-        (base:write-file-anew (lambda (out) (write-string "old" out)) file "the file")
+        (base:overwrite-file (lambda (out) (write-string "old" out)) file "the file")
         (handler-case (progn (display:save-svg *too-wide* file :png) (fail "It was saved."))
           (base:misuse (condition)
             (let ((words (princ-to-string condition)))

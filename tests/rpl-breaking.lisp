@@ -185,9 +185,9 @@ atom."
                                        (rpl:handle-failure ((error () (return :handled)))
                                          (parse-integer "x")))))
                "a test")))
-      (base:call-user-code (lambda () (is-false (base:debugger-p))) "a test"))
+      (base:call-user-code (lambda () (is-false (base:debugger-available-p))) "a test"))
     (base:with-debugger-hook ((lambda (condition hook) (declare (ignore condition hook))))
-      (base:call-user-code (lambda () (is-true (base:debugger-p))) "a test"))))
+      (base:call-user-code (lambda () (is-true (base:debugger-available-p))) "a test"))))
 
 ;;; Restarts.
 

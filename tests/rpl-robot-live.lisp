@@ -130,7 +130,7 @@ tick."
   (live (simulation)
     (let* ((go (rpl:create-fluent 'go-ahead)) (result nil)
            (thread (base:start-thread
-                    (base:spread-specials
+                    (base:function-with-specials
                      (lambda ()
                        (setf result (multiple-value-list (run-as-plan (rpl:wait-for go)))))
                      'driver::*interface* 'time:*simulation* 'base:*message-queue*)
@@ -147,7 +147,7 @@ tick."
     (let ((ended (base:make-semaphore "ended")) (state nil)
           (interface driver::*interface*))
       (base:start-thread
-       (base:spread-specials
+       (base:function-with-specials
         (lambda ()
           (setf state (nth-value 1 (run-as-plan
                                      (loop (driver:rpl-robot-turn 1)
@@ -361,7 +361,7 @@ tick."
     (let ((cleaned nil) (begun (base:make-semaphore "begun")) (thread nil))
       (setf thread
             (base:start-thread
-             (base:spread-specials
+             (base:function-with-specials
               (lambda ()
                 (catch 'out
                   (run-as-plan

@@ -233,7 +233,7 @@
   (let ((count 0))
     (do-external-symbols (symbol :ars-magna.rpl)
       (when (and (macro-function symbol)
-                 (not (base:lisps-own-p symbol))
+                 (not (base:lisp-symbol-p symbol))
                  (member (package-name (symbol-package symbol))
                          '("ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.LANGUAGE") :test #'string=)
                  (eq '&body (first (introspect '#:function-lambda-list symbol))))

@@ -72,7 +72,7 @@ function and its arguments."
 (test simulator.interrupted-at-the-hand-over-is-live
   (with-yard ()
     (is (eq :left
-            (coming-between (time::hand-over (hand-over &rest arguments)
+            (coming-between (time::hand-over-custody (hand-over &rest arguments)
                        (interrupt-here)
                        (apply hand-over arguments))
               (interrupted (start-dray)))))
@@ -102,7 +102,7 @@ function and its arguments."
   "Start the simulator of DRAY, let TICKS pass, and return the run, paused."
   (start-dray :keep t :journal t)
   (time:pause)
-  (time:let-pass ticks time:*simulation*)
+  (time:pass-then-pause ticks time:*simulation*)
   (awaiting (= ticks (run:simulation-tick)))
   time:*simulation*)
 
@@ -159,7 +159,7 @@ function and its arguments."
     (start-dray)
     (run:stop-simulator)
     (let ((old time:*simulation*))
-      (time:let-pass 0 old)
+      (time:pass-then-pause 0 old)
       (coming-between (run::check-parameters (check &rest arguments)
                  (run::end-simulation old "the test has ended it")
                  (apply check arguments))

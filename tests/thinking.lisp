@@ -70,7 +70,7 @@
       (let ((journal (end-journal time:*simulation*)))
         (setf (getf (run:journal-header journal) :thinking) '(:charged :budget 0))
         (signals base:misuse (run:write-journal journal file))
-        (base:write-file-anew (lambda (out) (run::write-data-lines (run::journal-data journal) out))
+        (base:overwrite-file (lambda (out) (run::write-data-lines (run::journal-data journal) out))
                               file "a forged journal")))
     (signals run:damaged-journal (run:load-journal file))))
 

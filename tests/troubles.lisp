@@ -183,13 +183,13 @@
 (test errors.that-are-collected-are-the-latest
   (with-messages
     (loop for number to 1000
-          do (base:trouble-set t (princ-to-string number) "slip"))
-    (let ((errors (base:errors-in base:*message-queue* (constantly t))))
+          do (base:queue-user-error t (princ-to-string number) "slip"))
+    (let ((errors (base:user-code-errors-in base:*message-queue* (constantly t))))
       (is (= 1000 (length errors)))
       (is (equal '("1" "1000") (mapcar #'princ-to-string
                                        (list (first errors) (first (last errors)))))))
     (base:forget-errors base:*message-queue* (constantly t))
-    (is (null (base:errors-in base:*message-queue* (constantly t))))))
+    (is (null (base:user-code-errors-in base:*message-queue* (constantly t))))))
 
 (test warnings.are-shown-that-ask-what-is-so-in-the-end
   "What a warning asks may itself queue a message."
@@ -226,14 +226,14 @@ shown at once."
 (test errors.of-live-runs-are-still-messages
   (let ((base:*message-queue* (base:make-message-queue :echoed (make-hash-table :test 'equal)))
         (base:*echo-output* nil))
-    (is-true (has-words-p (error-output (base:trouble-set t "slip" "slip")) "slip"))
+    (is-true (has-words-p (error-output (base:queue-user-error t "slip" "slip")) "slip"))
     (is-true (has-words-p (displayed) "slip"))))
 
 (test errors.of-live-runs-are-left-to-who-listens
   (let ((base:*message-queue* (base:make-message-queue :echoed (make-hash-table :test 'equal)))
         (heard 0))
     (setf (base:message-queue-listener base:*message-queue*) (lambda () (incf heard)))
-    (is (string= "" (error-output (base:trouble-set t "slip" "slip"))))
+    (is (string= "" (error-output (base:queue-user-error t "slip" "slip"))))
     (is (= 1 heard))))
 
 (test messages.of-interrupts-wait-for-the-queue

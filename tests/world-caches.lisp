@@ -4,8 +4,8 @@
 
 (in-suite world)
 
-(defun cache-file () (base:path-called (format nil "~Aars-magna-tests/[world]*cache"
-                                                (uiop:temporary-directory))))
+(defun cache-file () (base:path-of-name (format nil "~Aars-magna-tests/[world]*cache"
+                                                 (uiop:temporary-directory))))
 
 (defun cached-map (&rest clauses)
   (eval `(world:defmap cached-map (20 20 :cache ,(cache-file)) ,@clauses))
@@ -257,12 +257,12 @@
 
 (test cache.tilde-is-home
   (is (equal (namestring (merge-pathnames "cache/x" (user-homedir-pathname)))
-             (namestring (base:path-called "~/cache/x")))))
+             (namestring (base:path-of-name "~/cache/x")))))
 
 (defun call-with-map-file (function)
   "Call FUNCTION with a file that has a map with the cache cellar.map, and with the name of that."
-  (let ((file (base:path-called (format nil "~Aars-magna-tests/[maps]/cellar.lisp"
-                                        (uiop:temporary-directory)))))
+  (let ((file (base:path-of-name (format nil "~Aars-magna-tests/[maps]/cellar.lisp"
+                                         (uiop:temporary-directory)))))
     (ensure-directories-exist file)
     (unwind-protect
          (progn (rewrite file "(world:defmap cellar (9 9 :cache \"cellar.map\"))")

@@ -104,7 +104,7 @@ is NIL."
       (setf (history-unsaved-p history) nil)))
   (when (and (shiftf (history-unsaved-p history) nil) (history-file history))
     (ignore-errors
-     (check-unprotected (history-file history))
+     (check-writable (history-file history))
      (with-open-file (out (history-file history) :direction :output :if-exists :append
                                                  :if-does-not-exist :create
                                                  :external-format :utf-8)

@@ -26,7 +26,7 @@
 (defun read-utf-8-character (lead next)
   "Read from NEXT the rest of the UTF-8 character that begins with the octet LEAD. Return the
 character as a string."
-  (decoded (with-output-to-string (out)
+  (utf-8-decoded (with-output-to-string (out)
              (write-char lead out)
              (loop repeat (let ((code (char-code lead)))
                             (cond ((< code #xC0) 0)
@@ -61,8 +61,8 @@ character as a string."
         do (vector-push-extend char octets)
            (when (and (char= char #\~) (uiop:string-suffix-p octets end))
              (decf (fill-pointer octets) (length end))
-             (return (normalize-newlines (decoded octets))))
-        finally (return (normalize-newlines (decoded octets)))))
+             (return (normalize-newlines (utf-8-decoded octets))))
+        finally (return (normalize-newlines (utf-8-decoded octets)))))
 
 (defun key-named (control &rest arguments)
   (make-keyword (string-upcase (apply #'format nil control arguments))))
@@ -101,9 +101,9 @@ character as a string."
 (defun octets-of-key (key)
   "Return the octets that a terminal sends for KEY, as a string with one character for each. The
 string is empty if no terminal has KEY."
-  (cond ((stringp key) (encoded key))
+  (cond ((stringp key) (utf-8-encoded key))
         ((consp key) (format nil "~A~A~A" (escape-sequence-of-key (first key))
-                             (encoded (second key)) (paste-end-code)))
+                             (utf-8-encoded (second key)) (paste-end-code)))
         ((eq key :return) (string #\Return))
         ((eq key :tab) (string #\Tab))
         ((eq key :rubout) (string #\Rubout))

@@ -97,7 +97,7 @@ argument, the function steps back by a character."
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
 (defun make-standard-console ()
-  (let ((stream (text-output 1)))
+  (let ((stream (text-output-stream 1)))
     (make-console stream (and (escape-codes-p stream) #'window-size))))
 
 (defun history-pathname ()
@@ -108,7 +108,7 @@ argument, the function steps back by a character."
 (defun make-standard-input (console plain)
   "Return a stream of the lines of the standard input. Lines are edited on CONSOLE if the terminal
 allows it and PLAIN is NIL."
-  (let ((octets (octet-input 0)))
+  (let ((octets (octet-input-stream 0)))
     (if (and (not plain) (console-window console) (escape-codes-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
                                     :history (make-history (history-pathname)))

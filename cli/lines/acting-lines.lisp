@@ -32,7 +32,7 @@ NIL."
     (let ((own (asker-for account)) (*asker* (asker-for account :text "GO-TO")))
       (robot-go-to (session-robot) x y
                    (lambda (err robot)
-                     (let ((*asker* own) (*told-of* own))
+                     (let ((*asker* own) (*request-origin* own))
                        (if (eq simulation (latest-successor simulation))
                            (report-arrival err robot point)
                            (warn-of-rewind point simulation)))

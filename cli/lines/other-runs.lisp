@@ -13,7 +13,7 @@
     (setf (plan-job-forgotten-p job) t
           (session-after-rewind (plan-job-session job)) #'adopt-plans)))
 
-(attend *rewind-hooks* forget-plan-jobs)
+(add-listener *rewind-hooks* forget-plan-jobs)
 
 (defun check-rewindable (session)
   (check-run-not-over)
@@ -256,7 +256,7 @@ which trial the prompt is in."
     "List the failed trials of an experiment by condition and reason, each with a TRIAL line that
 opens one of them."
   (let ((names (experiment-names name)))
-    (print-failures (if (and names (null (rest names)) (not (existing-path (path-called name))))
+    (print-failures (if (and names (null (rest names)) (not (existing-path (path-of-name name))))
                         (first names)
                         name)
                     condition)))

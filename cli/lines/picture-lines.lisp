@@ -47,7 +47,7 @@ from 4 to 40 for which the map has at most 900 x 700 pixels."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
                                      (picture-layers)))))
     "Save a picture of the world as it is now in FILE, replacing it."
-  (let ((path (apply #'save-picture (session-robot) (path-called file) (picture-options what))))
+  (let ((path (apply #'save-picture (session-robot) (path-of-name file) (picture-options what))))
     (format t "~A~%" (native-name path))))
 
 ;;; FILM.
@@ -65,7 +65,7 @@ saves the film even if definitions have changed since the run began."
          (others (remove "ANYWAY" words :test #'string-equal))
          (options (picture-options (format nil "~{~A~^ ~}" others) "FILM")))
     (flet ((save (*frame-hook*)
-             (apply #'save-animation nil (path-called file)
+             (apply #'save-animation nil (path-of-name file)
                     :anyway (/= (length words) (length others)) options)))
       (format t "~A~%" (native-name (call-showing-progress
                                      #'save session (simulation-tick (current-simulation))))))))

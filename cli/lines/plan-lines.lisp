@@ -186,7 +186,7 @@ Lisp (setf *trace-plans* t), before the plan starts."
     "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
 ticks, with what it waited for and the commands that it issued. A trace is needed: TRACE-PLANS ON,
 or in Lisp (setf *trace-plans* t), before the plan starts."
-  (format t "~A~%" (native-name (save-plan-timeline (path-called file)))))
+  (format t "~A~%" (native-name (save-plan-timeline (path-of-name file)))))
 
 ;;; END-TASK, STEP-TASK and TRACE-PLANS: changing running plans.
 

@@ -165,7 +165,7 @@ parameters whose names begin with NAME, or else those whose names contain NAME."
   (let ((simulation (current-simulation)))
     (multiple-value-bind (path tick digest)
         (asking (simulation)
-          (values (save-journal (path-called file) simulation)
+          (values (save-journal (path-of-name file) simulation)
                   (simulation-tick simulation)
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (tick-and-state-text tick digest)))))
@@ -203,5 +203,5 @@ state."
     "Repeat the run recorded in FILE, in a separate world, and show the tick and state at its end.
 ANYWAY repeats the run even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
-      (replay-with-progress session (load-journal (path-called file)) (parse-anyway anyway))
+      (replay-with-progress session (load-journal (path-of-name file)) (parse-anyway anyway))
     (format t "~A: ~A" file (tick-and-state-text tick digest))))

@@ -71,7 +71,7 @@ it.")
   (some #'project-file-name
         (append (when (fboundp symbol)
                   (list (function-file (or (macro-function symbol) (fdefinition symbol)))))
-                (mapcar #'first (files-besides-functions symbol)))))
+                (mapcar #'first (files-of-other-definitions symbol)))))
 
 (defun call-as-text (name lambda-list)
   "Return as text a call of the function or macro NAME with LAMBDA-LIST, without package prefixes."

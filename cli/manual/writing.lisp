@@ -211,7 +211,7 @@ that page."
 (defun copy-into (name source directory)
   (let ((copy (merge-pathnames (native-path name) directory)))
     (make-directories (uiop:pathname-directory-pathname copy))
-    (check-unprotected copy)
+    (check-writable copy)
     (uiop:copy-file source copy)))
 
 (defun write-pages (book directory)
@@ -231,7 +231,7 @@ that page."
   "Write the manual into DIRECTORY, a name, and return the path of the first page. Make the
 directory if it does not exist."
   (let ((directory (uiop:ensure-directory-pathname
-                    (merge-pathnames (path-called directory) (base-directory))))
+                    (merge-pathnames (path-of-name directory) (base-directory))))
         (book (let ((pages (read-guide)) (entries (all-entries)))
                 (make-book pages entries (read-examples pages) (table-of-entries entries)))))
     (make-directories directory)

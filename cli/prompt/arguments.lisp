@@ -112,7 +112,7 @@ not evaluated, so a quote before the datum does not matter."
 
 (defun check-argument-read (value parameter line)
   (unless (argument-of-type-p value (line-parameter-type parameter))
-    (let ((trouble (trouble-with value (line-parameter-type parameter))))
+    (let ((trouble (argument-trouble-text value (line-parameter-type parameter))))
       (reject-line "~A cannot be ~S~@[: ~A~]~:[.~;~] ~A"
                    (line-parameter-name parameter) value trouble
                    (and trouble (ends-with #\? trouble))
@@ -124,7 +124,7 @@ not evaluated, so a quote before the datum does not matter."
 
 (defun token-value (type token)
   "Return what TOKEN stands for as an argument of TYPE: a file's name has the home directory for ~."
-  (if (eq type :file) (native-name (path-called token)) token))
+  (if (eq type :file) (native-name (path-of-name token)) token))
 
 (defun read-line-parameter (parameter text start line)
   "Return the argument for PARAMETER of LINE that begins in TEXT at START, and the position of its
@@ -229,7 +229,7 @@ robot.")
 (defun directory-entries (directory)
   "Return the names of the files and subdirectories in DIRECTORY, as the operating system spells
 them. Names of subdirectories end in a slash."
-  (let ((path (path-called directory)))
+  (let ((path (path-of-name directory)))
     (flet ((without-directory (entry)
              (let ((name (native-name entry)))
                (subseq name (1+ (or (position #\/ name :from-end t :end (1- (length name)))

@@ -34,7 +34,7 @@
           (loop for restart in (break-request-restarts break-request)
                 for number from 0
                 collect (list number (plain-name (restart-name restart))
-                              (short-error-text (own-text restart))))))
+                              (short-error-text (printable-report restart))))))
 
 (defun show-break (session break-request)
   "Show the condition and the restarts of BREAK-REQUEST in SESSION, and change its prompt to
@@ -182,5 +182,5 @@ else all sessions in its simulation, else the newest session."
                   (read-line (typed-octets stream) nil))))
     (if line (format nil "~A~%" line) "")))
 
-(defmethod input-of-programs ((prompts prompts) stream)
+(defmethod program-input ((prompts prompts) stream)
   (make-instance 'asking-text :octets stream))

@@ -62,8 +62,8 @@ evaluated."))
 WARNING-SET. Do nothing outside of COMPILE-FILE."
   (let ((text (one-line (condition-text condition))))
     (multiple-value-bind (file line) (if (typep condition 'reader-error)
-                                         (reading-place condition)
-                                         (compiling-place))
+                                         (reading-location condition)
+                                         (compiling-location))
       (cond ((null file))
             ((names-location-p condition) (funcall tell text))
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
@@ -100,7 +100,7 @@ evaluates, and the errors in files that it compiles."
 (defun eval-locating-read-errors (form)
   "Evaluate FORM. If LOAD in FORM cannot read a file, signal FILE-TROUBLE with file and line."
   (handler-bind ((reader-error (lambda (condition)
-                                 (multiple-value-bind (file line) (reading-place condition)
+                                 (multiple-value-bind (file line) (reading-location condition)
                                    (when file
                                      (error 'file-trouble :file file :line line
                                                           :cause condition))))))
@@ -220,7 +220,7 @@ line read in SESSION."
         (*asker* (asker-for (session-account session) :typed-p t)))
     (if (unbuffered-p line)
         (apply (line-action line) session arguments)
-        (write-string (fit-to-window (printing-words ()
+        (write-string (fit-to-window (printing-text ()
                                        (with-output-to-string (*standard-output*)
                                          (apply (line-action line) session arguments)))
                                      (session-console session))))))
@@ -234,7 +234,7 @@ line read in SESSION."
 (defun run-text (session text)
   "Run the typed line TEXT, and mark its requests as requests of the prompt."
   (let* ((*asker* (asker-for (session-account session)))
-         (*told-of* *asker*))
+         (*request-origin* *asker*))
     (cond ((comment-p text))
           ((lisp-p text) (evaluate-line session text))
           (t (let ((text (expand-alias text)))
@@ -267,7 +267,7 @@ terminal, signal TROUBLE, because the prompt could not print either."
 (defun call-reporting-session-errors (session function)
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
-      (regain-room condition)
+      (recover-memory condition)
       (handler-case (let* ((advice (advice-on-function condition))
                            (*report-addition* (if advice (constantly nil) *report-addition*)))
                       (report-session-error

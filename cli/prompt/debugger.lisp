@@ -21,8 +21,8 @@
              (with-simple-restart (end-line "End the line.")
                (call-reporting-session-errors session function)))))
     (setf (break-request-call break-request)
-          (spread-specials #'call-posted
-                           '*package* '*readtable* '*read-default-float-format*)))
+          (function-with-specials #'call-posted
+                                  '*package* '*readtable* '*read-default-float-format*)))
   (signal-semaphore (break-request-posted break-request)))
 
 (defun call-in-broken-thread (session break-request function)
@@ -47,7 +47,7 @@ Signals BAD-LINE."
 
 (defun write-backtrace ()
   "Write the user's calls that led into the debugger, the newest first."
-  (let* ((calls (calls-under-way 100))
+  (let* ((calls (calls-in-progress 100))
          (start (position 'invoke-debugger calls :key #'first)))
     (loop for call in (if start (nthcdr (1+ start) calls) calls)
           until (member (first call)
@@ -236,7 +236,7 @@ debugger."
     (cond ((break-ignored-p) nil)
           (sessions
            (with-debugger-hook ('debugger-disabled-hook)
-             (tell-listeners *break-hooks*)
+             (call-listeners *break-hooks*)
              (if (eq (session-thread (first sessions)) (current-thread))
                  (run-debugger-prompt (first sessions)
                                       (break-request-for-condition condition sessions))
@@ -299,7 +299,7 @@ is being answered."
 
 ;;; Another debugger, such as an editor's, may ask instead.
 
-(defmethod ask-how-to-go-on ((prompts prompts) condition)
+(defmethod ask-user-for-restart ((prompts prompts) condition)
   (when (sessions-to-ask) (enter-debugger condition nil)))
 
 (defun report-debugger-question (condition asker)
@@ -312,7 +312,7 @@ is being answered."
                        (thread-description session (current-thread))
                        asker)))))
 
-(attend *inquiry-hooks* report-debugger-question)
+(add-listener *inquiry-hooks* report-debugger-question)
 
 ;;; From when to when.
 

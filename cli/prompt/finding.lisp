@@ -105,7 +105,7 @@ type the line command; else NIL."
 
 (defun reject-unknown (name)
   (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name)
-                  (and (ours-called name)
+                  (and (public-function-named name)
                        (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
@@ -181,7 +181,7 @@ deg)."
 (defun warn-of-new-variable (name)
   "Warn that typed Lisp has set the undefined variable NAME, if NAME is similar to a defined
 variable or ends in an asterisk."
-  (let ((meant (variable-slip name)))
+  (let ((meant (similar-variable name)))
     (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))
       (warning-set (format nil "~(~A~) is a new variable; it was not defined before.~@[ Did you ~

@@ -46,7 +46,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
 
 (defun paused-for-good-p (simulation)
   "True if SIMULATION, which is live, is paused, and no one can resume it."
-  (and (not *waits-while-paused-p*) (stands-still-p simulation)))
+  (and (not *waits-while-paused-p*) (paused-without-steps-p simulation)))
 
 (defun await-test-live (test simulation)
   (let ((true (make-semaphore "fact")))
@@ -56,7 +56,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (loop until (or (wait-a-while true 0.2)
+      (unwind-protect (loop until (or (wait-and-serve true 0.2)
                                       ;; The answer to a break may have stopped its clock.
                                       (not (live-p simulation))
                                       (paused-for-good-p simulation)
@@ -159,7 +159,7 @@ commands before it reads the next line."
   (and *simulation*
        (null (session-trial session))
        (live-p *simulation*)
-       (stands-still-p *simulation*)))
+       (paused-without-steps-p *simulation*)))
 
 (defun outcome-of-jobs (jobs lisp-p)
   "Return :OK or :FAILED if JOBS are done and, if LISP-P, the requests of Lisp too; else NIL."

@@ -223,7 +223,7 @@ many messages."
     (let ((console (listener-console listener))
           (messages (messages-for listener messages)))
       (when (and messages (not flush-all-errors*))
-        (printing-words ()
+        (printing-text ()
           (or (report-messages (listener-account listener) messages)
               (write-messages messages listener)))
         (dolist (text (notes-on-messages listener messages))

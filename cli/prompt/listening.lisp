@@ -101,7 +101,7 @@ nothing if SESSION has lost its user."
   "Show a new message of SIMULATION in SESSION, now or at the end of the tick."
   (cond ((not (simulation-ticking-p simulation)) (show-messages session))
         ;; Its tick ends when a user says how to continue, who may need these messages.
-        ((users-code-broken-p simulation) (show-messages session))
+        ((users-code-in-debugger-p simulation) (show-messages session))
         ((or (not (live-p simulation)) (eq (simulation-thread simulation) (current-thread)))
          ;; After all changes of this tick, before programs are told of them.
          (unless (shiftf (session-news-p session) t)
@@ -169,7 +169,7 @@ A run may be NIL. A headless run stands still during the calls.")
 (defun call-whereabouts-hooks (session)
   "Call *WHEREABOUTS-HOOKS* with the run that SESSION is in."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
-    (tell-listeners *whereabouts-hooks* session old *simulation*)))
+    (call-listeners *whereabouts-hooks* session old *simulation*)))
 
 ;;;; In which run each session is
 

@@ -4,7 +4,7 @@
 
 (defun existing-lisp-file (name)
   "Return the path of the existing Lisp file NAME, which may lack its type; otherwise NIL."
-  (let ((path (path-called name)))
+  (let ((path (path-of-name name)))
     (and (pathname-name path)
          (or (existing-path path)
              (existing-path (make-pathname :type "lisp" :defaults path))))))
@@ -16,7 +16,7 @@
 (defun foreign-file-text (path)
   "Return a sentence that says what the file PATH contains and which program or command reads it;
 NIL if it contains Lisp or lines of the prompt."
-  (let ((advice (file-advice path :lisp)))
+  (let ((advice (advice-on-file path :lisp)))
     (and advice (format nil "~A: ~A." (native-name path) advice))))
 
 (defun check-lisp-file (path)
@@ -52,7 +52,7 @@ NIL if it contains Lisp or lines of the prompt."
 (defun check-typed-load (form)
   "Signal BAD-LINE if FORM, as typed, loads a file that cannot be Lisp."
   (when (typep form '(cons (eql load) (cons string)))
-    (when (many-files-p (second form))
+    (when (wildcard-name-p (second form))
       (reject-line "~A cannot be loaded: ~A." (second form) (unusable-file-text (second form))))
     (let ((path (existing-lisp-file (second form))))
       (when path
@@ -123,7 +123,7 @@ read."
              (let ((form (read-form-in-file stream file)))
                (call-locating-errors (lambda ()
                                        (check-form-of-file form path)
-                                       (call-as-from-file (lambda () (eval-quietly form)) path))
+                                       (call-recording-file (lambda () (eval-quietly form)) path))
                                      file
                                      (lambda (condition)
                                        (declare (ignore condition))

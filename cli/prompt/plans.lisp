@@ -56,7 +56,7 @@ TASK."
         (signal-semaphore (plan-job-over job))
         t))))
 
-(attend *plan-end-hooks* note-plan-end)
+(add-listener *plan-end-hooks* note-plan-end)
 
 ;;; What is told.
 
@@ -66,7 +66,7 @@ them."
   (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
-    (printing-words () (funcall function))))
+    (printing-text () (funcall function))))
 
 (defun user-text (function object)
   "Return the string that FUNCTION makes of OBJECT on one line, with names and numbers as users type
@@ -87,7 +87,7 @@ them."
 (defmacro with-messages-to ((job) &body body)
   "Run BODY. Messages of BODY belong to the simulation of JOB and to the line that started JOB."
   `(let ((*message-queue* (simulation-messages (plan-job-simulation ,job)))
-         (*told-of* (plan-job-asker ,job)))
+         (*request-origin* (plan-job-asker ,job)))
      ,@body))
 
 (defun waiting-for-plan-p (session)
@@ -213,7 +213,7 @@ the next check to RUNNER. Return the result of the last check."
 
 (defmethod await-job ((job plan-job))
   (cond ((live-p (plan-job-simulation job))
-         (loop until (or (wait-a-while (plan-job-told job) 0.2)
+         (loop until (or (wait-and-serve (plan-job-told job) 0.2)
                          (paused-for-good-p (plan-job-simulation job))))
          (show-messages (plan-job-session job)))
         (t (await-plan-headless job))))

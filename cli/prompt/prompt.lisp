@@ -71,7 +71,7 @@ outline and the condition LINE-TOO-LONG."
 (defun run-nested-line (session)
   "Call RUN-NEXT-LINE while another line still runs. Requests of the nested line are not counted for
 the other line."
-  (let ((*asker* nil) (*told-of* nil)) (run-next-line session)))
+  (let ((*asker* nil) (*request-origin* nil)) (run-next-line session)))
 
 (defun stopped-by-error-p (session)
   "Wait until the requests of SESSION have ended. Return true if SESSION stops at errors and has had
@@ -104,7 +104,7 @@ time stands still, report that the line waits."
 
 (defun report-unfinished (session)
   "Report an error if requests of SESSION, which has no user, wait because time stands still."
-  (when (and (unfinished-p session) (or (not (live-p *simulation*)) (stands-still-p *simulation*)))
+  (when (and (unfinished-p session) (or (not (live-p *simulation*)) (paused-without-steps-p *simulation*)))
     (report-session-error
      session (format nil "Time stands still, so not all requests have ended. RESUME continues."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))

@@ -87,7 +87,7 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
 
-(attend *simulator-hooks* note-robot)
+(add-listener *simulator-hooks* note-robot)
 
 (defun note-robot (robot options)
   (declare (ignore options))

@@ -165,7 +165,7 @@ interrupt."
       (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
                      most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
                     words (experiment-name-strings (all-experiments))))
-    (when (option-value :save-executable options) (die-of-interrupts))
+    (when (option-value :save-executable options) (end-on-interrupt))
     (call-reporting-interruption
      (lambda () (carry-out-experiment (experiment-from-words words) words options))
      "experiment" arguments options)))

@@ -48,7 +48,7 @@ there are none."
 (defun experiments-named (word)
   "Load the file WORD and return its experiments, or return a list of the experiment named WORD.
 Signals BAD-LINE if there is neither."
-  (let* ((path (path-called word))
+  (let* ((path (path-of-name word))
          (known (find-experiment-in word (all-experiments)))
          (file (or (and (pathname-name path) (existing-path path))
                    (and (not known) (existing-lisp-file word)))))
@@ -77,7 +77,7 @@ experiments, NAME names the one to return. Signals BAD-LINE if there is no such 
 save pictures there."
   (print-results results *standard-output*)
   (when (results-directory results)
-    (write-file-anew (lambda (out) (call-with-page-width (lambda () (print-results results out))))
+    (overwrite-file (lambda (out) (call-with-page-width (lambda () (print-results results out))))
                      (merge-pathnames "summary.txt" (results-directory results))
                      "the summary" :remedy "remove it, or give another directory"))
   (when plot (save-result-pictures results (results-directory results))))

@@ -19,7 +19,7 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
 
 (defun run-shell-command (name arguments)
   "Run the command NAME with ARGUMENTS. Return the exit status."
-  (let ((command (find-shell-command name)) (*error-output* (text-output 2)))
+  (let ((command (find-shell-command name)) (*error-output* (text-output-stream 2)))
     (unwind-protect (funcall (second command) arguments)
       ;; Lisp's own output, such as warnings, stays in the stream until then.
       (ignore-errors (finish-output *error-output*)))))
@@ -247,7 +247,7 @@ print a message and return the status for that case."
            130))
       (usage-error (condition) (report-ending condition 2))
       ((or error storage-condition) (condition)
-        (regain-room condition)
+        (recover-memory condition)
         (report-ending condition 1)))))
 
 (defun finish-console (console status)
@@ -256,7 +256,7 @@ print a message and return the status for that case."
   (let ((trouble (console-trouble console)))
     (cond ((null trouble) status)
           ;; An output that is closed early is no error.
-          ((search "Broken pipe" (own-text trouble)) (max 1 status))
+          ((search "Broken pipe" (printable-report trouble)) (max 1 status))
           (t (report-ending trouble (max 1 status))))))
 
 (defun call-fitting-tables (function console)
@@ -282,7 +282,7 @@ argument --probe only tests whether the core starts."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   ;; The core may have been saved where the environment names another.
   (uiop:setup-temporary-directory)
-  (die-of-termination)
+  (end-on-termination)
   (accept-interrupts)
   (call-on-continuing #'resume-terminal)
   (refuse-exits (format nil "EXIT would end the whole program here. Signal an error instead, or ~

@@ -51,7 +51,7 @@ form; NIL if there is nothing to name."
   (let ((simulation (session-simulation session)))
     (cond ((user-calls-origin calls) (values (running-code-owner calls) (user-calls-count calls)))
           ((user-calls-place calls) (running-code-owner calls))
-          ((and simulation (live-p simulation)) (users-code-under-way simulation)))))
+          ((and simulation (live-p simulation)) (users-code-in-progress simulation)))))
 
 (defun watch-for-blocking-code (session calls ended)
   "Report users' code that blocks SESSION, as recorded in CALLS, until the semaphore ENDED is

@@ -20,12 +20,12 @@
   (settle-fingerprints)
   (setf *saved-by-user-p* t)
   (let ((path (native-path name)))
-    (handler-case (progn (check-unprotected path)
+    (handler-case (progn (check-writable path)
                          (when (existing-path path) (delete-file path))
                          (sb-ext:save-lisp-and-die path :executable t :save-runtime-options t
                                                         :toplevel *toplevel-function*))
       (error (condition)
-        (reject-line "~A cannot be saved: ~A" name (one-line (own-text condition)))))))
+        (reject-line "~A cannot be saved: ~A" name (one-line (printable-report condition)))))))
 
 (defun save-program-with-experiments (words name)
   "Save this program as the executable file NAME, with the experiments named by WORDS, a file or an
@@ -99,7 +99,7 @@ condition."
           (replace-file old path)
           (print-notice "~A was there with another text; that file is ~A now." (native-name path)
                         (native-name old))))
-      (write-file-anew (lambda (out) (write-string text out)) path "the script"
+      (overwrite-file (lambda (out) (write-string text out)) path "the script"
                        :remedy "remove it, or give another directory"))
     path))
 

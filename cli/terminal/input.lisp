@@ -45,7 +45,7 @@ available when the last line was read."))
     0)
   (:method ((stream typed-text)) (typed-count stream)))
 
-(defmethod of-lines-typed-p ((stream typed-text))
+(defmethod typed-input-p ((stream typed-text))
   t)
 
 (defmethod typed-by-hand-p ((stream stream))
@@ -78,7 +78,7 @@ long. The end of a line that is too long is only an outline."
 
 (defun reject-long-line (octets)
   "Signal LINE-TOO-LONG for a line with the outline OCTETS."
-  (let ((outline (string-right-trim '(#\Newline) (decoded octets))))
+  (let ((outline (string-right-trim '(#\Newline) (utf-8-decoded octets))))
     (error 'line-too-long
            :beginning (cut outline 60) :outline outline
            :text (format nil "The line is longer than ~D bytes. Put its text into a file, and ~
@@ -92,7 +92,7 @@ the end of the input. Signals BAD-LINE if the line is too long.")
     (multiple-value-bind (octets too-long-p) (read-octet-line (typed-octets stream))
       (when too-long-p (reject-long-line octets))
       ;; Some editors begin files with a byte order mark.
-      (string-left-trim '(#.(code-char #xFEFF)) (decoded octets)))))
+      (string-left-trim '(#.(code-char #xFEFF)) (utf-8-decoded octets)))))
 
 (defun ensure-unread-line (stream)
   "Read the next line of STREAM if the current line has been used up."

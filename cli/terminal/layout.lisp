@@ -26,7 +26,7 @@ remedy."
 
 (defun ending-condition-text (condition)
   "Return the message of CONDITION, which ends this process, or +UNPRINTABLE+."
-  (if (string= "" (own-text condition)) +unprintable+ (condition-text condition)))
+  (if (string= "" (printable-report condition)) +unprintable+ (condition-text condition)))
 
 (defun condition-text (condition)
   "Return the message of CONDITION, or its type if the message cannot be printed."
@@ -88,8 +88,8 @@ numbers."
 
 (defun designator-bearing-text (designator)
   "Return the distance and the angle of DESIGNATOR, a property list from STATUS, as text."
-  (format nil "~,2F, ~,2F" (hundredths (getf designator :distance))
-          (hundredths (getf designator :angle))))
+  (format nil "~,2F, ~,2F" (zero-if-tiny (getf designator :distance))
+          (zero-if-tiny (getf designator :angle))))
 
 (defun part-location-text (part)
   "Return a text that tells what PART is inside of, or NIL (manual E; reading 202)."

@@ -16,7 +16,7 @@
   (:documentation "Wait up to SECONDS until STREAM has input or is at its end. Return true if that
 happens.")
   (:method ((stream stream) seconds)
-    (input-within-p stream seconds)))
+    (wait-for-input stream seconds)))
 
 (defun say-on-error-output (text)
   "Write TEXT to the error output as a line that names the program, whatever state the streams are
@@ -25,7 +25,7 @@ in."
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
     ;; A stream cannot be made where numbers cannot be printed.
-    (handler-case (write-to (text-output 2))
+    (handler-case (write-to (text-output-stream 2))
       (error () (ignore-errors (write-to *error-output*))))))
 
 ;;; Control-C. It reaches this process's first thread, between any two of its instructions. The
@@ -174,11 +174,11 @@ CALL-IN-KEY-MODE."
 (defun quit-by-signal ()
   "End this process by the signal SIGQUIT, as Control-\\ does in other programs."
   (restore-terminal-mode)
-  (sb-posix:kill (process-number) sb-posix:sigquit))
+  (sb-posix:kill (process-id) sb-posix:sigquit))
 
 ;;; How large the window is.
 
 (defun window-size ()
-  (multiple-value-bind (rows columns) (rows-and-columns)
+  (multiple-value-bind (rows columns) (window-rows-and-columns)
     (values (if (plusp columns) columns 80)
             (if (plusp rows) rows 24))))

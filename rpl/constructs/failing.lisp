@@ -10,7 +10,7 @@
      (unwind task frame (failure-of failure task frame)))))
 
 (defun check-fail (form)
-  (when (and (cddr form) (keywordp (second form)) (resembles-p (second form) :class))
+  (when (and (cddr form) (keywordp (second form)) (misspelling-p (second form) :class))
     (style-warn-of form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
                    (second form))))
 

@@ -132,7 +132,7 @@ POLICY-SETF."
     (when (every #'constantp kept)
       (dolist (name (set-difference (name-arguments-in 'policy-get clauses) kept :test #'equal))
         (when (constantp name)
-          (doubt-definition "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
+          (warn-of-style "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
                              ~@[ Stored: ~{~(~S~)~^, ~}.~]"
                             definition name kept))))))
 
@@ -170,7 +170,7 @@ MALFORMED-DEFINITION. (From CRAM, where the check is polled.)"
                            ,(policy-code definition name parameters clauses environment)
                            :variable t)
                  ,@(when text `((setf (documentation ',name 'variable) ,text))))
-               (variable-forms name))))))
+               (defvar-forms name))))))
 
 (addition make-policy)
 (define-user-macro make-policy ((&rest parameters) &body clauses &environment environment)

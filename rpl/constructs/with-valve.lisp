@@ -34,7 +34,7 @@ queue."
 of VALVES."
   (dolist (valve valves)
     (when (and (name-without-quote-p valve scope) (fboundp valve))
-      (doubt-definition "~A: ~(~A~) is a function, not a variable. Call it: (with-valve ~
+      (warn-of-style "~A: ~(~A~) is a function, not a variable. Call it: (with-valve ~
                          ((~:*~(~A~))) ...)"
                         (text-title) valve)))
   (value-lambda `(cons ,priority (list ,@valves)) scope))

@@ -197,7 +197,7 @@ or NIL."
   (let ((kind (first (gethash name *known-variables*))))
     (and (stringp kind) kind)))
 
-(defmethod value-behind ((fluent fluent))
+(defmethod value-to-pass-text ((fluent fluent))
   "FLUENT-VALUE returns the value of a fluent.")
 
 (defun fluents-vector-p (object)

@@ -63,16 +63,16 @@ INTERFACE is in use. FUNCTION is SET-VALUE or PULSE.")
 
 (defun take-home (home)
   "Make this thread the owner of HOME. Return true unless another thread owns HOME."
-  (swap-if (home-holder home) nil (current-thread)))
+  (swap-if-eq (home-holder home) nil (current-thread)))
 
 (defun leave-home (home)
-  (swap-if (home-holder home) (current-thread) nil))
+  (swap-if-eq (home-holder home) (current-thread) nil))
 
 (defun call-owning-home (home take function)
   "Take HOME by calling TAKE. If TAKE returns true, call FUNCTION in HOME, leave HOME and return the
 values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (declare (type function take function))
-  (protecting-strictly
+  (unwind-protect-strictly
     (when (funcall take home)
       (let* ((homes (cons home *homes*)) (*runner* home) (*homes* homes))
         (declare (dynamic-extent homes))
@@ -118,7 +118,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
 is left."
   (unless (home-outbox home)
     (loop for entries = (home-inbox home)
-          until (swap-if (home-inbox home) entries '())
+          until (swap-if-eq (home-inbox home) entries '())
           finally (setf (home-outbox home) (reverse entries))))
   (if (home-outbox home)
       (values (pop (home-outbox home)) t)

@@ -121,7 +121,7 @@ REALM."
 
 (defmethod copy-plan-value ((realm realm) fork)
   (if (eq realm (source-realm fork))
-      (note-copy realm (fork-realm realm) fork)
+      (record-copy realm (fork-realm realm) fork)
       realm))
 
 (defun source-realm (copier)
@@ -134,7 +134,7 @@ REALM."
 
 (defmethod copy-plan-value ((entity entity) fork)
   (let ((own (entity-in entity (source-realm fork))))
-    (cond ((not (eq own entity)) (note-copy entity (forked own fork) fork))
+    (cond ((not (eq own entity)) (record-copy entity (forked own fork) fork))
           ((not (eq (entity-realm entity) (source-realm fork))) entity)
           ((foreign-entity-p entity fork) entity)
           (t (copy-entity entity fork)))))

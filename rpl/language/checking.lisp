@@ -12,9 +12,9 @@
 (defun warn-at-form (warn form control arguments)
   "Let the function WARN report a text about FORM, with the source location of FORM. The text is
 formatted from CONTROL and ARGUMENTS."
-  (call-at-place form
+  (call-at-source-location form
                  (lambda ()
-                   (funcall warn "~A~@[ (~A)~]: ~A" (text-title) (clause-place form)
+                   (funcall warn "~A~@[ (~A)~]: ~A" (text-title) (clause-location form)
                             (let ((*print-case* :downcase) (*print-pretty* nil))
                               (apply #'format nil control arguments))))))
 
@@ -22,13 +22,13 @@ formatted from CONTROL and ARGUMENTS."
   (warn-at-form #'warn-of-definition form control arguments))
 
 (defun style-warn-of (form control &rest arguments)
-  "Warn of FORM as DOUBT-DEFINITION does."
-  (warn-at-form #'doubt-definition form control arguments))
+  "Warn of FORM as WARN-OF-STYLE does."
+  (warn-at-form #'warn-of-style form control arguments))
 
 (defun style-warn-of-own (form control &rest arguments)
   "Do as STYLE-WARN-OF if FORM belongs to the text of the plan itself."
   (when (own-text-p form)
-    (warn-at-form #'doubt-definition form control arguments)))
+    (warn-at-form #'warn-of-style form control arguments)))
 
 (defun known-operators (&optional (package *package*))
   "Return the names of operators that a misspelt call in PACKAGE could mean. Names of one letter are
@@ -36,7 +36,7 @@ left out."
   (let ((names (declared-names)))
     (do-symbols (symbol package names)
       (when (and (known-function-p symbol nil)
-                 (not (lisps-own-p symbol))
+                 (not (lisp-symbol-p symbol))
                  (< 1 (length (symbol-name symbol))))
         (push symbol names)))))
 
@@ -65,7 +65,7 @@ NIL."
 construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
   (let ((name (first form)))
     (when (and *definition*
-               (lisps-own-p name)
+               (lisp-symbol-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisp-namesake name))
       (style-warn-of form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
@@ -220,7 +220,7 @@ later, nor inside a call for which TEST returns :NOWHERE."
 (defun check-use (variables where form)
   "Warn about each of VARIABLES, the variables bound by FORM, that the list of forms WHERE does not
 mention."
-  (when (in-source-p form)
+  (when (has-source-location-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
         (style-warn-of form "the variable ~(~A~) is never used. If this is intended, write ~

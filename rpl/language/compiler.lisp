@@ -27,17 +27,17 @@
 (defun condition-form (form environment)
   "Return a form that is true if FORM is true, where the value of a fluent counts."
   (flet ((conditions (operator)
-           (keep-place `(,operator ,@(loop for form in (rest form)
-                                           collect (condition-form form environment)))
-                       form)))
+           (copy-source-location `(,operator ,@(loop for form in (rest form)
+                                                     collect (condition-form form environment)))
+                                 form)))
     (check-condition form)
     (cond ((own-operator-call-p form environment '("AND")) (conditions 'and))
           ((own-operator-call-p form environment '("OR")) (conditions 'or))
           ((own-operator-call-p form environment '("NOT" "NULL")) (conditions 'not))
           ((own-operator-call-p form environment *lifted-operators*)
-           (keep-place (operand-form form environment) form))
+           (copy-source-location (operand-form form environment) form))
           ((constantp form environment) form)
-          (t (keep-place `(truth-value ,form) form)))))
+          (t (copy-source-location `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
   "Return a Lisp form with the meaning that FORM, a call in the text of a plan, has in plans. If
@@ -115,7 +115,7 @@ itself."
                               (plan-meaning form environment))))
              (if (and (eq meaning form)
                       (macro-function (first form) environment)
-                      (not (lisps-own-p (first form))))
+                      (not (lisp-symbol-p (first form))))
                  (note-own-text (expand-in-walk form environment))
                  meaning)))))
 
@@ -238,8 +238,8 @@ evaluation."
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
-  (let ((*current-source-form* (if (in-source-p form) form *current-source-form*)))
-    (keep-place (if (or (suspends-p form scope) (binds-fluents-p form scope))
+  (let ((*current-source-form* (if (has-source-location-p form) form *current-source-form*)))
+    (copy-source-location (if (or (suspends-p form scope) (binds-fluents-p form scope))
                     (naming-code (waiting-code form scope) scope)
                     (leaf-code form scope))
                 form)))
@@ -279,7 +279,7 @@ evaluation."
 
 (defun expansion-code (form scope)
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
-    (if (and (consp form) (lisps-own-p (first form)))
+    (if (and (consp form) (lisp-symbol-p (first form)))
         (note-written-as expansion form)
         (note-own-text expansion))
     (plan-code expansion scope)))

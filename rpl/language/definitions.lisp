@@ -38,7 +38,7 @@
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
                                 (lambda (&rest arguments) (reject-lisp-call ',name arguments))
-                                ',(source-here) '(def-interp-proc ,@form))))))))
+                                ',(source-of-current-form) '(def-interp-proc ,@form))))))))
 
 (defun check-plan-name (definition name)
   (unless (symbolp name) (reject-clause definition name "a symbol as the name"))

@@ -70,7 +70,7 @@ FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
     (let* ((fluent (compared-fluent subject))
            (doubts (remove nil (cond ((operator-in-p fluent '("TASK-STATUS"))
                                       (mapcar #'status-advice words))
-                                     ((error-fluent-p fluent) (mapcar #'code-doubt words))))))
+                                     ((error-fluent-p fluent) (mapcar #'wrong-error-code-text words))))))
       (and doubts (format nil "~{~A~^ ~}" doubts)))))
 
 ;;; Pulses take no time: no test between two waits finds them true.
@@ -213,17 +213,17 @@ not."
     (let ((fluent (second form)))
       (if (and (consp fluent) (consp (cdr fluent))) (second fluent) fluent))))
 
-(defmethod test-doubt ((form symbol))
+(defmethod doubtful-test-text ((form symbol))
   ;; Plans read fluents by value.
   (when (and (null *own-conses*) (known-fluent-variable-p form))
     (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
                  (fluent-value ~:*~(~A~))." form)))
 
-(defmethod test-doubt ((form cons))
+(defmethod doubtful-test-text ((form cons))
   (cond (*own-conses* nil)
         ((and (typep form '(cons symbol (cons t null)))
               (member (first form) '("NOT" "NULL") :test #'string=))
-         (test-doubt (second form)))
+         (doubtful-test-text (second form)))
         ((known-pulse-p (read-fluent form))
          (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. In plans ~
                       write (wait-for ~(~A~)); in Lisp write (await-idle), or (run-until (idle-p)) ~

@@ -61,7 +61,7 @@ body."
                               (known-function-p name environment)))
                        (lambda-list-variables parameters))))
     (when name
-      (doubt-definition "~A: a parameter has the name of the function ~(~A~). If (~1@*~(~A~)) is ~
+      (warn-of-style "~A: a parameter has the name of the function ~(~A~). If (~1@*~(~A~)) is ~
                          the first form of the body, write the list of parameters before it: () ~
                          if the plan has no parameters."
                         definition name))))
@@ -262,13 +262,13 @@ first."
   "Give FORM, code made around parts of the current source form, the source location of that form.
 Return FORM."
   (labels ((place (form depth)
-             (when (and (consp form) (plusp depth) (not (in-source-p form)))
-               (keep-place form *current-source-form*)
+             (when (and (consp form) (plusp depth) (not (has-source-location-p form)))
+               (copy-source-location form *current-source-form*)
                (loop for tail = form then (rest tail)
                      repeat 8
                      while (consp tail)
                      do (place (first tail) (1- depth))))))
-    (when (in-source-p *current-source-form*) (place form 12)))
+    (when (has-source-location-p *current-source-form*) (place form 12)))
   form)
 
 (defun leaf-lambda (form scope &rest parameters)

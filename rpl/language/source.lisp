@@ -84,7 +84,7 @@ the names of iterate's macros are left out."
   (let ((advice (or (advice-for-form container)
                     "Bind the value with let before this form, so that the plan waits in the
 let.")))
-    (call-at-place form
+    (call-at-source-location form
                    (lambda ()
                      (error 'misplaced-suspension
                             :definition (text-title) :clause form
@@ -92,7 +92,7 @@ let.")))
                                               (operator-text container)
                                               (string-right-trim "." advice))
                             :form form :container container :advice advice
-                            :place (clause-place form))))))
+                            :place (clause-location form))))))
 
 ;;; What a construct expands to within a macro of a user.
 

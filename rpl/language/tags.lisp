@@ -198,7 +198,7 @@ plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled 
 Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
 MALFORMED-DEFINITION. (From CRAM, where it takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
-         (body (call-blaming-form
+         (body (call-reporting-form
                 (lambda ()
                   (with-own-text (form)
                     (evaluate-form (plan-code form (scope-of (tagged-layers node)))

@@ -249,7 +249,7 @@ failed, and struck through if it was ended. Draw nothing if OUTCOME is NIL."
 (defmethod subject-title ((bar bar))
   (format nil "~A, ticks ~A to ~A~@[, ~(~A~)~]~@[: ~A~]" (bar-label bar #'whole-form-text)
           (bar-start bar) (bar-end bar) (bar-outcome bar)
-          (and (bar-failure bar) (cut (one-line (own-text (bar-failure bar))) 200))))
+          (and (bar-failure bar) (cut (one-line (printable-report (bar-failure bar))) 200))))
 
 (defun spans-of-kind (bar kind)
   (remove kind (bar-spans bar) :key #'span-kind :test-not #'eq))

@@ -10,7 +10,7 @@
 (defvar *fluent-variables* '() "A list (variable kind name) of all fluent variables; the kind of
 part is a symbol, NIL for the robot itself.")
 
-(pushnew '*fluent-variables* *kept-variables*)
+(pushnew '*fluent-variables* *variables-to-restore*)
 
 (defun fluent-kind (kind)
   "Return the name of the kind of part named KIND, or NIL for ROBOT. Signals an error if there is no

@@ -73,7 +73,7 @@ OLD."
             (cons (cons (gensym "ERA") number)
                   (eras-until number (interface-eras interface)))))))
 
-(attend *rewind-hooks* begin-era)
+(add-listener *rewind-hooks* begin-era)
 
 ;;; When a run is repeated, plans do the same again. But the journal does not record calls from
 ;;; outside: that plans were begun and ended, fluents set, commands issued by plan functions, or
@@ -144,7 +144,7 @@ Return FLUENT itself if no variable holds FLUENT."
             (not (eq (realm-of-simulation old) (global-value '*realm*))))
     (leave-realm (realm-of-simulation old) (realm-of-simulation new))))
 
-(attend *rewind-hooks* drop-fluents-of-old-run)
+(add-listener *rewind-hooks* drop-fluents-of-old-run)
 
 (defun copy-fluents-back (old new)
   "Set the fluents of OLD, a rewound run, to their values in NEW, the run that has replaced OLD and
@@ -152,7 +152,7 @@ is over."
   (let ((from (realm-of-simulation new)) (realm (realm-of-simulation old)))
     (unless (or (null realm) (eq from realm)) (copy-back-values from realm))))
 
-(attend *rewound-end-hooks* copy-fluents-back)
+(add-listener *rewound-end-hooks* copy-fluents-back)
 
 ;; A live run that was rewound has let top-level code work in a fork of where that worked before.
 (defun return-to-root-realm (robot options)
@@ -165,7 +165,7 @@ started a new run. Fluents keep their last values."
       (setf (global-value '*realm*) +root+)
       (when (eq from *realm*) (setf *realm* +root+)))))
 
-(attend *simulator-hooks* return-to-root-realm)
+(add-listener *simulator-hooks* return-to-root-realm)
 
 ;;; Plans are copied while they rest, between two reactions: then all that they are about to do is
 ;;; in their tasks, and in what was posted to them.

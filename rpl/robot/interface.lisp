@@ -76,7 +76,7 @@ prompt was given another robot later")
   (with-gensyms (tasks)
     `(loop for ,tasks = ,place
            until (or (not (member ,task ,tasks))
-                     (swap-if ,place ,tasks (remove ,task ,tasks))))))
+                     (swap-if-eq ,place ,tasks (remove ,task ,tasks))))))
 
 (pushnew '*interface* *simulation-variables*)
 (pushnew '*realm* *simulation-variables*)
@@ -207,7 +207,7 @@ a plan that waits in a debugger can be answered meanwhile."
 NIL."
   (let ((thread (interface-thread interface)))
     (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
-      (swap-if (interface-thread interface) thread nil))
+      (swap-if-eq (interface-thread interface) thread nil))
     (interface-thread interface)))
 
 (defun wake-plans-or-owner (interface)

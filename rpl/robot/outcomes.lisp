@@ -56,7 +56,7 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
   (let ((interface (required-interface)))
     ;; A call from outside of plans is recorded. Its results reach forks too.
     (record-plan-action interface #'apply operator (mapcar #'fluent-value arguments))
-    (let ((*goes-on-in-forks-p* t))
+    (let ((*continues-in-forks-p* t))
       (issue-in-plan interface operator command outcome arguments)))
   (values))
 
@@ -132,10 +132,10 @@ none. PART is the name of the command's argument for the part."
 
 (defun warn-of-argument-count (name command-name parameters forms)
   (unless (= (length parameters) (length forms))
-    (doubt-definition "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
-                       plans the robot and the continuation are left out: ~A.~]"
-                      name parameters (length forms)
-                      (< (length parameters) (length forms)) (plan-call-text command-name))))
+    (warn-of-style "~(~A~) takes ~:[no argument~;~:*~(~A~)~], not ~D argument~:P.~:[~; In ~
+                    plans the robot and the continuation are left out: ~A.~]"
+                   name parameters (length forms)
+                   (< (length parameters) (length forms)) (plan-call-text command-name))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When a command ends, CLAUSES are carried out with ERR

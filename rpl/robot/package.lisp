@@ -13,7 +13,7 @@
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded #:check-not-over
-                #:wake-owner #:begin-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
+                #:wake-owner #:count-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks

@@ -131,11 +131,11 @@ of the run share a random state."
     (when (simulation-plans-dice-p simulation)
       (or (runner-lisps-dice runner)
           (setf (runner-lisps-dice runner)
-                (seeded-lisps-dice (+ (simulation-seed simulation)
-                                      ;; How many robots of the run come before it.
-                                      (or (position (interface-robot interface)
-                                                    (simulation-robots simulation))
-                                          0))))))))
+                (seeded-random-state (+ (simulation-seed simulation)
+                                        ;; How many robots of the run come before it.
+                                        (or (position (interface-robot interface)
+                                                      (simulation-robots simulation))
+                                            0))))))))
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
@@ -147,10 +147,10 @@ nothing."
             (*reacting-interface* interface)
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))
-            (*goes-on-in-forks-p* t))
+            (*continues-in-forks-p* t))
         (charge-declared-time interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
-        (let ((outcome (rolling ((plans-dice interface)) (react-and-serve interface))))
+        (let ((outcome (with-random-state ((plans-dice interface)) (react-and-serve interface))))
           ;; If it was closed while its plans reacted, the rest is done here.
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
                 (t outcome))))))

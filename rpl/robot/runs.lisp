@@ -114,7 +114,7 @@ NIL if TASK goes on."
 
 (defun run-headless (interface task)
   "Pass ticks until TASK is over. Return the state of TASK, or :STOPPED, :DEADLOCK or :LIMIT."
-  (check-argument run-plan *plan-limit* (within-reason-p *plan-limit*)
+  (check-argument run-plan *plan-limit* (sane-number-p *plan-limit*)
                   "a number of ticks, up to 1e9")
   (pass-until interface
               (lambda () (final-state-of-task interface task))
@@ -142,7 +142,7 @@ calls from outside can wake the plans."
                      (setf told t)
                      (with-plans (interface) (report-stillness (interface-runner interface)))))
               (check-wait-while-paused 'run-plan simulation)
-              (wait-a-while over 0.2))
+              (wait-and-serve over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
 (defun check-may-wait (interface)
@@ -307,8 +307,8 @@ or if the run was rewound to a tick before TASK began."
   "Warn if FORM, the plan argument in a call of OPERATOR, is the name of a plan and no variable."
   (when (and form (symbolp form) (not (known-variable-p form environment)))
     (when (find-procedure form nil)
-      (doubt-definition "~A: ~A is a plan and no variable. Quote its name: '~:*~A"
-                        operator form))))
+      (warn-of-style "~A: ~A is a plan and no variable. Quote its name: '~:*~A"
+                     operator form))))
 
 (define-compiler-macro run-plan (&whole form &rest arguments &environment environment)
   (warn-of-unquoted-plan 'run-plan (first arguments) environment)

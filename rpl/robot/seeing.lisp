@@ -18,7 +18,7 @@
 (defun trace-if-wanted (task)
   (when *trace-plans* (start-trace (task-runner task))))
 
-(attend *plan-start-hooks* trace-if-wanted)
+(add-listener *plan-start-hooks* trace-if-wanted)
 
 ;; The state that was restored may be older than the wish for a trace.
 (defun trace-rewound (old new)
@@ -27,7 +27,7 @@
     (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
       (with-plans (interface) (start-trace (interface-runner interface))))))
 
-(attend *rewind-hooks* trace-rewound)
+(add-listener *rewind-hooks* trace-rewound)
 
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, or with NIL. No plan goes on meanwhile."

@@ -125,7 +125,7 @@ another world than the current one."
       (unless (interface-valid-p interface) (close-interface interface))
       (when (eq interface *interface*) (setf *interface* nil)))))
 
-(attend *simulator-hooks* close-old-interface)
+(add-listener *simulator-hooks* close-old-interface)
 
 ;;;; Taking part in the simulation
 
@@ -154,7 +154,7 @@ in this tick, as in most ticks. No other thread may touch the plans meanwhile."
          (when (or (time-to-wake-p interface) (not (plans-thread-wanted-p interface)))
            (wake-plans interface)))
         ((not (plans-thread-wanted-p interface))
-         (begin-moment (simulation-timeline simulation))
+         (count-moment (simulation-timeline simulation))
          (if (live-p simulation)
              (with-plans (interface)
                (unless (advance-without-reaction interface) (react-fully interface)))

@@ -81,7 +81,7 @@ code THREAD is running."
 
 (defun run-plans-in-ticks (interface)
   "From now on, run the plans of INTERFACE at the end of each tick, without a thread."
-  (swap-if (interface-thread interface) (current-thread) nil)
+  (swap-if-eq (interface-thread interface) (current-thread) nil)
   ;; Another thread may have closed it before, and left the rest to this one.
   (when (interface-closing-p interface) (react-fully interface))
   (wake-owner (simulation-timeline (interface-simulation interface)))
@@ -139,11 +139,11 @@ simulation."
   "Call FUNCTION in this thread, which is the thread of INTERFACE until FUNCTION returns or is left.
 Do nothing if the start of this thread was given up."
   (let ((thread (current-thread)))
-    (swap-if (interface-thread interface) :starting thread)
+    (swap-if-eq (interface-thread interface) :starting thread)
     (when (eq thread (interface-thread interface))
       (in-any-case
         (funcall function)
-        (swap-if (interface-thread interface) thread nil)
+        (swap-if-eq (interface-thread interface) thread nil)
         (wake-owner (simulation-timeline (interface-simulation interface)))))))
 
 (defun start-plans-thread (interface)
@@ -162,7 +162,7 @@ Do nothing if the start of this thread was given up."
            (name (control)
              (format nil control (interface-robot interface))))
       (let ((thread (start-thread #'run (name "plans of ~A"))))
-        (swap-if (interface-thread interface) :starting thread)
+        (swap-if-eq (interface-thread interface) :starting thread)
         (start-thread (lambda ()
                         (call-with-thread-bindings
                          simulation
@@ -173,7 +173,7 @@ Do nothing if the start of this thread was given up."
 (defun ensure-thread (interface)
   (when (and (plans-thread-wanted-p interface) (null (plans-thread interface)))
     (deferring-interrupts
-      (when (swap-if (interface-thread interface) nil :starting)
+      (when (swap-if-eq (interface-thread interface) nil :starting)
         (in-any-case
           (start-plans-thread interface)
-          (swap-if (interface-thread interface) :starting nil))))))
+          (swap-if-eq (interface-thread interface) :starting nil))))))

@@ -138,7 +138,8 @@ Leave out names whose text is NIL."
     (write-lines stream
                  "Name" (form-text (fluent-name fluent))
                  "Value" (handler-case (form-text (fluent-value fluent) 70)
-                           (error (condition) (format nil "error: ~A" (own-text condition))))
+                           (error (condition)
+                             (format nil "error: ~A" (printable-report condition))))
                  "Computed from" (and sources
                                       (format nil "~{~A~^, ~}" (mapcar #'form-text sources)))
                  "Waited for by" (and clients (format nil "~{~A~^, ~}" clients)))))

@@ -36,9 +36,9 @@
 
 (defun enter-break (break)
   "Enter the debugger for BREAK, if a debugger is available. Return when the plan is to go on."
-  (if (debugger-p)
+  (if (debugger-available-p)
       (invoke-debugger break)
-      (message-set "Break: " (own-text break))))
+      (message-set "Break: " (printable-report break))))
 
 ;;; Where plans fail.
 
@@ -58,9 +58,10 @@ none. Without an interactive debugger, such failures are messages.")
 (defun consider-break (failure task frame)
   (when (break-wanted-p failure)
     (with-simple-restart (continue "Let the failure happen.")
-      (enter-break (make-condition 'plan-break :text (own-text failure) :task task :frame frame)))))
+      (enter-break (make-condition 'plan-break :text (printable-report failure) :task task
+                                                :frame frame)))))
 
-(attend *failure-hooks* consider-break)
+(add-listener *failure-hooks* consider-break)
 
 ;;; A runner with plans to be stepped has a STEPPER, which is called before each step of any of its
 ;;; tasks (see INSTRUMENTED-STEP); without one this costs nothing. Only steps that begin an
@@ -179,4 +180,4 @@ interactive debugger, a stop is a message, and the task goes on. Returns nothing
 (defun step-if-wanted (task)
   (when *step-plans* (step-task task)))
 
-(attend *plan-start-hooks* step-if-wanted)
+(add-listener *plan-start-hooks* step-if-wanted)

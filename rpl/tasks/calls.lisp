@@ -40,7 +40,7 @@
 
 (defun shape-text (lambda-list)
   "Return LAMBDA-LIST as text, in lower case."
-  (printing-words ()
+  (printing-text ()
     (let ((*print-case* :downcase) (*print-pretty* nil))
       (format nil "~:A" lambda-list))))
 

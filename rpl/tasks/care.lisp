@@ -39,13 +39,13 @@ slice."
             (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
       (note-event task :failure failure)
       (note-plan-trouble (runner-client (task-runner task)) task failure)
-      (tell-listeners *failure-hooks* failure task frame))
+      (call-listeners *failure-hooks* failure task frame))
     failure))
 
 (defun lisp-backtrace ()
   "Return a text of the Lisp calls in progress in the code of a plan that has just signalled an
 error."
-  (let* ((calls (calls-under-way))
+  (let* ((calls (calls-in-progress))
          (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
                                calls :key #'first)))
     (with-output-to-string (stream)
@@ -54,7 +54,7 @@ error."
             until (member (first call) '(run-steps step-leaf call-to-outcome))
             do (format stream "    ~D: ~A~%" number (form-text call 100))))))
 
-(defmethod value-behind ((task task))
+(defmethod value-to-pass-text ((task task))
   "BEGIN-PLAN returns the task of a plan that goes on; RUN-PLAN returns the values of a plan.")
 
 ;;; An interrupt from outside, such as Control-C or a time limit, may leave a reaction at any point,
@@ -162,7 +162,7 @@ no more parts."
 (defun fail-current (runner trouble)
   "Let the running task of RUNNER fail with TROUBLE, a failure or a lack of memory."
   (let ((task (runner-current runner)))
-    (when (typep trouble 'storage-condition) (regain-room trouble))
+    (when (typep trouble 'storage-condition) (recover-memory trouble))
     (let ((failure (current-failure runner trouble)))
       (cond ((task-newest-child task)   ; The step was starting parts.
              (setf (task-state task) :waiting)
@@ -232,7 +232,7 @@ again."
                                      :test-function #'in-step-p)
                    (abort end :report-function #'offer-ending
                               :test-function #'in-step-p))
-      (let ((*spoilt-by-leaving-p* #'in-step-p))
+      (let ((*leaving-ends-work-p* #'in-step-p))
         (funcall function runner)))))
 
 ;;; The outcome of a step is a keyword:
@@ -266,13 +266,13 @@ that it met; and whether the step may have been stopped in the middle of the sim
                    (fail)))
                (answer (condition somebody-p)
                  (cond (somebody-p (setf (runner-looked-at runner) t)
-                                   (note-waiting))
+                                   (note-debugger-waiting))
                        ((not (running-task runner)))
                        ((typep condition 'serious-condition)
                         (setf trouble condition)
                         (fail))
                        (t (report-break condition (list (task-label (runner-current runner))))
-                          (continue-inside condition)
+                          (continue-in-user-code condition)
                           (end)))))
         ;; Each step of each task comes by here, so nothing is allocated.
         (declare (dynamic-extent #'end #'leave #'fail #'note #'answer))

@@ -196,7 +196,7 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
 (defun end-requested-tasks (runner)
   "Evaporate the tasks that other threads, or code outside of plans, have asked RUNNER to end."
   (loop for requests = (runner-ends-requested runner)
-        until (swap-if (runner-ends-requested runner) requests '())
+        until (swap-if-eq (runner-ends-requested runner) requests '())
         finally (loop for (task . asker) in (reverse requests)
                       do (let ((*asker* asker)) (evaporate task)))))
 

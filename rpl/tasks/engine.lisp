@@ -59,7 +59,7 @@ the task, which runs at the next reaction."
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
           (count-slow-step +steps-of-start+ runner)
           (push task (runner-roots runner))
-          (tell-listeners *plan-start-hooks* task)
+          (call-listeners *plan-start-hooks* task)
           task)))))
 
 ;;; Reacting. In a round every ready task runs until it waits, ends or has used its slice. Then the

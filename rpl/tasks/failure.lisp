@@ -82,8 +82,8 @@ innermost first.")
 (defmacro safe-report-text ((condition) form)
   "Return the beginning of the text that FORM returns. If FORM signals an error, return a text of
 the parts of CONDITION that can be printed."
-  `(cut (handler-case (printing-words () ,form)
-          ((or error storage-condition) () (report-anyhow ,condition)))
+  `(cut (handler-case (printing-text () ,form)
+          ((or error storage-condition) () (partial-report ,condition)))
         +longest-failure+))
 
 (defun failure-report (failure)
@@ -93,7 +93,7 @@ the parts of CONDITION that can be printed."
 (defun failure-text (failure)
   "Return the report of FAILURE, or of another condition, cut if it is deep, long or circular. If
 the report signals an error, return the type of FAILURE."
-  (safe-report-text (failure) (or (our-text failure) (report-briefly failure))))
+  (safe-report-text (failure) (or (simulator-error-text failure) (report-briefly failure))))
 
 (defun make-failure (arguments)
   "Return the failure that (fail ARGUMENTS...) makes."

@@ -57,7 +57,7 @@ MISUSE" :writable))
   "Return the names of all defined plan procedures. Procedures of users come first, the newest
 first."
   (remove-if-not (lambda (name) (defined-p (registered-procedure name)))
-                 (names-to-offer *procedures*)))
+                 (names-to-suggest *procedures*)))
 
 (defun live-namesake (name)
   "Return the newest defined procedure whose name is the same as NAME, in any package; or NIL."
@@ -181,17 +181,17 @@ SOURCE."
           (procedure-source procedure) text
           (procedure-stub procedure) stub
           (documentation name 'function) documentation)
-    (reinstate procedure)
+    (redo-definition procedure)
     (let ((*definition* (make-defining source (or text (list "def-interp-proc" name)))))
       (register *procedures* name procedure))
     name))
 
-(defmethod reinstate ((procedure procedure))
+(defmethod redo-definition ((procedure procedure))
   (declare-procedure (procedure-name procedure) (procedure-lambda-list procedure))
   (setf (fdefinition (procedure-name procedure)) (procedure-stub procedure))
   procedure)
 
-(defmethod take-back ((procedure procedure))
+(defmethod undo-definition ((procedure procedure))
   (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
   (remhash (procedure-name procedure) *declared-procedures*)
   (setf (procedure-entry procedure) nil))

@@ -68,7 +68,7 @@ and CLASS is a keyword."
           ;; A keyword does not mean a condition type.
           (not (eq (keywordp type) (keywordp class)))
           (and (string-not-equal own other)
-               (or (resembles-p type class) (ending-p own other) (ending-p other own)))))))
+               (or (misspelling-p type class) (ending-p own other) (ending-p other own)))))))
 
 (defun similar-clause (failure)
   "Return the type of a handler clause around FAILURE that was probably meant for the class of
@@ -142,10 +142,10 @@ true, the caller also learns of the failure."
     (if awaited-p
         (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))
                        *message-queue*)
-        (trouble-set failure
-                     (format nil "The plan ~A failed: ~A" (first (failure-task-path failure))
-                             (brief-failure-text failure))
-                     text))))
+        (queue-user-error failure
+                          (format nil "The plan ~A failed: ~A" (first (failure-task-path failure))
+                                  (brief-failure-text failure))
+                          text))))
 
 (define-event *plan-start-hooks*
   "Functions, or their names, to call with each top-level task before it runs.")

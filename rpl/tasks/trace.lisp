@@ -129,7 +129,7 @@ each (chunk fill), newest first."
 
 ;; What has been noted is not copied: it is never altered.
 (defmethod copy-plan-value ((trace chronicle) fork)
-  (let ((copy (note-copy trace (make-trace) fork)))
+  (let ((copy (record-copy trace (make-trace) fork)))
     (setf (chronicle-full copy) (cons (list (chronicle-chunk trace) (chronicle-fill trace))
                                       (chronicle-full trace)))
     copy))
@@ -183,4 +183,4 @@ existing file is replaced. Each line has the tick, event, task number and expres
     (stream (printing-plainly ()
               (loop for entry across trace do (write-trace-entry entry destination))))
     ((or string pathname)
-     (write-file-anew (lambda (out) (write-trace trace out)) destination "the trace"))))
+     (overwrite-file (lambda (out) (write-trace trace out)) destination "the trace"))))

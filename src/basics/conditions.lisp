@@ -3,10 +3,11 @@
 (in-package :ars-magna.basics)
 
 (export '(check-argument reject-argument malformed-definition-expected malformed-definition-place
-          malformed-definition-clause warn-of-definition doubt-definition reject-name plain-name
-          reject-use outlived reject-outlived names-to-show malformed-definition-definition
-          call-refusing-exits refuse-exits call-allowing-exits +largest+ +largest-quantity+
-          within-reason-p quantity-p amount-p probability-p whole-p define-with-keywords))
+          malformed-definition-clause warn-of-definition warn-of-style reject-name plain-name
+          reject-use run-is-over-error reject-finished-run names-to-show
+          malformed-definition-definition call-refusing-exits refuse-exits call-allowing-exits
+          +largest+ +largest-quantity+ sane-number-p quantity-p amount-p probability-p whole-p
+          define-with-keywords))
 
 ;;; Misuse of the library signals one of these. A robot that fails in a task does not: it reports an
 ;;; error code to its command's continuation (manual 3.1.1).
@@ -40,7 +41,7 @@ part written so far."
                        (wrong-argument-operator condition)
                        (wrong-argument-name condition)
                        (let ((value (wrong-argument-value condition)))
-                         (if (pathnamep value) (shown-name value) (abridged value)))
+                         (if (pathnamep value) (file-name-text value) (abridged value)))
                        (sentence (wrong-argument-expected condition))))))
   (:documentation "A function was called with an argument that it cannot use."))
 
@@ -90,24 +91,24 @@ form."
 (setf (documentation 'definition-warning-text 'function)
       "Return the text of a DEFINITION-WARNING, a string.")
 
-(define-condition definition-doubt (definition-warning style-warning)
+(define-condition doubtful-definition (definition-warning style-warning)
   ()
   (:documentation "A definition in a compiled file may be mistaken: it refers to something
 undefined, or has an unused part. This is a style warning, so compiling does not fail."))
 
-(defun text-for-author (control arguments)
-  (printing-words ()
+(defun format-for-author (control arguments)
+  (printing-text ()
     (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
 
 (defun warn-of-definition (control &rest arguments)
   "Signal a DEFINITION-WARNING with a text formatted from CONTROL and ARGUMENTS."
-  (warn 'definition-warning :text (text-for-author control arguments)))
+  (warn 'definition-warning :text (format-for-author control arguments)))
 
-(defun doubt-definition (control &rest arguments)
+(defun warn-of-style (control &rest arguments)
   "Warn, as WARN-OF-DEFINITION does, of a definition that may be intended. In a compiled file the
 warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts are not compiled.)"
-  (warn (if *compile-file-truename* 'definition-doubt 'definition-warning)
-        :text (text-for-author control arguments)))
+  (warn (if *compile-file-truename* 'doubtful-definition 'definition-warning)
+        :text (format-for-author control arguments)))
 
 (defun plain-name (name)
   "Return NAME as text: a symbol in lower case, without its package."
@@ -136,7 +137,7 @@ warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts are not co
                                  ~@[ Known: ~{~A~^, ~}.~]~@[ ~A~]"
                          kind
                          (if (symbolp name)
-                             (cut (plain-name name) +most-characters+)
+                             (cut (plain-name name) +shown-characters+)
                              (prin1-to-string (abridged name)))
                          (and nearest (plain-name nearest))
                          (names-to-show known)
@@ -156,44 +157,44 @@ names KNOWN and suggests the most similar of the names MEANT."
   (:report (lambda (condition stream) (write-string (misuse-text condition) stream)))
   (:documentation "An operation is not allowed at this moment or in this state."))
 
-(define-condition outlived (misuse)
+(define-condition run-is-over-error (misuse)
   ()
   (:documentation "A program has requested an operation of a finished run."))
 
-(defun reject-outlived (control &rest arguments)
-  "Signal OUTLIVED, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
-  (error 'outlived :text (printing-words () (apply #'format nil control arguments))))
+(defun reject-finished-run (control &rest arguments)
+  "Signal RUN-IS-OVER-ERROR, a MISUSE, with a text formatted from CONTROL and ARGUMENTS."
+  (error 'run-is-over-error :text (printing-text () (apply #'format nil control arguments))))
 
 (defun reject-use (control &rest arguments)
   "Signal MISUSE with a text formatted from CONTROL and ARGUMENTS; it should name the remedy."
-  (error 'misuse :text (printing-words () (apply #'format nil control arguments))))
+  (error 'misuse :text (printing-text () (apply #'format nil control arguments))))
 
 ;;;; Refusing to exit a Lisp that is shared with other code
 
-(defvar *refusal* nil
+(defvar *exit-refusal* nil
   "The text of the error that EXIT signals, while code must not exit this Lisp; else NIL.")
 
-(defun refuse-exit (function &rest arguments)
+(defun exit-unless-refused (function &rest arguments)
   "Apply FUNCTION, which exits this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."
-  (when *refusal*
-    (reject-use "~A" *refusal*))
+  (when *exit-refusal*
+    (reject-use "~A" *exit-refusal*))
   (apply function arguments))
 
-(wrap-function 'sb-ext:exit #'refuse-exit)
+(wrap-function 'sb-ext:exit #'exit-unless-refused)
 
 (defun call-refusing-exits (function &optional (text "EXIT would end the whole program here. ~
                                                         Signal an error instead, or return."))
   "Call FUNCTION. Within FUNCTION, EXIT signals MISUSE with TEXT."
-  (let ((*refusal* (format nil text))) (funcall function)))
+  (let ((*exit-refusal* (format nil text))) (funcall function)))
 
 (defun refuse-exits (text)
   "Make EXIT signal MISUSE with TEXT in all threads of this Lisp, except within CALL-ALLOWING-EXITS.
 If TEXT is NIL, let EXIT exit again."
-  (setf (global-value '*refusal*) text))
+  (setf (global-value '*exit-refusal*) text))
 
 (defun call-allowing-exits (function)
   "Call FUNCTION. Within FUNCTION, EXIT exits this Lisp even if the caller refuses exits."
-  (let ((*refusal* nil)) (funcall function)))
+  (let ((*exit-refusal* nil)) (funcall function)))
 
 ;;;; Limits of numbers
 
@@ -209,18 +210,18 @@ If TEXT is NIL, let EXIT exit again."
 (define-constant +largest-quantity+ (expt 10 15)
   :documentation "The limit of attribute values.")
 
-(defun other-within-p (value limit)
+(defun non-double-within-p (value limit)
   (and (finite-p value) (<= (- limit) value limit)))
 
-(declaim (inline within-p within-reason-p quantity-p))
+(declaim (inline within-p sane-number-p quantity-p))
 (defun within-p (value limit)
   "True if VALUE is a number from -LIMIT to LIMIT. LIMIT is an integer."
   (if (typep value 'double-float)
       (and (finite-double-p value)
            (<= (double (- limit)) value (double limit)))
-      (other-within-p value limit)))
+      (non-double-within-p value limit)))
 
-(defun within-reason-p (value)
+(defun sane-number-p (value)
   "True if VALUE is a possible position, distance, speed, angle or time: from -1e9 to 1e9."
   (within-p value +largest+))
 
@@ -256,10 +257,10 @@ keyword."
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."
                                    operator key known)
         when (realp key)
-          do (doubt-definition "~(~A~): ~S stands in the place of a keyword. Write a keyword ~
-                                before ~:*~S: ~{~(~S~)~^, ~}." operator key known)))
+          do (warn-of-style "~(~A~): ~S stands in the place of a keyword. Write a keyword ~
+                             before ~:*~S: ~{~(~S~)~^, ~}." operator key known)))
 
-(defun with-options (lambda-list)
+(defun lambda-list-with-options (lambda-list)
   "Return four values: LAMBDA-LIST with any keywords allowed; the variable that holds all options;
 the known keywords; and the number of arguments before the options."
   (multiple-value-bind (required optional rest keys) (parse-ordinary-lambda-list lambda-list)
@@ -275,7 +276,7 @@ the known keywords; and the number of arguments before the options."
   "Define the function NAME like DEFUN, with a LAMBDA-LIST that has keywords and no optional
 parameters. A call with an unknown keyword signals UNKNOWN-NAME, which lists the known keywords. The
 compiler warns of a call with an unknown keyword."
-  (multiple-value-bind (all options known count) (with-options lambda-list)
+  (multiple-value-bind (all options known count) (lambda-list-with-options lambda-list)
     (multiple-value-bind (forms declarations) (parse-body body)
       `(progn
          (defun ,name ,all

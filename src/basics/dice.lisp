@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.basics)
 
-(export '(dice make-dice copy-dice text-word text-checksum digest make-digest digest-add
-          digest-word digest-mention))
+(export '(dice make-dice copy-dice text-hash text-checksum digest make-digest digest-add
+          digest-add-word digest-identity))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the same
 ;;; numbers on every machine and with every compiler. A simulation has one stream for each purpose,
@@ -13,8 +13,8 @@
 
 (define-constant +golden-gamma+ #x9E3779B97F4A7C15)
 
-(declaim (inline mix-word))
-(defun mix-word (word)
+(declaim (inline mix-bits))
+(defun mix-bits (word)
   (declare (type word word))
   (let* ((word (ldb (byte 64 0) (* (logxor word (ash word -30)) #xBF58476D1CE4E5B9)))
          (word (ldb (byte 64 0) (* (logxor word (ash word -27)) #x94D049BB133111EB))))
@@ -31,8 +31,8 @@
   "Return dice in the same state as DICE."
   (%make-dice (dice-state dice)))
 
-(declaim (inline characters-word))
-(defun characters-word (string code)
+(declaim (inline characters-hash))
+(defun characters-hash (string code)
   "Return a 64-bit hash (FNV-1a) of STRING. The function CODE maps each character to a number."
   (let ((word #xCBF29CE484222325))
     (declare (type word word))
@@ -46,10 +46,10 @@
         (t (loop for char across string do (add char))))
       word)))
 
-(defun text-word (text)
+(defun text-hash (text)
   "Return a 64-bit hash of the characters of TEXT, a string designator."
   (declare #.*hot*)
-  (characters-word (string text) #'char-code))
+  (characters-hash (string text) #'char-code))
 
 (declaim (inline upper-code))
 (defun upper-code (char)
@@ -59,16 +59,16 @@
           ((< code 128) code)
           (t (char-code (char-upcase char))))))
 
-(defun name-word (name)
+(defun name-hash (name)
   "Return a 64-bit hash of NAME, a string designator, in upper case."
   (declare #.*hot*)
-  (characters-word (string name) #'upper-code))
+  (characters-hash (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
   "Return dice for PURPOSE, a string designator. Their state depends only on PURPOSE and on the
 integer SEED."
   (check-argument make-dice seed (integerp seed) "an integer")
-  (%make-dice (mix-word (logxor (mix-word (ldb (byte 64 0) seed)) (text-word purpose)))))
+  (%make-dice (mix-bits (logxor (mix-bits (ldb (byte 64 0) seed)) (text-hash purpose)))))
 
 (declaim (inline roll chance roll-between roll-within))
 
@@ -78,7 +78,7 @@ integer SEED."
   (declare (type dice dice))
   (let ((state (ldb (byte 64 0) (+ (dice-state dice) +golden-gamma+))))
     (setf (dice-state dice) state)
-    (* (the double-float (float (ash (mix-word state) -11) 1d0)) #.(power-of-two -53))))
+    (* (the double-float (float (ash (mix-bits state) -11) 1d0)) #.(power-of-two -53))))
 
 (addition chance)
 (defun chance (probability dice)
@@ -141,13 +141,13 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
   "A hash of data, in order (FNV-1a, 64 bits)."
   (value #xCBF29CE484222325 word "the hash of all data added so far, 64 bits" :writable :export))
 
-(declaim (inline digest-word))
-(defun digest-word (digest word)
+(declaim (inline digest-add-word))
+(defun digest-add-word (digest word)
   "Add WORD, 64 bits, to DIGEST."
   (setf (digest-value digest)
-        (mix-word (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
+        (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
-(defgeneric digest-mention (object digest)
+(defgeneric digest-identity (object digest)
   (:documentation "Add to DIGEST the data that identify OBJECT; if there are none, the contents of
 OBJECT. Return DIGEST."))
 
@@ -156,33 +156,33 @@ OBJECT. Return DIGEST."))
 elements. All functions count as equal. Other objects are added by DIGEST-IDENTITY. Return DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
-    (null (digest-word digest (load-time-value (name-word nil))))
+    (null (digest-add-word digest (load-time-value (name-hash nil))))
     (double-float
-     (digest-word digest (double-to-bits datum)))
-    (fixnum (digest-word digest (ldb (byte 64 0) datum)))
-    (integer (digest-word digest (ldb (byte 64 0) datum)))
+     (digest-add-word digest (double-to-bits datum)))
+    (fixnum (digest-add-word digest (ldb (byte 64 0) datum)))
+    (integer (digest-add-word digest (ldb (byte 64 0) datum)))
     (ratio (if (finite-p datum)
                (digest-add digest (coerce datum 'double-float))
                (digest-add digest (list (numerator datum) (denominator datum)))))
     (real (digest-add digest (coerce datum 'double-float)))
-    ((or symbol string) (digest-word digest (name-word datum)))
-    (character (digest-word digest (char-code datum)))
-    (cons (digest-word digest 3)
+    ((or symbol string) (digest-add-word digest (name-hash datum)))
+    (character (digest-add-word digest (char-code datum)))
+    (cons (digest-add-word digest 3)
      (loop for tail = datum then (cdr tail)
            while (consp tail)
            do (digest-add digest (car tail))
            finally (digest-add digest tail)))
-    ((simple-array (unsigned-byte 8) (*)) (digest-word digest (length datum))
-     (loop for octet across datum do (digest-word digest octet)))
-    (simple-vector (digest-word digest (length datum))
+    ((simple-array (unsigned-byte 8) (*)) (digest-add-word digest (length datum))
+     (loop for octet across datum do (digest-add-word digest octet)))
+    (simple-vector (digest-add-word digest (length datum))
      (loop for element across datum do (digest-add digest element)))
-    (vector (digest-word digest (length datum))
+    (vector (digest-add-word digest (length datum))
      (loop for element across datum do (digest-add digest element)))
-    (function (digest-word digest 1))
-    (t (digest-mention datum digest)))
+    (function (digest-add-word digest 1))
+    (t (digest-identity datum digest)))
   digest)
 
 (defun text-checksum (text &optional (before 0))
   "Return a 32-bit checksum of the characters of TEXT, combined with BEFORE, the checksum of the
 text before TEXT."
-  (ldb (byte 32 0) (mix-word (logxor before (text-word text)))))
+  (ldb (byte 32 0) (mix-bits (logxor before (text-hash text)))))

@@ -10,19 +10,19 @@
   :test #'equalp
   :documentation "For each K from 0 to 127: 2^(K/128), rounded, and its relative rounding error.")
 
-(define-parts (+step-1+ +step-2+) (round (fixed-logarithm 2) 128) 36)
+(define-constant-parts (+step-1+ +step-2+) (round (fixed-logarithm 2) 128) 36)
 (define-constant +steps+ (/ 128 (nearest-double (fixed-logarithm 2)))
   :documentation "The number of steps in the table +POWERS+ that multiply a value by e.")
 
 ;; Inline, as a call would return a box.
-(declaim (inline overflow))
-(defun overflow (number)
+(declaim (inline signal-overflow))
+(defun signal-overflow (number)
   "Signal FLOATING-POINT-OVERFLOW, or return infinity if that trap is masked. NUMBER is above 700."
   (declare (type double-float number))
   (* number most-positive-double-float))
 
-(declaim (inline scaled))
-(defun scaled (number exponent)
+(declaim (inline scale-by-power))
+(defun scale-by-power (number exponent)
   "Return NUMBER times 2^EXPONENT. The result may be subnormal, or may overflow."
   (declare (type double-float number) (type (integer -1100 1100) exponent))
   (cond ((< exponent -1021) (* number (power-of-two (+ exponent 200)) #.(power-of-two -200)))
@@ -33,16 +33,16 @@
 (defun exponential-of-parts (high low)
   "Return e^(HIGH + LOW), for HIGH from -745.2 to 709.79."
   (declare (type (double-float -745.2d0 709.79d0) high) (type double-float low))
-  (let* ((steps (whole (* high +steps+)))
+  (let* ((steps (round-to-whole (* high +steps+)))
          (x (+ (- (- high (* steps +step-1+)) (* steps +step-2+)) low))
          (steps (truncate (the (double-float -150000d0 132000d0) steps)))
          (row (* 2 (ldb (byte 7 0) steps))) (power (aref +powers+ row))
          (rise (+ x (+ (aref +powers+ (1+ row))
                        (* x x (polynomial x 1/2 1/6 1/24 1/120 1/720))))))
-    (scaled (+ power (* power rise)) (ash steps -7))))
+    (scale-by-power (+ power (* power rise)) (ash steps -7))))
 
-(define-put put-exponential (number)
-  (cond ((> number 709.79d0) (overflow number))
+(define-cell-function put-exponential (number)
+  (cond ((> number 709.79d0) (signal-overflow number))
         ((< number -745.2d0) 0d0)
         (t (exponential-of-parts number 0d0))))
 
@@ -53,7 +53,7 @@
   :documentation "For each row: C, a number with 10 bits; and -log C as a sum of two numbers, the
 first with 42 binary places.")
 
-(define-parts (+log-2-1+ +log-2-2+) (fixed-logarithm 2) 42)
+(define-constant-parts (+log-2-1+ +log-2-2+) (fixed-logarithm 2) 42)
 
 (declaim (inline logarithm-parts))
 (defun logarithm-parts (number)
@@ -70,7 +70,7 @@ first with 42 binary places.")
          ;; With its 42 binary places the product is exact.
          (head (- (+ mantissa 1536d0) 1536d0)))
     (declare (type (signed-byte 64) above))
-    (with-parts (r low) ((+ (- (* c head) 1d0) (* c (- mantissa head))))
+    (with-sum-parts (r low) ((+ (- (* c head) 1d0) (* c (- mantissa head))))
       (values r low
               (+ (* exponent +log-2-1+) (aref +logarithms+ (+ row 1)))
               (+ (* exponent +log-2-2+) (aref +logarithms+ (+ row 2)))))))
@@ -89,7 +89,7 @@ first with 42 binary places.")
 bytes of code."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
-    (with-parts (high low) ((+ base r))
+    (with-sum-parts (high low) ((+ base r))
       (let ((square (* r r)))
         (+ high (+ (+ low (+ base-low r-low))
                    (- (logarithm-rest r square) (* 0.5d0 square))))))))
@@ -101,22 +101,22 @@ bytes of code."
 (defmacro finite-above-zero-p (number)
   `(and (< 0d0 ,number) (<= ,number most-positive-double-float)))
 
-(define-put put-logarithm (number)
+(define-cell-function put-logarithm (number)
   (if (finite-above-zero-p number)
       (%logarithm number)
       (reject-base 'logarithm 'number number)))
 
 ;;; Powers. The logarithm must have more than 53 bits, as its error is multiplied by the exponent.
 
-(declaim (inline long-logarithm))
-(defun long-logarithm (number)
+(declaim (inline two-part-logarithm))
+(defun two-part-logarithm (number)
   "Return two numbers whose sum is the logarithm of NUMBER, to some 68 bits."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
-    (let ((r-head (upper-half r)))
-      (with-parts (high low) ((+ base r))
-        (with-parts (higher lower) ((- high (* 0.5d0 r-head r-head)))
-          (with-parts (highest lowest)
+    (let ((r-head (upper-bits r)))
+      (with-sum-parts (high low) ((+ base r))
+        (with-sum-parts (higher lower) ((- high (* 0.5d0 r-head r-head)))
+          (with-sum-parts (highest lowest)
               ((+ higher (+ (+ low lower base-low (- r-low (* r r-low)))
                             (- (logarithm-rest r (* r r))
                                (* 0.5d0 (- r r-head) (+ r r-head))))))
@@ -125,16 +125,16 @@ bytes of code."
 (declaim (inline positive-power))
 (defun positive-power (base exponent)
   (declare (type (double-float (0d0)) base) (type double-float exponent))
-  (multiple-value-bind (high low) (long-logarithm base)
+  (multiple-value-bind (high low) (two-part-logarithm base)
     ;; Beyond 2^64 the power of any base but 1 is too large or too small.
     (let* ((exponent (max #.(- (power-of-two 64)) (min exponent #.(power-of-two 64))))
            (product (* exponent high)))
-      (cond ((> product 709.79d0) (overflow product))
+      (cond ((> product 709.79d0) (signal-overflow product))
             ((< product -745.2d0) 0d0)
             (t (exponential-of-parts
                 product (+ (product-error exponent high product) (* exponent low))))))))
 
-(define-put put-power (base exponent)
+(define-cell-function put-power (base exponent)
   (cond ((zerop exponent) 1d0)
         ((finite-above-zero-p base) (positive-power base exponent))
         ((and (zerop base) (plusp exponent)) 0d0)
@@ -150,14 +150,14 @@ bytes of code."
 machines. Signals WRONG-ARGUMENT unless NUMBER is a real number, and FLOATING-POINT-OVERFLOW if
 NUMBER is above 709.78."
   (check-number exponential number)
-  (in-cells put-exponential (double number)))
+  (result-in-last-cell put-exponential (double number)))
 
 (addition logarithm)
 (defun logarithm (number)
   "Return the natural logarithm of NUMBER, with the same bits on every machine; CL:LOG differs
 between machines. Signals WRONG-ARGUMENT unless NUMBER is above 0."
   (check-number logarithm number)
-  (in-cells put-logarithm (double number)))
+  (result-in-last-cell put-logarithm (double number)))
 
 (defun power (base exponent)
   "Return BASE to the power EXPONENT as a double-float, with the same bits on every machine; CL:EXPT
@@ -165,4 +165,4 @@ differs between machines. Signals FLOATING-POINT-OVERFLOW. Signals WRONG-ARGUMEN
 negative, or if BASE is 0 and EXPONENT is negative."
   (check-number power base)
   (check-number power exponent)
-  (in-cells put-power (double base) (double exponent)))
+  (result-in-last-cell put-power (double base) (double exponent)))

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.basics)
 
-(export '(file-text illegible-file-line illegible-file note-kind-of-file file-advice
-          foreign-file-p check-not-foreign call-replacing-file write-file-anew unwritten-reason))
+(export '(file-text illegible-file-line illegible-file note-kind-of-file advice-on-file
+          other-kind-of-file-p check-kind-of-file call-replacing-file overwrite-file
+          write-failure-text))
 
 (define-condition illegible-file (ars-magna-error)
   ((file :initarg :file :reader illegible-file-name)
@@ -20,8 +21,8 @@
 (defun file-text (path)
   "Return the text of the file PATH, without a byte order mark. Signals an error if PATH is not a
 regular file, and ILLEGIBLE-FILE if the text is not valid UTF-8."
-  (unless (plain-file-p path) (error "~A is a directory or a device" (native-name path)))
-  (let* ((text (decoded (read-file-into-string path :external-format :latin-1)))
+  (unless (regular-file-p path) (error "~A is a directory or a device" (native-name path)))
+  (let* ((text (utf-8-decoded (read-file-into-string path :external-format :latin-1)))
          (illegible (position +illegible+ text)))
     (when illegible
       (error 'illegible-file :file path :line (1+ (count #\Newline text :end illegible))))
@@ -44,56 +45,57 @@ a file of KIND is and which function reads it."
 (defun beginning-of-file (path)
   "Return the first characters of the file PATH, or an empty string if it cannot be read."
   (or (ignore-errors
-       (and (plain-file-p path)
+       (and (regular-file-p path)
             (with-open-file (in path :external-format :latin-1)
               (let ((text (make-string 60)))
                 (subseq text 0 (read-sequence text in))))))
       ""))
 
-(defun known-beginning (path)
+(defun find-kind-of-file (path)
   "Return the list (kind beginning advice) that fits the file PATH, or NIL if none fits."
   (let ((text (beginning-of-file path)))
     (find-if (lambda (beginning) (starts-with-subseq beginning text))
              *kinds-of-files* :key #'second)))
 
-(defun file-advice (path kind)
+(defun advice-on-file (path kind)
   "If the file PATH is of another known kind than KIND, a keyword, return a text that says what the
 file is and which function reads it; else return NIL."
-  (let ((entry (known-beginning path)))
+  (let ((entry (find-kind-of-file path)))
     (and entry
          (not (eq kind (first entry)))
          (third entry))))
 
-(defun foreign-file-p (file kind)
+(defun other-kind-of-file-p (file kind)
   "True if FILE exists, is not empty and does not begin like a file of KIND, or if FILE cannot be
 read."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
-               (and (plain-file-p path)
+               (and (regular-file-p path)
                     (or (string= "" (beginning-of-file path))
-                        (eq kind (first (known-beginning path))))))))))
+                        (eq kind (first (find-kind-of-file path))))))))))
 
-(defun check-not-foreign (file kind what)
+(defun check-kind-of-file (file kind what)
   "Signal MISUSE if FILE exists, is not empty and is not of KIND. The text WHAT names KIND in the
 message."
-  (when (foreign-file-p file kind)
-    (reject-use "~A is no ~A, and remains unchanged. Give another name." (shown-name file) what)))
+  (when (other-kind-of-file-p file kind)
+    (reject-use "~A is no ~A, and remains unchanged. Give another name."
+                (file-name-text file) what)))
 
 ;;;; Replacing a file, or explaining why that is impossible
 
-(defun new-file-for (file)
+(defun path-to-write (file)
   "Return the absolute path of FILE, for writing; if FILE is a link, that of its target. Signals an
 error if the path cannot be that of a regular file, or is write-protected."
-  (when (many-files-p file) (error *many-files-text*))
-  (check-name-legible file)
+  (when (wildcard-name-p file) (error *wildcard-text*))
+  (check-name-decodable file)
   (when (dangling-link-p file)
     (error "it is a link to a file that does not exist"))
   (let ((path (or (probe-file file)
                   (uiop:ensure-absolute-pathname (merge-pathnames file) #'uiop:getcwd))))
-    (when (and (probe-file path) (not (plain-file-p path)))
+    (when (and (probe-file path) (not (regular-file-p path)))
       (error "it is a directory or a device"))
-    (check-unprotected path)
+    (check-writable path)
     (unless (uiop:directory-exists-p (uiop:pathname-directory-pathname path))
       (error "there is no such directory"))
     path))
@@ -104,10 +106,10 @@ returned. If anything fails, FILE is unchanged. Return the truename of FILE. FIL
 permissions. Printer variables have their standard values. With the EXTERNAL-FORMAT :LATIN-1 each
 character is an octet. CHECK is called with the path of the complete new file; if CHECK signals an
 error, FILE is unchanged."
-  (let* ((path (new-file-for file)) (directory (uiop:pathname-directory-pathname path)))
+  (let* ((path (path-to-write file)) (directory (uiop:pathname-directory-pathname path)))
     (remove-abandoned-files directory)
     ;; The new file's name is random. The caller's random state must not change.
-    (call-with-own-lisps-dice
+    (call-with-own-random-state
      (lambda ()
        (uiop:with-temporary-file (:stream out :pathname new :external-format external-format
                                   :directory directory :prefix (temporary-file-prefix)
@@ -119,7 +121,7 @@ error, FILE is unchanged."
          (replace-file path new))))
     (truename path)))
 
-(defun unwritten-reason (trouble)
+(defun write-failure-text (trouble)
   "Return a text that says why a file could not be written, from the error TROUBLE. The text has the
 system's words, without the names of Lisp streams and temporary files."
   (let* ((text (one-line-text trouble))
@@ -129,20 +131,20 @@ system's words, without the names of Lisp streams and temporary files."
           ((and words (notany (lambda (char) (find char "\"/")) words)) (string-downcase words))
           (t "no file can be made in that directory"))))
 
-(defun write-file-anew (function file what
-                        &key (check #'identity) kind
-                          (remedy "give the name of a file that you may write"))
+(defun overwrite-file (function file what
+                       &key (check #'identity) kind
+                         (remedy "give the name of a file that you may write"))
   "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE, with the text REMEDY, if
 WHAT, such as \"the run\", cannot be written to FILE, or if FILE is of another known kind than KIND
 (see NOTE-KIND-OF-FILE). FILE is then unchanged."
-  (let ((advice (file-advice file kind)))
+  (let ((advice (advice-on-file file kind)))
     (when advice
       (reject-use "~@(~A~) is not written to ~A: ~A. The file is unchanged; give another name."
-                  what (shown-name file) advice)))
+                  what (file-name-text file) advice)))
   (handler-case (call-replacing-file function file :check check)
     (ars-magna-error (trouble) (error trouble))
     (error (trouble)
       (reject-use "~@(~A~) cannot be written to ~A: ~A. An existing file is unchanged; ~A."
-                  what (cut (princ-to-string (shown-name file)) 200)
-                  (cut (unwritten-reason trouble) 200)
+                  what (cut (princ-to-string (file-name-text file)) 200)
+                  (cut (write-failure-text trouble) 200)
                   remedy))))

@@ -8,13 +8,13 @@
 ;;; same results on every machine. After the simulator is loaded, this is used only for angles
 ;;; beyond a million radians.
 
-(defvar *places* 256 "The number of binary places of fixed-point numbers.")
+(defvar *fixed-point-places* 256 "The number of binary places of fixed-point numbers.")
 
-(defun fixed (number)
-  (values (round (ash (numerator number) *places*) (denominator number))))
+(defun to-fixed (number)
+  (values (round (ash (numerator number) *fixed-point-places*) (denominator number))))
 
-(defun fixed-times (a b)
-  (ash (* a b) (- *places*)))
+(defun fixed-product (a b)
+  (ash (* a b) (- *fixed-point-places*)))
 
 (declaim (inline power-of-two))
 (defun power-of-two (exponent)
@@ -26,7 +26,7 @@
   "Return the double-float with BITS significant bits, 53 at most, that is nearest to FIXED."
   (let* ((shift (max 0 (- (integer-length (abs fixed)) bits)))
          (digits (round fixed (ash 1 shift))))
-    (* (coerce digits 'double-float) (power-of-two (- shift *places*)))))
+    (* (coerce digits 'double-float) (power-of-two (- shift *fixed-point-places*)))))
 
 (defun double-parts (fixed &rest bits)
   "Return a list of double-floats whose sum is FIXED: for each of BITS, one with that many
@@ -34,7 +34,7 @@ significant bits, and then the remainder."
   (if (null bits)
       (list (nearest-double fixed))
       (let ((head (nearest-double fixed (first bits))))
-        (cons head (apply #'double-parts (- fixed (fixed (rational head))) (rest bits))))))
+        (cons head (apply #'double-parts (- fixed (to-fixed (rational head))) (rest bits))))))
 
 (defun doubles-table (count row)
   "Call the function ROW with 0, 1, 2 ... below COUNT. Return a vector of the double-floats in the
@@ -53,15 +53,15 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 
 (defun sum-odd-powers (x sign)
   "Return X + SIGN X^3/3 + X^5/5 + SIGN X^7/7 ... for the rational X."
-  (let ((factor (* sign (fixed (* x x)))) (power (fixed x)))
+  (let ((factor (* sign (to-fixed (* x x)))) (power (to-fixed x)))
     (sum-series power (lambda (term k)
                         (declare (ignore term))
-                        (setf power (fixed-times power factor))
+                        (setf power (fixed-product power factor))
                         (round power (1+ (* 2 k)))))))
 
 (defun fixed-exponential (x)
   "Return e^X for a fixed-point X near 0."
-  (sum-series (fixed 1) (lambda (term k) (round (fixed-times term x) k))))
+  (sum-series (to-fixed 1) (lambda (term k) (round (fixed-product term x) k))))
 
 (defun fixed-arctangent (x)
   "Return the arctangent of the rational X, from 0 to 1/2."
@@ -73,11 +73,11 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 
 (defun sum-alternating (x power)
   "Return the cosine of the rational X if POWER is 0, and its sine if POWER is 1."
-  (let ((square (fixed (* x x))))
-    (sum-series (if (zerop power) (fixed 1) (fixed x))
+  (let ((square (to-fixed (* x x))))
+    (sum-series (if (zerop power) (to-fixed 1) (to-fixed x))
                 (lambda (term k)
                   (let ((n (+ power (* 2 k))))
-                    (- (round (fixed-times term square) (* n (1- n)))))))))
+                    (- (round (fixed-product term square) (* n (1- n)))))))))
 
 (defun fixed-pi ()
   "Return pi as a fixed-point number, by Machin's formula of 1706."
@@ -99,16 +99,17 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
   "The bits of 0.6875, the least mantissa. Mantissas go from 0.6875 to 1.375, so that the exponent K
 is 0 for numbers near 1.")
 
-(defun row-center (row)
+(defun mantissa-row-center (row)
   "Return the middle of the range of mantissas that ROW of the table +LOGARITHMS+ covers."
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
     (/ (+ (bound row) (bound (1+ row))) 2)))
 
 (defun logarithm-row (row)
   ;; Around 1, which rows 79 and 80 share, R is to be exact.
-  (let* ((c (if (<= 79 row 80) 1 (/ (round 512 (row-center row)) 512)))
+  (let* ((c (if (<= 79 row 80) 1 (/ (round 512 (mantissa-row-center row)) 512)))
          (logarithm (- (fixed-logarithm c)))
-         (head (* (round logarithm (ash 1 (- *places* 42))) (ash 1 (- *places* 42)))))
+         (unit (ash 1 (- *fixed-point-places* 42)))
+         (head (* (round logarithm unit) unit)))
     (list (coerce c 'double-float) (nearest-double head) (nearest-double (- logarithm head)))))
 
 (defun arctangent-row (k)
@@ -123,7 +124,7 @@ is 0 for numbers near 1.")
                   for before = 0 then last
                   for last = 0 then term
                   for term = (/ divisor) then (/ (- (+ (* 2 x last) before)) divisor)
-                  collect (nearest-double (fixed (/ term n)))))))
+                  collect (nearest-double (to-fixed (/ term n)))))))
 
 ;;;; Numbers in two parts
 
@@ -132,7 +133,7 @@ is 0 for numbers near 1.")
 ;;; A full call boxes its double-floats. So inline functions pass them in a vector on the stack. The
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
-(defmacro in-cells (function &rest numbers)
+(defmacro result-in-last-cell (function &rest numbers)
   "Call FUNCTION with a vector of NUMBERS and one more cell. Return the double-float that FUNCTION
 stores in that last cell."
   (with-gensyms (cells)
@@ -143,7 +144,7 @@ stores in that last cell."
          (,function ,cells)
          (aref ,cells ,count)))))
 
-(defmacro define-put (name (&rest arguments) &body body)
+(defmacro define-cell-function (name (&rest arguments) &body body)
   "Define the function NAME of a vector whose cells hold ARGUMENTS. It stores the value of BODY in
 the last cell."
   (let ((count (length arguments)))
@@ -172,7 +173,7 @@ check would box the double-float."
         `(+ ,first (* ,x (polynomial ,x ,@(rest coefficients))))
         first)))
 
-(defmacro with-parts ((high low) ((operator a b)) &body body)
+(defmacro with-sum-parts ((high low) ((operator a b)) &body body)
   "Run BODY with HIGH bound to (OPERATOR A B), rounded, and LOW bound to the rounding error. A must
 be larger than B."
   (once-only (a b)
@@ -180,7 +181,7 @@ be larger than B."
        (declare (type double-float ,high ,low))
        ,@body)))
 
-(defmacro with-difference ((high low) (a b) &body body)
+(defmacro with-difference-parts ((high low) (a b) &body body)
   "Run BODY with HIGH bound to A - B, rounded, and LOW bound to the rounding error (Knuth)."
   (once-only (a b)
     (with-gensyms (back)
@@ -189,8 +190,8 @@ be larger than B."
          (declare (type double-float ,high ,low ,back))
          ,@body))))
 
-(declaim (inline upper-half))
-(defun upper-half (number)
+(declaim (inline upper-bits))
+(defun upper-bits (number)
   "Return the upper 26 bits of NUMBER, rounded (Veltkamp)."
   (declare (type double-float number))
   (let ((large (* 134217729d0 number)))
@@ -200,24 +201,24 @@ be larger than B."
 (defun product-error (a b product)
   "Return the exact difference between A times B and PRODUCT, which is A times B, rounded (Dekker)."
   (declare (type double-float a b product))
-  (let* ((a-head (upper-half a)) (a-tail (- a a-head))
-         (b-head (upper-half b)) (b-tail (- b b-head)))
+  (let* ((a-head (upper-bits a)) (a-tail (- a a-head))
+         (b-head (upper-bits b)) (b-tail (- b b-head)))
     (+ (* a-tail b-tail)
        (+ (* a-tail b-head)
           (+ (* a-head b-tail)
              (- (* a-head b-head) product))))))
 
-(defconstant +shift+ 6755399441055744d0
+(defconstant +rounding-shift+ 6755399441055744d0
   "1.5 times 2^52. Adding and then subtracting this constant rounds a double-float up to 2^51 to a
 whole number.")
 
-(declaim (inline whole))
-(defun whole (number)
+(declaim (inline round-to-whole))
+(defun round-to-whole (number)
   "Return NUMBER, a double-float up to 2^51, rounded to a whole number."
   (declare (type double-float number))
-  (- (+ number +shift+) +shift+))
+  (- (+ number +rounding-shift+) +rounding-shift+))
 
-(defmacro define-parts (names fixed &rest bits)
+(defmacro define-constant-parts (names fixed &rest bits)
   "Define the constants NAMES as double-floats whose sum is FIXED; BITS are their numbers of
 significant bits."
   `(progn ,@(loop for name in names for k from 0

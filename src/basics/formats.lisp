@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(csv-number-p csv-line csv-texts broken-line write-json-string write-xml-text *entities*))
+(export '(csv-number-p csv-line csv-fields broken-line write-json-string write-xml-text *entities*))
 
 ;;; A row is one line: texts have no line ends (see PLAIN-TEXT). A CSV library would be ten times
 ;;; slower and loads half of Unicode.
@@ -47,13 +47,13 @@
                   (when (skip-one "esfdESFD") (skip-one "+-") (skip-digits))
                   (= place length))))))
 
-(defun escaped (text)
+(defun mark-formula (text)
   "Return TEXT, preceded by a quote (') if a spreadsheet would execute TEXT as a formula."
   (if (and (formula-p text) (not (csv-number-p text)))
       (concatenate 'string "'" text)
       text))
 
-(defun unescaped (text)
+(defun unmark-formula (text)
   "Return TEXT without the quote that MARK-FORMULA has put before it."
   (declare (type simple-string text))
   (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
@@ -62,7 +62,7 @@
 
 ;;; Writing.
 
-(defun quoted (text)
+(defun quote-csv-field (text)
   "Return TEXT as a CSV field, quoted if necessary."
   (declare (type simple-string text))
   (if (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text)
@@ -76,7 +76,7 @@
 
 (defun csv-line (texts)
   "Return a CSV line, with its newline, of the strings TEXTS."
-  (let* ((texts (mapcar (lambda (text) (quoted (escaped text))) texts))
+  (let* ((texts (mapcar (lambda (text) (quote-csv-field (mark-formula text))) texts))
          (line (make-string (loop for text in texts sum (1+ (length (the string text))))))
          (place 0))
     (declare (type fixnum place))
@@ -98,7 +98,7 @@
         while comma
         do (setf start (1+ comma))))
 
-(defun end-of-quoted (line start)
+(defun end-of-quoted-field (line start)
   "Return the end position of the quoted field that begins in LINE at START. Signals BROKEN-LINE."
   (loop for quote = (position #\" line :start (1+ start))
           then (position #\" line :start (+ 2 quote))
@@ -117,7 +117,7 @@
 (defun next-field (line start)
   "Return the field that begins in LINE at START, and its end position. Signals BROKEN-LINE."
   (cond ((and (< start (length line)) (char= #\" (char line start)))
-         (let ((end (end-of-quoted line start)))
+         (let ((end (end-of-quoted-field line start)))
            (values (undouble-quotes (subseq line (1+ start) (1- end))) end)))
         (t (let ((end (or (position #\, line :start start) (length line))))
              (when (find #\" line :start start :end end) (error 'broken-line :line line))
@@ -132,13 +132,13 @@
                   text)
         while (<= start (length line))))
 
-(defun csv-texts (line)
+(defun csv-fields (line)
   "Return a list of the fields of LINE, a line of a CSV table. Signals BROKEN-LINE."
   ;; Most lines have no quotes, and are split faster this way.
   (let ((texts (if (find #\" (the simple-string line))
                    (fields-with-quotes line)
                    (fields-between-commas line))))
-    (if (find #\' (the simple-string line)) (mapcar #'unescaped texts) texts)))
+    (if (find #\' (the simple-string line)) (mapcar #'unmark-formula texts) texts)))
 
 ;;;; JSON, XML and HTML
 

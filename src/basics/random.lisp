@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.basics)
 
-(export '(*lisps-dice* seeded-lisps-dice reseed-lisps-dice
-          call-with-own-lisps-dice rolling lisps-dice-numbers lisps-dice-numbers-p
-          lisps-dice-of-numbers dice-rolled roll-back unique-number tick-dice make-tick-dice
-          begin-tick-dice *tick-dice* with-users-dice))
+(export '(*random-state-variable* seeded-random-state reseed-random-state
+          call-with-own-random-state with-random-state random-state-numbers random-state-numbers-p
+          random-state-of-numbers take-random-snapshot restore-random-snapshot unique-number
+          tick-dice make-tick-dice begin-tick-dice *tick-dice* with-users-random-state))
 
 ;;; CL:RANDOM must not depend on what this Lisp has done before. Programs (continuations, plans and
 ;;; the code around them) use a random state of their run, seeded when that begins. Code that
@@ -13,18 +13,18 @@
 ;;; is seeded again in each tick, from the run's seed and the tick, so it need not be copied, saved
 ;;; or digested.
 
-(defparameter *lisps-dice* 'cl:*random-state*
+(defparameter *random-state-variable* 'cl:*random-state*
   "The name of the variable that holds the random state of CL:RANDOM.")
 
 ;;; Seeding. To fill the words of a random state takes microseconds, and few programs roll. So only
 ;;; the first word, the seed itself, is set, with a mark after it. The rest is filled when the first
 ;;; roll makes SBCL renew the words. A copy of such words means the same.
 
-(defconstant +place-of-place+ 2
+(defconstant +position-index+ 2
   "The index of the word, in the words of a random state, that holds the position of the next word
 to read.")
-(defconstant +first-word+ (1+ +place-of-place+))
-(defconstant +all-read+ 624 "The position after the last word.")
+(defconstant +first-word-index+ (1+ +position-index+))
+(defconstant +end-of-words+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
   :documentation "The mark: the words after the seed in a random state whose other words are not yet
 filled.")
@@ -33,30 +33,30 @@ filled.")
   "Store SEED and the mark in WORDS, the words of a random state. They are filled from SEED when
 SBCL renews them."
   (declare (type random-words words))
-  (setf (aref words +place-of-place+) +all-read+
-        (aref words +first-word+) seed)
+  (setf (aref words +position-index+) +end-of-words+
+        (aref words +first-word-index+) seed)
   (loop for mark of-type (unsigned-byte 32) across +mark+
-        for index from (1+ +first-word+)
+        for index from (1+ +first-word-index+)
         do (setf (aref words index) mark)))
 
 (defun marked-p (words)
   (declare (type random-words words))
   (loop for mark of-type (unsigned-byte 32) across +mark+
-        for index from (1+ +first-word+)
+        for index from (1+ +first-word-index+)
         always (= mark (aref words index))))
 
 (defun fill-if-marked (words)
   (declare (type random-words words))
   (when (marked-p words)
-    (fill-words (aref words +first-word+) words)))
+    (fill-random-words (aref words +first-word-index+) words)))
 
-(wrap-renewal (lambda (renew words)
-                (fill-if-marked words)
-                (funcall renew words)))
+(wrap-random-renewal (lambda (renew words)
+                       (fill-if-marked words)
+                       (funcall renew words)))
 
-(defparameter *seeding-waits-p*
+(defparameter *seeding-can-wait-p*
   (flet ((state (filled-p)
-           (let* ((state (make-random-state nil)) (words (words-of-state state)))
+           (let* ((state (make-random-state nil)) (words (random-state-words state)))
              (mark-seeded words 1992)
              (when filled-p (fill-if-marked words))
              state)))
@@ -66,24 +66,24 @@ words.")
 
 (defun seed-state (state short)
   "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."
-  (let ((words (words-of-state state)))
+  (let ((words (random-state-words state)))
     (mark-seeded words short)
-    (unless *seeding-waits-p* (fill-if-marked words))
+    (unless *seeding-can-wait-p* (fill-if-marked words))
     state))
 
 (defun reseed (state seed)
   "Seed the random state STATE with SEED, an integer, as SEEDED-RANDOM-STATE does; return STATE."
-  (seed-state state (ldb (byte 32 0) (mix-word (ldb (byte 64 0) seed)))))
+  (seed-state state (ldb (byte 32 0) (mix-bits (ldb (byte 64 0) seed)))))
 
-(defun seeded-lisps-dice (seed)
+(defun seeded-random-state (seed)
   "Return a random state for CL:RANDOM that depends on the integer SEED only."
   (reseed (make-random-state nil) seed))
 
-(defun call-with-own-lisps-dice (function)
+(defun call-with-own-random-state (function)
   "Call FUNCTION with a separate random state for CL:RANDOM."
   (let ((*random-state* (make-random-state nil))) (funcall function)))
 
-(defmacro rolling ((state) &body body)
+(defmacro with-random-state ((state) &body body)
   "Run BODY with the random state STATE for CL:RANDOM. If STATE is NIL, use the current state."
   `(let ((*random-state* (or ,state *random-state*))) ,@body))
 
@@ -116,81 +116,82 @@ is seeded with the integers SEED and TICK."
 (defun seed-tick-dice (dice)
   "Seed DICE for the current tick, and reuse their random state if they have one."
   (let ((seed (logxor (ldb (byte 64 0) (tick-dice-seed dice))
-                      (mix-word (ldb (byte 64 0) (tick-dice-tick dice)))))
+                      (mix-bits (ldb (byte 64 0) (tick-dice-tick dice)))))
         (state (tick-dice-state dice)))
     (if state
         (reseed state seed)
-        (setf (tick-dice-state dice) (seeded-lisps-dice seed)))
+        (setf (tick-dice-state dice) (seeded-random-state seed)))
     (setf (tick-dice-seeded-p dice) t)))
 
-(declaim (inline users-dice))
-(defun users-dice ()
+(declaim (inline users-random-state))
+(defun users-random-state ()
   "Return the random state for users' code that this thread calls now."
   (let ((dice *tick-dice*))
     (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
                 (tick-dice-state dice))
           (t *random-state*))))
 
-(defmacro with-users-dice (&body body)
+(defmacro with-users-random-state (&body body)
   "Run BODY, which calls users' code, with *RANDOM-STATE* bound to the random state for users'
 code."
-  `(let ((*random-state* (users-dice))) ,@body))
+  `(let ((*random-state* (users-random-state))) ,@body))
 
 ;; The state itself is changed, because calls of users' code bind the variable again.
-(defun reseed-lisps-dice (seed &optional (state *random-state*))
+(defun reseed-random-state (seed &optional (state *random-state*))
   "Seed STATE, the random state that programs use by CL:RANDOM, with the integer SEED. Does nothing
 in code that changes a world, which uses *TICK-DICE*."
   (unless *tick-dice* (reseed state seed)))
 
 ;;; In files. SBCL does not check the words of a random state, so those from a file are checked.
 
-(defun lisps-dice-numbers (state)
+(defun random-state-numbers (state)
   "Return the contents of the random state STATE, a list of 32-bit integers: only the seed, if STATE
 was not used since it was seeded; else the position of the next word, and all words."
-  (let ((words (words-of-state state)))
+  (let ((words (random-state-words state)))
     (if (marked-p words)
-        (list (aref words +first-word+))
-        (coerce (subseq words +place-of-place+) 'list))))
+        (list (aref words +first-word-index+))
+        (coerce (subseq words +position-index+) 'list))))
 
-(defun lisps-dice-numbers-p (datum)
+(defun random-state-numbers-p (datum)
   "True if RANDOM-STATE-NUMBERS could return DATUM."
   (and (proper-list-p datum)
        (every (lambda (number) (typep number '(unsigned-byte 32))) datum)
        (or (= 1 (length datum))
-           (and (= (1+ +all-read+) (length datum))
-                (<= (first datum) +all-read+)))))
+           (and (= (1+ +end-of-words+) (length datum))
+                (<= (first datum) +end-of-words+)))))
 
-(defun lisps-dice-of-numbers (numbers)
+(defun random-state-of-numbers (numbers)
   "Return a random state for which RANDOM-STATE-NUMBERS returns NUMBERS."
   (let ((state (make-random-state nil)))
     (if (rest numbers)
-        (replace (words-of-state state) numbers :start1 +place-of-place+)
+        (replace (random-state-words state) numbers :start1 +position-index+)
         (seed-state state (first numbers)))
     state))
 
 ;;; Snapshots of the current random state, to repeat the next rolls. Each roll changes the position
 ;;; or, after the last word, the words.
 
-(defstruct (rolled (:constructor make-rolled (place words)) (:copier nil))
-  "A snapshot of a random state: the position PLACE of its next word, and its WORDS, in which the
-position is outdated."
-  (place 0 :type (unsigned-byte 32) :read-only t)
+(defstruct (random-snapshot (:constructor make-random-snapshot (position words)) (:copier nil))
+  "A snapshot of a random state: the POSITION of its next word, and its WORDS, in which the position
+is outdated."
+  (position 0 :type (unsigned-byte 32) :read-only t)
   (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
 
-(defun dice-rolled (before)
+(defun take-random-snapshot (before)
   "Return a snapshot of the current random state for RESTORE-RANDOM-SNAPSHOT. If CL:RANDOM was not
 called since the snapshot BEFORE, return BEFORE."
-  (let* ((now (words-of-state *random-state*))
-         (place (aref now +place-of-place+))
-         (same-words-p (and before (= (aref now +first-word+)
-                                      (aref (rolled-words before) +first-word+)))))
+  (let* ((now (random-state-words *random-state*))
+         (position (aref now +position-index+))
+         (same-words-p (and before (= (aref now +first-word-index+)
+                                      (aref (random-snapshot-words before)
+                                            +first-word-index+)))))
     (declare (type (simple-array (unsigned-byte 32) (*)) now))
-    (cond ((not same-words-p) (make-rolled place (copy-seq now)))
-          ((= place (rolled-place before)) before)
-          (t (make-rolled place (rolled-words before))))))
+    (cond ((not same-words-p) (make-random-snapshot position (copy-seq now)))
+          ((= position (random-snapshot-position before)) before)
+          (t (make-random-snapshot position (random-snapshot-words before))))))
 
-(defun roll-back (rolled)
+(defun restore-random-snapshot (snapshot)
   "Restore the current random state from SNAPSHOT, a value of TAKE-RANDOM-SNAPSHOT."
-  (let ((words (words-of-state *random-state*)))
-    (replace words (rolled-words rolled))
-    (setf (aref words +place-of-place+) (rolled-place rolled))))
+  (let ((words (random-state-words *random-state*)))
+    (replace words (random-snapshot-words snapshot))
+    (setf (aref words +position-index+) (random-snapshot-position snapshot))))

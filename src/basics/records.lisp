@@ -19,16 +19,16 @@ SYMBOL is an addition to the manual."
 
 (defvar *marks* '() "All marks, in order of definition.")
 
-(defparameter *layers-of-nisp*
+(defparameter *packages-of-nisp*
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
     "ARS-MAGNA.RPL.LANGUAGE" "ARS-MAGNA.RPL.CONSTRUCTS" "ARS-MAGNA.RPL.SEEING"
     "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES" "ARS-MAGNA.RPL-PROJECTING")
   "The packages whose public names NISP exports by default. ARS exports all other public names.")
 
-(defun face-of (symbol)
+(defun default-face (symbol)
   "Return the default face, :ARS or :NISP, of SYMBOL."
   (let ((layer (package-name (symbol-package symbol))))
-    (if (member layer *layers-of-nisp* :test #'string=) :nisp :ars)))
+    (if (member layer *packages-of-nisp* :test #'string=) :nisp :ars)))
 
 (defun find-mark (symbol)
   (find symbol *marks* :key #'mark-symbol :test #'eq))
@@ -50,7 +50,7 @@ addition."
       (destructuring-bind (symbol &rest faces) (ensure-list name)
         (export symbol (symbol-package symbol))
         (when (or addition-p (not (addition-p symbol)))
-          (register-mark (make-mark symbol (or faces (list (face-of symbol))) addition-p)))))))
+          (register-mark (make-mark symbol (or faces (list (default-face symbol))) addition-p)))))))
 
 (defmacro public (&rest names)
   "Mark NAMES, defined next, as names for users that the manual has. A name may be a list (name

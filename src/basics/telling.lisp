@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.basics)
 
-(export '(our-own-p format-briefly report-briefly own-text our-text report-anyhow
-          of-lines-typed-p reading-trouble text-of-condition one-line-text point-in-text
-          hundredths editors-output cause-of-reading-trouble))
+(export '(simulator-symbol-p format-briefly report-briefly printable-report simulator-error-text
+          partial-report typed-input-p reading-trouble text-of-condition one-line-text point-text
+          zero-if-tiny editor-output-stream cause-of-reading-trouble))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
@@ -31,13 +31,13 @@
 
 ;;; Wrong types.
 
-(defparameter *compilers-words*
+(defparameter *compiler-phrases*
   '("Argument is neither a positive integer" "Invalid function name" "malformed property list"
     "is not a string designator")
   "Parts of the texts of type errors that only some versions of SBCL use.")
 
 ;; A type without elements, such as that of the indices of an empty vector, is part of any other.
-(defun common-type-words (datum type)
+(defun common-type-text (datum type)
   "Return the description of the first of *COMMON-TYPES* that includes TYPE but not DATUM, or NIL."
   (unless (subtypep type nil)
     (loop for (common words) in *common-types*
@@ -56,7 +56,7 @@ A missing limit is NIL. For other types, return NIL three times."
            (values 0 (bound (list (second type)) -1) t))
           (t (values nil nil nil)))))
 
-(defun range-words (datum type)
+(defun integer-range-text (datum type)
   "Return a text that describes the range of integers TYPE, which does not include the integer
 DATUM; or NIL if TYPE is no such range."
   (multiple-value-bind (least greatest range-p) (integer-range type)
@@ -66,20 +66,20 @@ DATUM; or NIL if TYPE is no such range."
           (greatest (format nil "~D or less" greatest))
           (least (format nil "~D or more" least)))))
 
-(defun compilers-text-p (condition)
+(defun compiler-text-p (condition)
   "True if the text of CONDITION, a type error, is SBCL's own: not from a program or CHECK-TYPE."
   (or (not (typep condition 'simple-condition))
       ;; The compiler's texts are no strings, except these in older versions.
       (let ((control (simple-condition-format-control condition)))
         (or (not (stringp control))
-            (some (lambda (words) (search words control)) *compilers-words*)))))
+            (some (lambda (words) (search words control)) *compiler-phrases*)))))
 
 (defun type-error-text (condition)
-  (when (compilers-text-p condition)
+  (when (compiler-text-p condition)
     (let* ((datum (type-error-datum condition))
            (type (type-error-expected-type condition))
-           (words (or (common-type-words datum type)
-                      (range-words datum type)
+           (words (or (common-type-text datum type)
+                      (integer-range-text datum type)
                       (and (symbolp type) (find-class type nil)
                            (format nil "of the type ~(~A~)" type))))
            (value (safe-text datum :length 100)))
@@ -90,18 +90,18 @@ DATUM; or NIL if TYPE is no such range."
 
 ;;; All of Lisp's own errors.
 
-(defun without-reference (text)
+(defun remove-standard-reference (text)
   "Return TEXT without the references to the Lisp standard that SBCL appends."
   (let ((end (search (format nil "~%See also:") text)))
     (if end (subseq text 0 end) text)))
 
-(defun named-text (condition)
+(defun undefined-name-text (condition)
   (format nil "The ~:[variable ~A has no value~;function ~A is undefined~].~@[ ~A~]"
           (typep condition 'undefined-function)
           (unqualified-text (cell-error-name condition))
           (funcall *report-addition* condition)))
 
-(defun our-own-p (symbol)
+(defun simulator-symbol-p (symbol)
   "True if the package of SYMBOL is one of the simulator's own packages."
   (let ((package (symbol-package symbol)))
     (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
@@ -110,7 +110,7 @@ DATUM; or NIL if TYPE is no such range."
   "Return the simulator's text for the name conflict CONDITION if the simulator owns one of the
 symbols; else NIL."
   (let* ((symbols (sb-ext:name-conflict-symbols condition))
-         (ours (find-if #'our-own-p symbols)))
+         (ours (find-if #'simulator-symbol-p symbols)))
     (when ours
       (format nil "~A would mean ~{~A:~A~^ and ~} here. Choose one of them first, by ~
                    (shadowing-import 'ars:~(~A~)) or in a defpackage (:shadowing-import-from :ars ~
@@ -124,7 +124,7 @@ symbols; else NIL."
               (symbol-name ours)))))
 
 ;; Lisp's own text shows the stream.
-(defun refusal-text (condition)
+(defun access-refused-text (condition)
   "Return the simulator's text for CONDITION, a stream error, if the system has refused access; else
 NIL."
   (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
@@ -139,13 +139,13 @@ NIL."
   "Return the simulator's text for CONDITION, an error defined by Common Lisp or SBCL; NIL if there
 is none."
   (ignore-errors
-   (when (lisps-own-p (type-of condition))
+   (when (lisp-symbol-p (type-of condition))
      (typecase condition
        (arithmetic-error
         (second (assoc-if (lambda (type) (typep condition type)) *arithmetic-texts*)))
        (sb-ext:name-conflict (conflict-text condition))
-       ((or undefined-function unbound-variable) (named-text condition))
-       (stream-error (refusal-text condition))
+       ((or undefined-function unbound-variable) (undefined-name-text condition))
+       (stream-error (access-refused-text condition))
        ;; Lisp's own text for ECASE and the like is used.
        (type-error (unless (string= "CASE-FAILURE" (type-of condition))
                      (type-error-text condition)))))))
@@ -157,7 +157,7 @@ is none."
 (defmacro printing-briefly (() &body body)
   "Run BODY, which makes text for people, with printer variables that abridge deep, long and
 circular data."
-  `(printing-words ()
+  `(printing-text ()
      (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
        ,@body)))
 
@@ -173,13 +173,13 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
 
 ;;; Conditions.
 
-(defun storage-text (condition)
+(defun storage-error-text (condition)
   (if (stack-full-p condition)
       (format nil "The stack has overflowed: calls or lists are nested too deeply. Look for a ~
                    recursion that does not end.")
       "There is not enough memory. Use smaller or fewer objects at a time."))
 
-(defun reader-p (condition)
+(defun reading-error-p (condition)
   "True if CONDITION says that typed text, or text of a program, cannot be read as Lisp."
   (or (typep condition 'reader-error)
       (and (typep condition 'end-of-file)
@@ -190,7 +190,7 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
   (let ((cause (encapsulated-condition condition)))
     (if cause (cause-of-reading-trouble cause) condition)))
 
-(defun naming-remedy (text)
+(defun unreadable-name-remedy (text)
   "Return a sentence with a remedy if the error text TEXT says that a name cannot be read; else
 NIL."
   (cond ((or (search "not found in the" text) (search "Package" text))
@@ -223,21 +223,21 @@ streams."
                      (t "it ends too early; is a parenthesis or quote missing?"))))
     (if (starts-with-subseq "failed to build" text)
         "a number is too large, too small, or divided by 0"
-        (format nil "~A~@[. ~A~]" (string-right-trim "." text) (naming-remedy text)))))
+        (format nil "~A~@[. ~A~]" (string-right-trim "." text) (unreadable-name-remedy text)))))
 
-(defgeneric of-lines-typed-p (stream)
+(defgeneric typed-input-p (stream)
   (:documentation "True if STREAM reads the lines that a user types or pipes in.")
   (:method (stream)
     (declare (ignore stream))
     nil))
 
-(defun own-text (condition)
+(defun printable-report (condition)
   "Return the report of CONDITION, as far as it can be printed. For another object, return its
 printed form, or an empty text if it cannot be printed."
-  (handler-case (without-reference (report-briefly condition))
+  (handler-case (remove-standard-reference (report-briefly condition))
     ((or error storage-condition) ()
       ;; There may be nothing that can be printed.
-      (or (and (typep condition 'condition) (ignore-errors (report-anyhow condition)))
+      (or (and (typep condition 'condition) (ignore-errors (partial-report condition)))
           ""))))
 
 ;;; A report may fail, also in a method of PRINT-OBJECT. What it has written until then is shown.
@@ -253,7 +253,7 @@ printed form, or an empty text if it cannot be printed."
 (defun failing-report-text (condition trouble beginning)
   "Return a text that says that the report of CONDITION wrote BEGINNING and then failed with the
 error TROUBLE."
-  (let ((why (or (our-text trouble)
+  (let ((why (or (simulator-error-text trouble)
                  (ignore-errors (format-briefly nil "~A" trouble))
                  ;; Its text may contain CONDITION, which cannot be printed.
                  (ignore-errors (simple-condition-format-control trouble))
@@ -270,7 +270,7 @@ printed."
     (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil))
       (print-object condition stream))))
 
-(defun report-anyhow (condition)
+(defun partial-report (condition)
   "Return the part of the report of CONDITION that can be printed, and a text that says that the
 report fails."
   (let ((out (make-string-output-stream)))
@@ -281,23 +281,24 @@ report fails."
       ((or error storage-condition) (trouble)
         (failing-report-text condition trouble (get-output-stream-string out))))))
 
-(defun our-text (condition)
+(defun simulator-error-text (condition)
   "Return the simulator's text for CONDITION, an error of Lisp's own; the text is the same in every
 version of SBCL. NIL if there is none."
-  (cond ((typep condition 'storage-condition) (storage-text condition))
-        ((and (typep condition 'end-of-file) (of-lines-typed-p (stream-error-stream condition)))
+  (cond ((typep condition 'storage-condition) (storage-error-text condition))
+        ((and (typep condition 'end-of-file) (typed-input-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
-        ((reader-p condition)
+        ((reading-error-p condition)
          (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
         ((undecodable-text condition))
         (t (lisp-error-text condition))))
 
 (defun text-of-condition (condition)
   "Return the text of CONDITION, or its type if it has no text."
-  (let ((text (or (printing-words () (our-text condition)) (own-text condition))))
+  (let ((text (or (printing-text () (simulator-error-text condition))
+                  (printable-report condition))))
     (if (string= text "") (string-downcase (type-of condition)) (visible text))))
 
-(defun hundredths (number)
+(defun zero-if-tiny (number)
   "Return NUMBER, or 0 if NUMBER printed with two decimals would be 0.00 or -0.00."
   (if (< (abs number) 0.005d0) 0 number))
 
@@ -310,7 +311,7 @@ is 23.2, not 23.200000762939453. Numbers closer to 0 than half of that have an e
           ((ends-with #\. text) (format nil "~A0" text))
           (t text))))
 
-(defun point-in-text (x y)
+(defun point-text (x y)
   "Return the point (X, Y), in metres, as text."
   (format nil "(~A ~A)" (coordinate-text x) (coordinate-text y)))
 
@@ -320,17 +321,17 @@ is 23.2, not 23.200000762939453. Numbers closer to 0 than half of that have an e
 
 ;;; The output of editors.
 
-(defun followed (stream)
+(defun resolve-synonym-stream (stream)
   "Return STREAM, or, if STREAM is a synonym stream, the stream that it refers to."
   (if (typep stream 'synonym-stream)
-      (followed (symbol-value (synonym-stream-symbol stream)))
+      (resolve-synonym-stream (symbol-value (synonym-stream-symbol stream)))
       stream))
 
-(defun editors-output ()
+(defun editor-output-stream ()
   "Return the stream of this thread's standard output if an editor, SLIME or SLY, has set that
 stream; else NIL. The stream stays open, and other threads may write to it. The standard output of
 other threads does not reach the editor's prompt."
-  (let* ((stream (followed *standard-output*))
+  (let* ((stream (resolve-synonym-stream *standard-output*))
          (package (symbol-package (type-of stream))))
     (and package
          (some (lambda (server) (starts-with-subseq server (package-name package)))

@@ -2,10 +2,10 @@
 
 (in-package :ars-magna.basics)
 
-(export '(blank-p one-line cut visible obeyed-p sentence wrapped-text call-printing-plainly
-          printing-plainly printing-words print-named abridged safe-text unqualified-text
-          text-as-typed +more+ same-name-p nearest-name resembles-p value-equal name-string
-          name-before-p))
+(export '(blank-p one-line cut visible control-character-p sentence wrapped-text
+          call-printing-plainly printing-plainly printing-text print-named abridged safe-text
+          unqualified-text text-as-typed +more+ same-name-p nearest-name misspelling-p value-equal
+          name-string name-before-p))
 
 (defun blank-p (char)
   "True if CHAR is a space, newline or the like."
@@ -32,7 +32,7 @@
 
 ;;; Reports quote files and typed text, which may contain any character.
 
-(defun obeyed-p (char)
+(defun control-character-p (char)
   "True if CHAR is not shown, but controls a terminal or the direction of text."
   (let ((code (char-code char)))
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
@@ -40,10 +40,10 @@
 (defun visible (text)
   "Return TEXT with each control character, except newlines and tabs, replaced by ^ and a letter, or
 by a question mark."
-  (if (some #'obeyed-p text)
+  (if (some #'control-character-p text)
       (with-output-to-string (stream)
         (loop for char across text
-              do (cond ((or (not (obeyed-p char)) (find char '(#\Newline #\Tab)))
+              do (cond ((or (not (control-character-p char)) (find char '(#\Newline #\Tab)))
                         (write-char char stream))
                        ((< (char-code char) 32)
                         (format stream "^~C" (code-char (+ 64 (char-code char)))))
@@ -52,7 +52,7 @@ by a question mark."
 
 ;;; Lines of limited length, broken between words.
 
-(defun break-place (text width)
+(defun line-end-position (text width)
   "Return the end position of the first line of TEXT, which has at most WIDTH characters."
   (flet ((last-place (character)
            (position character text :end (1+ width) :from-end t :start 1)))
@@ -66,7 +66,7 @@ by a question mark."
 no-break spaces only if they have no other space. No-break spaces become spaces."
   (loop with blanks = '(#\Space #\No-break_space)
         with rest = (string-trim blanks text)
-        for end = (break-place rest width)
+        for end = (line-end-position rest width)
         collect (substitute #\Space #\No-break_space (string-right-trim blanks (subseq rest 0 end)))
         do (setf rest (string-left-trim blanks (subseq rest end)))
         until (string= "" rest)))
@@ -98,7 +98,7 @@ Return the values of FUNCTION."
 
 ;;; Texts for people need decimal numbers and complete lists, too.
 
-(defmacro printing-words (() &body body)
+(defmacro printing-text (() &body body)
   "Run BODY, which makes text for people, with the default values of the printer's variables for
 numbers, names and lists."
   `(let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-length* nil)
@@ -110,39 +110,39 @@ numbers, names and lists."
 ;;; A message quotes what is wrong. That may be circular, a thousand lists deep or megabytes long,
 ;;; and the message must still be readable.
 
-(defconstant +most-parts+ 150 "The largest number of conses of a datum that a message shows.")
-(defconstant +most-characters+ 200 "The largest number of characters of a text that a message
+(defconstant +shown-conses+ 150 "The largest number of conses of a datum that a message shows.")
+(defconstant +shown-characters+ 200 "The largest number of characters of a text that a message
 shows.")
 
-(defstruct (remark (:constructor make-remark (text)) (:copier nil))
+(defstruct (omission (:constructor make-omission (text)) (:copier nil))
   "The TEXT that replaces an omitted part of a datum."
   (text "" :type string :read-only t))
 
-(defmethod print-object ((remark remark) stream)
-  (write-string (remark-text remark) stream))
+(defmethod print-object ((remark omission) stream)
+  (write-string (omission-text remark) stream))
 
-(defmethod make-load-form ((remark remark) &optional environment)
+(defmethod make-load-form ((remark omission) &optional environment)
   (declare (ignore environment))
-  `(make-remark ,(remark-text remark)))
+  `(make-omission ,(omission-text remark)))
 
-(define-global +more+ (make-remark "...") "The mark for omitted elements.")
+(define-global +more+ (make-omission "...") "The mark for omitted elements.")
 
 (defun abridged-atom (atom)
   (typecase atom
-    (string (cut atom +most-characters+))
-    (symbol (if (< +most-characters+ (length (symbol-name atom)))
-                (make-remark (cut (symbol-name atom) +most-characters+))
+    (string (cut atom +shown-characters+))
+    (symbol (if (< +shown-characters+ (length (symbol-name atom)))
+                (make-omission (cut (symbol-name atom) +shown-characters+))
                 atom))
     (integer (if (< 500 (integer-length atom))
-                 (make-remark (format nil "an integer of ~D bits" (integer-length atom)))
+                 (make-omission (format nil "an integer of ~D bits" (integer-length atom)))
                  atom))
     (ratio (if (< 500 (+ (integer-length (numerator atom)) (integer-length (denominator atom))))
-               (make-remark (format nil "a ratio near ~A" (ratio-size atom)))
+               (make-omission (format nil "a ratio near ~A" (approximate-ratio atom)))
                atom))
-    (array (make-remark (format nil "an array of ~{~D~^ by ~}" (array-dimensions atom))))
+    (array (make-omission (format nil "an array of ~{~D~^ by ~}" (array-dimensions atom))))
     (t atom)))
 
-(defun ratio-size (ratio)
+(defun approximate-ratio (ratio)
   "Return RATIO as a float, or as a text if RATIO is too large or too small for a float."
   (let ((bits (- (integer-length (numerator ratio)) (integer-length (denominator ratio)))))
     (cond ((< bits -1000) "0")
@@ -151,7 +151,7 @@ shows.")
 
 (defun abridged (datum)
   "Return DATUM; if DATUM is long or circular, return its beginning, with dots for the rest."
-  (let ((left +most-parts+))
+  (let ((left +shown-conses+))
     (labels ((visit (datum)
                (cond ((atom datum) (abridged-atom datum))
                      ((minusp (decf left)) +more+)
@@ -212,7 +212,7 @@ the text says so."
   "Return the name of NAME, a symbol or string, in upper case."
   (string-upcase (string name)))
 
-(defun called-alike-p (a b)
+(defun equal-names-p (a b)
   "True if the symbols or strings A and B have the same name, regardless of package and case."
   (declare #.*hot*)
   (let ((a (if (symbolp a) (symbol-name a) (string a)))
@@ -222,7 +222,7 @@ the text says so."
 (declaim (inline same-name-p))
 (defun same-name-p (a b)
   "True if the symbols or strings A and B have the same name, regardless of package and case."
-  (or (eq a b) (called-alike-p a b)))
+  (or (eq a b) (equal-names-p a b)))
 
 (defun value-equal (a b)
   "True if A and B are the same attribute value: symbols by name, numbers by value, lists by
@@ -247,11 +247,11 @@ both (reading 38)."
                        (if (char-equal (char a (1- i)) (char b (1- j)))
                            (aref rows (1- i) (1- j))
                            (1+ (aref rows (1- i) (1- j))))
-                       (if (exchanged-p a i b j)
+                       (if (swapped-letters-p a i b j)
                            (1+ (aref rows (- i 2) (- j 2)))
                            (+ i j)))))))))
 
-(defun exchanged-p (a i b j)
+(defun swapped-letters-p (a i b j)
   "True if the two characters before I in A are those before J in B the other way round."
   (and (< 1 i) (< 1 j)
        (char-equal (char a (- i 1)) (char b (- j 2)))
@@ -268,39 +268,39 @@ more than 100 characters."
         (when (< distance least)
           (setf best candidate least distance))))))
 
-(defparameter *letters-alike* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
+(defparameter *similar-letters* '("AEIOUY" "CKQ" "CSZ" "FVW" "GJ")
   "Groups of letters that may sound alike.")
 
-(defun alike-p (letter other)
+(defun similar-letters-p (letter other)
   "True if the characters LETTER and OTHER are equal or may sound alike."
   (or (char-equal letter other)
       (some (lambda (letters)
               (and (find letter letters :test #'char-equal)
                    (find other letters :test #'char-equal)))
-            *letters-alike*)))
+            *similar-letters*)))
 
-(defun another-word-p (a b)
+(defun different-word-p (a b)
   "True if A and B are short names of equal length that differ in a letter that does not sound
 alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
   (and (= (length a) (length b))
        (< (length a) 6)
        (= 1 (count nil (map 'list #'char-equal a b)))
-       (notevery #'alike-p a b)))
+       (notevery #'similar-letters-p a b)))
 
-(defun resembles-p (a b)
+(defun misspelling-p (a b)
   "True if the name A may be a misspelling of the different name B. They differ by one letter, or by
 two if both are long. In short names and at the beginning of names, a different letter must sound
 alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
-         (or (alike-p (char a 0) (char b 0))
+         (or (similar-letters-p (char a 0) (char b 0))
              (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
-         (not (another-word-p a b)))))
+         (not (different-word-p a b)))))
 
 ;;; Natural order of names: box 2 before box 10.
 
-(defun first-part (text start)
+(defun first-name-part (text start)
   "Return the number that begins in TEXT at START, or else the character at START, and the position
 after the number or character."
   (let ((end (or (position-if-not #'digit-char-p text :start start) (length text))))
@@ -308,7 +308,7 @@ after the number or character."
         (values (parse-integer text :start start :end end) end)
         (values (char text start) (1+ start)))))
 
-(defun part-before-p (one other)
+(defun name-part-before-p (one other)
   "True if ONE, a number or character, sorts before OTHER. Numbers sort before characters."
   (cond ((and (numberp one) (numberp other)) (< one other))
         ((and (characterp one) (characterp other)) (char< one other))
@@ -319,7 +319,7 @@ after the number or character."
   (loop with at-a = 0 and at-b = 0
         do (cond ((= at-b (length b)) (return nil))
                  ((= at-a (length a)) (return t)))
-           (multiple-value-bind (part-a next-a) (first-part a at-a)
-             (multiple-value-bind (part-b next-b) (first-part b at-b)
-               (unless (eql part-a part-b) (return (part-before-p part-a part-b)))
+           (multiple-value-bind (part-a next-a) (first-name-part a at-a)
+             (multiple-value-bind (part-b next-b) (first-name-part b at-b)
+               (unless (eql part-a part-b) (return (name-part-before-p part-a part-b)))
                (setf at-a next-a at-b next-b)))))

@@ -43,8 +43,8 @@ bound to the difference between SIZE and the argument of that row."
   (declare (type double-float x low square))
   (+ (* x low) (* square (polynomial square 1/2 -1/24 1/720))))
 
-(declaim (inline sine-within))
-(defun sine-within (x low)
+(declaim (inline sine-near-zero))
+(defun sine-near-zero (x low)
   "Return the sine of X + LOW, for X from -0.79 to 0.79."
   (declare (type double-float x low))
   (let ((size (abs x)))
@@ -60,8 +60,8 @@ bound to the difference between SIZE and the argument of that row."
                  (value (+ sine (+ (- (+ sine-low (* s cosine-low)) (* sine v)) (* cosine s)))))
             (if (minusp x) (- value) value))))))
 
-(declaim (inline cosine-within))
-(defun cosine-within (x low)
+(declaim (inline cosine-near-zero))
+(defun cosine-near-zero (x low)
   "Return the cosine of X + LOW, for X from -0.79 to 0.79."
   (declare (type double-float x low))
   (let ((size (abs x)))
@@ -73,74 +73,76 @@ bound to the difference between SIZE and the argument of that row."
 ;;; Angles are reduced by right angles. Up to 2^20 of these, the products with all parts but the
 ;;; last are exact (Cody and Waite).
 
-(define-parts (+right-angle-1+ +right-angle-2+) (ash (fixed-pi) -1) 53)
-(define-parts (+right-1+ +right-2+ +right-3+) (ash (fixed-pi) -1) 33 33)
-(define-parts (+right-a+ +right-b+ +right-c+ +right-d+) (ash (fixed-pi) -1) 33 33 33)
-(define-constant +right-angles+ (nearest-double (round (ash 1 (* 2 *places*)) (ash (fixed-pi) -1)))
+(define-constant-parts (+right-angle-1+ +right-angle-2+) (ash (fixed-pi) -1) 53)
+(define-constant-parts (+right-1+ +right-2+ +right-3+) (ash (fixed-pi) -1) 33 33)
+(define-constant-parts (+right-a+ +right-b+ +right-c+ +right-d+) (ash (fixed-pi) -1) 33 33 33)
+(define-constant +right-angles+
+    (nearest-double (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1)))
   :documentation "The number of right angles in a radian.")
 
-(defconstant +binary-places+ 1400 "The number of known bits of 2/pi. The largest double-float needs
-1250.")
+(defconstant +inverse-pi-bits+ 1400
+  "The number of known bits of 2/pi. The largest double-float needs 1250.")
 (define-constant +bits-of-2/pi+
-    (let ((*places* +binary-places+)) (round (ash 1 (* 2 *places*)) (ash (fixed-pi) -1))))
+    (let ((*fixed-point-places* +inverse-pi-bits+))
+      (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1))))
 
-(defun reduce-exactly (operator angle)
+(defun reduce-large-angle (operator angle)
   "Return three values: the number of right angles in ANGLE, which is at least 1, and two numbers
 whose sum is the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
-    (let* ((places (- +binary-places+ exponent))
+    (let* ((places (- +inverse-pi-bits+ exponent))
            (turns (ldb (byte (+ places 2) 0) (* digits +bits-of-2/pi+)))
            (quarters (ash (+ turns (ash 1 (1- places))) (- places)))
-           (rest (ash (- turns (ash quarters places)) (- *places* places)))
-           (parts (double-parts (* sign (fixed-times rest (ash (fixed-pi) -1))) 53)))
+           (rest (ash (- turns (ash quarters places)) (- *fixed-point-places* places)))
+           (parts (double-parts (* sign (fixed-product rest (ash (fixed-pi) -1))) 53)))
       (values (* sign quarters) (first parts) (second parts)))))
 
-(declaim (inline reduce-closely reduced))
-(defun reduce-closely (angle count)
+(declaim (inline reduce-near-right-angle reduce-angle))
+(defun reduce-near-right-angle (angle count)
   "Return two numbers whose sum is ANGLE minus COUNT right angles. ANGLE is nearly equal to COUNT
 right angles."
   (declare (type double-float angle count))
-  (with-difference (high low) ((- angle (* count +right-a+)) (* count +right-b+))
-    (with-difference (higher lower) (high (* count +right-c+))
-      (with-parts (high low) ((+ higher (- (+ low lower) (* count +right-d+))))
+  (with-difference-parts (high low) ((- angle (* count +right-a+)) (* count +right-b+))
+    (with-difference-parts (higher lower) (high (* count +right-c+))
+      (with-sum-parts (high low) ((+ higher (- (+ low lower) (* count +right-d+))))
         (values high low)))))
 
-(defun reduced (operator angle)
+(defun reduce-angle (operator angle)
   "Return three values: the number of right angles in ANGLE, correct modulo 4, and two numbers whose
 sum is the rest. Error messages name OPERATOR."
   (declare (type double-float angle))
   (let ((size (abs angle)))
     (cond ((<= size 0.785d0) (values 0 angle 0d0))
           ((<= size 1.6d6)
-           (let* ((count (whole (* angle +right-angles+)))
+           (let* ((count (round-to-whole (* angle +right-angles+)))
                   (most (- angle (* count +right-1+))) (more (* count +right-2+))
                   (high (- most more)))
              (multiple-value-bind (high low)
                  (if (< (abs high) 0.001d0)
-                     (reduce-closely angle count)
-                     (with-parts (higher lower)
+                     (reduce-near-right-angle angle count)
+                     (with-sum-parts (higher lower)
                          ((+ high (- (- (- most high) more) (* count +right-3+))))
                        (values higher lower)))
                (values (truncate (the (double-float -2d6 2d6) count)) high low))))
-          (t (reduce-exactly operator angle)))))
+          (t (reduce-large-angle operator angle)))))
 
-(declaim (inline sine-of-quarters))
-(defun sine-of-quarters (quarters high low)
+(declaim (inline sine-of-right-angles))
+(defun sine-of-right-angles (quarters high low)
   "Return the sine of an angle: QUARTERS right angles, an integer, plus HIGH + LOW radians."
   (declare (type (signed-byte 32) quarters) (type double-float high low))
-  (let ((value (if (logtest 1 quarters) (cosine-within high low) (sine-within high low))))
+  (let ((value (if (logtest 1 quarters) (cosine-near-zero high low) (sine-near-zero high low))))
     (if (logtest 2 quarters) (- value) value)))
 
-(define-put put-sine (angle)
-  (multiple-value-bind (quarters high low) (reduced 'sine angle)
+(define-cell-function put-sine (angle)
+  (multiple-value-bind (quarters high low) (reduce-angle 'sine angle)
     (declare (type (signed-byte 30) quarters) (type double-float high low))
-    (sine-of-quarters quarters high low)))
+    (sine-of-right-angles quarters high low)))
 
-(define-put put-cosine (angle)
-  (multiple-value-bind (quarters high low) (reduced 'cosine angle)
+(define-cell-function put-cosine (angle)
+  (multiple-value-bind (quarters high low) (reduce-angle 'cosine angle)
     (declare (type (signed-byte 30) quarters) (type double-float high low))
-    (sine-of-quarters (1+ quarters) high low)))
+    (sine-of-right-angles (1+ quarters) high low)))
 
 ;;; Arctangent of Y / X, in the quadrant of (X, Y). The smaller is divided by the larger.
 
@@ -149,7 +151,7 @@ sum is the rest. Error messages name OPERATOR."
   :documentation "For K/256 from 1/16 to 1: the arctangent as a sum of two double-floats, and the
 coefficients 1 to 6 of its Taylor series.")
 
-(define-parts (+pi-1+ +pi-2+) (fixed-pi) 53)
+(define-constant-parts (+pi-1+ +pi-2+) (fixed-pi) 53)
 
 (declaim (inline small-arctangent table-arctangent arctangent-of-ratio))
 (defun small-arctangent (x low)
@@ -186,8 +188,8 @@ coefficients 1 to 6 of its Taylor series.")
                (low (/ (- (- small product) (product-error x large product)) large)))
           (if (< x 0.0625d0) (small-arctangent x low) (table-arctangent x low))))))
 
-(declaim (inline arctangent-above))
-(defun arctangent-above (y x)
+(declaim (inline upper-arctangent))
+(defun upper-arctangent (y x)
   "Return the angle of the direction (X, Y), where X is not 0 and Y is above 0."
   (declare (type double-float y x))
   (let* ((size (abs x)) (steep-p (> y size)) (back-p (minusp x)))
@@ -198,15 +200,15 @@ coefficients 1 to 6 of its Taylor series.")
           (let ((base (if steep-p +right-angle-1+ +pi-1+))
                 (base-low (if steep-p +right-angle-2+ +pi-2+))
                 (sign (if (and steep-p back-p) 1d0 -1d0)))
-            (with-parts (higher lower) ((+ base (* sign high)))
+            (with-sum-parts (higher lower) ((+ base (* sign high)))
               (+ higher (+ lower (+ base-low (* sign low))))))
           (+ high low)))))
 
-(define-put put-arctangent (y x)
+(define-cell-function put-arctangent (y x)
   (cond ((zerop y) (if (minusp (float-sign x)) (float-sign y +pi-1+) y))
         ((zerop x) (float-sign y +right-angle-1+))
-        ((minusp y) (- (arctangent-above (- y) x)))
-        (t (arctangent-above y x))))
+        ((minusp y) (- (upper-arctangent (- y) x)))
+        (t (upper-arctangent y x))))
 
 ;;; The functions for other files.
 
@@ -217,15 +219,15 @@ coefficients 1 to 6 of its Taylor series.")
   "Return the sine of ANGLE, in radians: a double-float with the same bits on every machine. (CL:SIN
 differs between machines.) Signals WRONG-ARGUMENT unless ANGLE is a real number."
   (check-number sine angle)
-  (in-cells put-sine (double angle)))
+  (result-in-last-cell put-sine (double angle)))
 
 (addition cosine)
 (defun cosine (angle)
   "Return the cosine of ANGLE, in radians, with the same bits on every machine. See SINE."
   (check-number cosine angle)
-  (in-cells put-cosine (double angle)))
+  (result-in-last-cell put-cosine (double angle)))
 
 (defun arctangent (y x)
   "Return the angle of the direction (X, Y), real numbers, in radians from -pi to pi. If X or Y is
 0, its sign matters, as for CL:ATAN."
-  (in-cells put-arctangent (double y) (double x)))
+  (result-in-last-cell put-arctangent (double y) (double x)))

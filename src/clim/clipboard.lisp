@@ -93,7 +93,7 @@ NIL if there is none. Signals MISUSE if the text does not arrive or is too long.
       (unwind-protect (let* ((mailbox (make-mailbox display))
                              (octets (fetch-selection-as :utf8_string selection display mailbox)))
                         (if octets
-                            (decoded octets)
+                            (utf-8-decoded octets)
                             (fetch-selection-as :string selection display mailbox)))
         (xlib:close-display display :abort t)))))
 
@@ -189,6 +189,6 @@ something and all transfers are complete or given up."
 list of :PRIMARY or :CLIPBOARD or both. The offer ends when another program copies something.")
   (:method (port text selections) (declare (ignore port text selections)))
   (:method ((port clim-clx:clx-port) text selections)
-    (let ((display (connect-to-x-server port)) (offered (make-offered-text (encoded text))))
+    (let ((display (connect-to-x-server port)) (offered (make-offered-text (utf-8-encoded text))))
       (claim-selections offered display selections)
       (start-thread (lambda () (serve-until-copied offered display)) "what was copied"))))

@@ -48,7 +48,7 @@ other windows show all robots of NEW."
               ((and old (not (eq old new)) (follows-prompt-p window old))
                (switch-window window new)))))))
 
-(attend ars-magna.cli:*whereabouts-hooks* follow-prompt)
+(add-listener ars-magna.cli:*whereabouts-hooks* follow-prompt)
 
 ;;; A program that has broken asks how to continue: the window shows the state in which it broke.
 
@@ -61,7 +61,7 @@ other windows show all robots of NEW."
       (when simulation
         (when (update-look-of-own-plans (watcher-plans watcher))
           (funcall (watcher-news watcher)))
-        (when (mine-p (timeline-custody (simulation-timeline simulation)))
+        (when (has-custody-p (timeline-custody (simulation-timeline simulation)))
           (publish-snapshot watcher simulation))))))
 
-(attend ars-magna.cli:*break-hooks* update-own-run-windows)
+(add-listener ars-magna.cli:*break-hooks* update-own-run-windows)

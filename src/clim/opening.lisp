@@ -335,4 +335,4 @@ there is no X server."
         (remove-observer (watcher-observer watcher) new)
         (watch-simulation watcher new)))))
 
-(attend *rewind-hooks* watch-rewound-run)
+(add-listener *rewind-hooks* watch-rewound-run)

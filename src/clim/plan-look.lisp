@@ -166,4 +166,4 @@ failure of TASK is reported elsewhere."
           (setf (plan-look-ended look) (plan-ending-text task))))))
   nil)
 
-(attend *plan-end-hooks* record-plan-ending)
+(add-listener *plan-end-hooks* record-plan-ending)

@@ -51,7 +51,7 @@ per second, or NIL."
 (defun blocking-code-text (simulation sample)
   "Return a text about the user code that has blocked SIMULATION since the last look, or NIL if no
 code has."
-  (multiple-value-bind (text calls) (users-code-under-way simulation)
+  (multiple-value-bind (text calls) (users-code-in-progress simulation)
     (and (eql calls (shiftf (sample-calls sample) calls))
          (= (simulation-tick simulation) (sample-last-tick sample))
          text)))
@@ -80,7 +80,7 @@ that continues the words, or NIL."
           ((not (live-p simulation))
            (or (ars-magna.cli:simulation-pace simulation)
                (if (headless-p simulation) :still :stopped)))
-          ((users-code-broken-p simulation)
+          ((users-code-in-debugger-p simulation)
            (values :broken (ars-magna.cli:other-debugger-text simulation)))
           (busy (values :busy busy))
           ((paused-p simulation) :paused)

@@ -138,7 +138,7 @@ this."
 (defun request-refresh (window)
   "Request that WINDOW be refreshed soon. Any thread may call this."
   (when (and (clim:frame-top-level-sheet window)
-             (swap-if (car (window-queued window)) nil t))
+             (swap-if-eq (car (window-queued window)) nil t))
     (call-in-window #'refresh-as-requested window)))
 
 (defun refresh-as-requested (window)

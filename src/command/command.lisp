@@ -157,7 +157,7 @@ check it."
   "At the prompt" (command-prompt-name command)
   "Manual" (command-section command))
 
-(defmethod function-meant ((name symbol))
+(defmethod function-of-command ((name symbol))
   (let ((command (find-command name nil)))
     (and command
          (not (same-name-p name (command-name command)))

@@ -49,7 +49,7 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
 
 (defun argument-check-form (name variable type)
   "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
-  `(check-of-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
+  `(check-argument-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
 (defun warn-of-uncallable (name forms)
   "Warn of each form in FORMS, the arguments in a call of the command NAME, that is no valid call,
@@ -58,19 +58,19 @@ such as an unquoted list of data, or (90 deg)."
     (typecase form
       ((cons (or keyword (cons (not (eql lambda)))))
        (let ((*print-pretty* nil))
-         (doubt-definition "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
-                           name (abridged form))))
+         (warn-of-style "~(~A~): ~S is no call of a function. If it is data, quote it: '~:*~S"
+                        name (abridged form))))
       ((cons number)
-       (doubt-definition "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
-                          without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
-                         name (abridged form))))))
+       (warn-of-style "~(~A~): ~S is no call of a function. Units are for the prompt, in lines ~
+                       without parentheses; in Lisp 90 degrees are (* 90 (/ pi 180))."
+                      name (abridged form))))))
 
 (defun warn-of-argument-count (name parameters forms)
   "Warn if FORMS, the arguments in a call of the command NAME, are too few or too many for
 PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
-    (doubt-definition "~(~A~) takes ~(~:A~), not ~D argument~:P."
-                      name parameters (length forms))))
+    (warn-of-style "~(~A~) takes ~(~:A~), not ~D argument~:P."
+                   name parameters (length forms))))
 
 (defun returns-nothing-p (form)
   "True if FORM calls an operator that is used for its effect, such as output, and returns no
@@ -98,7 +98,7 @@ function."
 command ends."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
-      (doubt-definition "~(~A~): ~S is evaluated at once, not when the command has ended, and ~
+      (warn-of-style "~(~A~): ~S is evaluated at once, not when the command has ended, and ~
                          returns no continuation. Write (continuation (err &rest results) ~:*~S)."
                         name (abridged form)))))
 

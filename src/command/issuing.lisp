@@ -283,7 +283,7 @@ because running a plan passes ticks."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *caller-passes-ticks-p*))
-    (multiple-value-bind (elsewhere number) (bound-elsewhere-text (robot-name robot))
+    (multiple-value-bind (elsewhere number) (other-thread-robot-text (robot-name robot))
       (warn-once (list :kept (robot-name robot) number) (robot-world robot)
                  (format nil "~(~A~) is kept for a later run, because no run of ~A is in progress. ~
                               ~A"
@@ -311,7 +311,7 @@ if the robot's run is over, or if an argument belongs to another run."
     (warn-if-interrupting command (occupied-resource command resource) arguments timeline)
     (warn-if-repeating command (occupied-resource command resource) arguments timeline)
     (post (make-operation command (occupied-resource command resource) arguments
-                          (if (untold-p timeline) nil continuation)
+                          (if (continuation-suppressed-p timeline) nil continuation)
                           timeline)
           timeline)
     (warn-of-arguments command world arguments)

@@ -186,7 +186,7 @@ codes of the manipulation. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no meth
          (arguments (butlast arguments))
          (resource (method-resource (first (methods-for manipulation arguments)) arguments))
          (command (command-of-manipulation manipulation)))
-    (check-of-type name 'continuation continuation 'continuation)
+    (check-argument-type name 'continuation continuation 'continuation)
     (warn-of-continuation command (robot-world (resource-robot resource)) continuation '(err value))
     (issue command resource arguments (and continuation
                                            (lambda (code resource value)
@@ -207,8 +207,8 @@ box-designator key-designator hand continuation) (manual 5.5.2)."
   (let ((name (first arguments)))
     (when (and name (symbolp name) (not (known-variable-p name environment))
                (find-manipulation name nil))
-      (doubt-definition "run-manipulation: ~A is a manipulation and no variable. Quote its name: ~
-                         '~:*~A" name)))
+      (warn-of-style "run-manipulation: ~A is a manipulation and no variable. Quote its name: ~
+                      '~:*~A" name)))
   form)
 
 (define-operator 'manipulate '(name)

@@ -24,7 +24,7 @@ type) for its resource and for each other parameter. The type may be NIL."
 (define-record (manipulation-method (:conc-name method-))
   "One way to carry out a manipulation."
   (form '() list)
-  (source '() list "the source of the method's definition; see SOURCE-HERE" :export)
+  (source '() list "the source of the method's definition; see SOURCE-OF-CURRENT-FORM" :export)
   (digest nil (or null integer) "a digest of the form of the method's definition, or NIL" :export)
   (parameters nil parameter-list)
   (success 1d0 double-float)
@@ -174,9 +174,9 @@ list, BODY a function of these parameters. Return NAME."
   "Warn if TYPE, the type of a parameter, is neither an argument type nor a class, but resembles an
 argument type."
   (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
-    (let ((like (argument-type-like type)))
+    (let ((like (similar-argument-type type)))
       (when like
-        (doubt-definition "~A: no type is called ~(~A~), so any value fits. Did you mean ~(~A~)?"
+        (warn-of-style "~A: no type is called ~(~A~), so any value fits. Did you mean ~(~A~)?"
                           definition type like)))))
 
 (defun manipulation-forms (definition name parameters options body)
@@ -188,7 +188,7 @@ argument type."
   (let* ((parsed (parse-parameters definition parameters))
          (variables (parameter-variables parsed)))
     (loop for (nil type) in (parameter-list-typed parsed) do (warn-of-type definition type))
-    (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
+    (when (body-advice body) (warn-of-style "~A: ~A" definition (body-advice body)))
     `((define-manipulation ',name ',parameters
         (lambda ,variables (declare (ignorable ,@variables)) ,@body)
         ,@options))))

@@ -42,8 +42,8 @@ the command that it has interrupted, or NIL"))
       (setf (operation-continuation copy) (forked (operation-continuation operation) fork)))
     copy))
 
-(note-lasting 'run-operation)
-(note-lasting 'interrupt-operation)
+(note-savable-function 'run-operation)
+(note-savable-function 'interrupt-operation)
 
 (setf (documentation 'operation-resource 'function)
       "Return the robot or part that the operation occupies.")
@@ -103,7 +103,8 @@ arguments."
   (robot-name (resource-robot (operation-resource operation))))
 
 (defun queue-operation-message (operation text)
-  (let ((*told-of* (request-asker operation)) (*robot-told-of* (operation-robot-name operation)))
+  (let ((*request-origin* (request-asker operation))
+        (*reported-robot* (operation-robot-name operation)))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun queue-failure-message (operation kind code text)
@@ -116,15 +117,15 @@ arguments."
 
 (defun report (operation code results)
   "Queue the message that OPERATION has ended with CODE and RESULTS (reading 229)."
-  (let* ((*told-of* (request-asker operation))
-         (*robot-told-of* (operation-robot-name operation))
+  (let* ((*request-origin* (request-asker operation))
+         (*reported-robot* (operation-robot-name operation))
          (command (operation-command operation))
          (report (command-report command)))
     (cond ((eq code :interrupt)
            (queue-failure-message operation :warning code
                                   (format nil "~A was interrupted" (command-prefix command))))
           (code (queue-failure-message operation :error code (error-text operation code)))
-          (report (let ((text (printing-words () (apply report operation results))))
+          (report (let ((text (printing-text () (apply report operation results))))
                     (when text (queue-operation-message operation text)))))))
 
 ;; See reading 86.
@@ -132,7 +133,7 @@ arguments."
   "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
-      (begin-moment (operation-timeline operation)))
+      (count-moment (operation-timeline operation)))
     (apply #'call-user-code (operation-continuation operation)
            (command-origin (operation-command operation))
            code (named-resource operation) results)))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copier with-copier copier-variable copier-option note-copy note-finished define-shared
-          define-shared-slots))
+(export '(copier with-copier copier-variable copier-option record-copy record-finished-copy
+          define-shared define-shared-slots))
 
 (define-record (copier (:constructor make-copier ()))
   "An object that copies a run."
@@ -32,15 +32,15 @@ for the copy and true, or NIL and false" :writable)
 
 ;;; Recording copies.
 
-(declaim (inline note-copy))
-(defun note-copy (value copy copier)
+(declaim (inline record-copy))
+(defun record-copy (value copy copier)
   "Record COPY as the copy of VALUE by COPIER. Return COPY."
   (setf (gethash value (copier-table copier)) copy))
 
-(declaim (inline note-finished))
-(defun note-finished (copy copier)
+(declaim (inline record-finished-copy))
+(defun record-finished-copy (copy copier)
   "Record COPY, an object made for the fork by COPIER, as a complete copy. Return COPY."
-  (note-copy copy copy copier))
+  (record-copy copy copy copier))
 
 (defun queue-references (copy indices copier)
   "Queue COPY in COPIER, so that REPLACE-REFERENCES will replace its slots with the numbers INDICES.
@@ -65,7 +65,7 @@ is to be reused.")
 (defun take-copier ()
   (loop for copiers = (car *idle-copiers*)
         while copiers
-        when (swap-if (car *idle-copiers*) copiers (rest copiers))
+        when (swap-if-eq (car *idle-copiers*) copiers (rest copiers))
           return (first copiers)
         finally (return (make-copier))))
 
@@ -120,25 +120,25 @@ fork has NIL in its place) and MAKE-NO-FORK."))
       (documentation 'cannot-fork-place 'function)
       "Return a text that says where the object was found, such as the name of a plan's variable.")
 
-(defun place-in-words (value copier)
+(defun value-location-text (value copier)
   "Return a text that says where VALUE was found: the result of COPIER's option :PLACE-OF, or else
 the object that refers to VALUE."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
-(defun decision-about (value copier)
+(defun find-decision (value copier)
   "If the caller of COPIER has chosen a replacement for VALUE in the fork, return a cons of VALUE
 and the replacement; else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
-(defun decided-copy (value copier)
+(defun copy-by-decision (value copier)
   "Return the replacement for VALUE that the caller of COPIER has chosen. Signals CANNOT-FORK if
 there is none."
-  (let ((decision (decision-about value copier)))
+  (let ((decision (find-decision value copier)))
     (if decision
         (cdr decision)
-        (error 'cannot-fork :value value :place (place-in-words value copier)))))
+        (error 'cannot-fork :value value :place (value-location-text value copier)))))
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
@@ -148,7 +148,7 @@ instances are copied with their contents. If two of them share an object, their 
 copy. Functions are shared; closures are copied with the variables that they close over. Define a
 method for a class of your own to change this: return VALUE itself to share it, or a replacement.
 (forked x fork) returns the counterpart of another object x.")
-  (:method (value fork) (decided-copy value fork)))
+  (:method (value fork) (copy-by-decision value fork)))
 
 (addition copy-plan-value)
 
@@ -197,14 +197,14 @@ a list of pairs of functions (writer . initial), for slots that get their initia
   (eq (first (compute-applicable-methods #'copy-plan-value (list object nil)))
       (find-method #'copy-plan-value '() (list (find-class class) (find-class t)))))
 
-(defun choose-way (object)
+(defun choose-copy-way (object)
   (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
         ((not (default-method-p object 'structure-object)) :method)
-        ((and (lisps-own-p (class-name (class-of object))) (not (environment-p object))) :ask)
+        ((and (lisp-symbol-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))
 
 (defun find-copy-policy (object)
-  (let* ((kind (kind-of object)) (way (choose-way object))
+  (let* ((kind (kind-of object)) (way (choose-copy-way object))
          (links (remove :link (and kind (kind-slots kind))
                         :key #'kind-slot-role :test-not #'eq)))
     (if (member way '(:share :ask))
@@ -220,10 +220,10 @@ a list of pairs of functions (writer . initial), for slots that get their initia
 
 (defconstant +policies-cached+ 4096 "The size of the cache of copy policies, a power of 2.")
 
-(defun empty-policy-cache ()
+(defun make-policy-cache ()
   (make-array +policies-cached+ :initial-element nil))
 
-(defvar *copy-policies* (cons '() (empty-policy-cache))
+(defvar *copy-policies* (cons '() (make-policy-cache))
   "A cons of the methods of COPY-PLAN-VALUE and the cache of copy policies that is valid for them: a
 vector of pairs (layout . copy-policy), indexed by the number of the layout.")
 
@@ -231,7 +231,7 @@ vector of pairs (layout . copy-policy), indexed by the number of the layout.")
   "Clear the cache of copy policies if methods of COPY-PLAN-VALUE were defined after it was made."
   (let ((methods (methods-of-generic #'copy-plan-value)))
     (unless (eq methods (car *copy-policies*))
-      (setf *copy-policies* (cons methods (empty-policy-cache))))))
+      (setf *copy-policies* (cons methods (make-policy-cache))))))
 
 (defun copy-policy (object)
   (declare #.*hot*)

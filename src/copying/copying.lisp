@@ -34,7 +34,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
 VALUE."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
-        (note-copy value instead copier)
+        (record-copy value instead copier)
         (begin-copy value copier))))
 
 (defmethod copy-plan-value ((value structure-object) fork)
@@ -43,7 +43,7 @@ VALUE."
 (defun copy-slots (object copier &optional (copy-policy (copy-policy object)))
   "Return a copy, made by COPIER, of the structure OBJECT. Its slots will contain copies too."
   (declare #.*hot* (type copy-policy copy-policy))
-  (let ((copy (note-copy object (copy-structure (the structure-object object)) copier)))
+  (let ((copy (record-copy object (copy-structure (the structure-object object)) copier)))
     (loop for (writer . initial) in (copy-policy-fresh copy-policy)
           do (funcall (the function writer) (funcall (the function initial)) copy))
     (unless (zerop (length (copy-policy-indices copy-policy)))
@@ -55,17 +55,17 @@ VALUE."
 (define-shared package pathname readtable class generic-function method method-combination)
 
 (defmethod copy-plan-value ((value random-state) fork)
-  (note-copy value (make-random-state value) fork))
+  (record-copy value (make-random-state value) fork))
 
 (defmethod copy-plan-value ((value dice) fork)
-  (note-copy value (copy-dice value) fork))
+  (record-copy value (copy-dice value) fork))
 
 (defmethod copy-plan-value ((value condition) fork)
   (multiple-value-bind (copy indices) (copy-condition value)
-    (queue-references (note-copy value copy fork) (coerce indices 'simple-vector) fork)))
+    (queue-references (record-copy value copy fork) (coerce indices 'simple-vector) fork)))
 
 (defmethod copy-plan-value ((value standard-object) fork)
-  (let ((copy (note-copy value (allocate-instance (class-of value)) fork)))
+  (let ((copy (record-copy value (allocate-instance (class-of value)) fork)))
     (dolist (slot (instance-slot-names (class-of value)))
       (when (slot-boundp value slot)
         (setf (slot-value copy slot) (slot-value value slot))))
@@ -78,23 +78,23 @@ VALUE."
 
 (defun copy-displaced (array copier)
   (multiple-value-bind (base offset) (array-displacement array)
-    (note-copy array
-               (make-array (array-dimensions array)
-                           :element-type (array-element-type array)
-                           :adjustable (adjustable-array-p array)
-                           :fill-pointer (and (array-has-fill-pointer-p array)
-                                              (fill-pointer array))
-                           :displaced-to (forked base copier)
-                           :displaced-index-offset offset)
-               copier)))
+    (record-copy array
+                 (make-array (array-dimensions array)
+                             :element-type (array-element-type array)
+                             :adjustable (adjustable-array-p array)
+                             :fill-pointer (and (array-has-fill-pointer-p array)
+                                                (fill-pointer array))
+                             :displaced-to (forked base copier)
+                             :displaced-index-offset offset)
+                 copier)))
 
 (defun copy-by-method (value copier)
   "Return the replacement for VALUE that the caller has chosen, or else the value of
 COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
-  (let ((decision (decision-about value copier)))
+  (let ((decision (find-decision value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
-               (error 'cannot-fork :value value :place (place-in-words value copier)
+               (error 'cannot-fork :value value :place (value-location-text value copier)
                                    :trouble (brief-text condition)))))
       (declare (dynamic-extent #'blame))
       (if decision
@@ -104,25 +104,25 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
 
 (defun begin-copy (value copier)
   (declare #.*hot*)
-  (flet ((note (copy) (queue-references (note-copy value copy copier) nil copier)))
+  (flet ((note (copy) (queue-references (record-copy value copy copier) nil copier)))
     (declare (inline note))
     (typecase value
       (cons (note (cons (car value) (cdr value))))
-      (hash-table (let ((copy (note-copy value (make-similar-table value) copier)))
+      (hash-table (let ((copy (record-copy value (make-similar-table value) copier)))
                     (push (cons value copy) (copier-tables copier))
                     copy))
       (structure-object (let ((copy-policy (copy-policy value)))
                           (ecase (copy-policy-way copy-policy)
                             (:copy (copy-slots value copier copy-policy))
                             (:share value)
-                            (:method (note-copy value (copy-by-method value copier) copier))
-                            (:ask (decided-copy value copier)))))
+                            (:method (record-copy value (copy-by-method value copier) copier))
+                            (:ask (copy-by-decision value copier)))))
       (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
       (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
       (array (cond ((array-displacement value) (copy-displaced value copier))
                    ((eq t (array-element-type value)) (note (duplicate-array value)))
-                   (t (note-copy value (duplicate-array value) copier))))
-      (t (cond ((not (value-cell-p value)) (note-copy value (copy-by-method value copier) copier))
+                   (t (record-copy value (duplicate-array value) copier))))
+      (t (cond ((not (value-cell-p value)) (record-copy value (copy-by-method value copier) copier))
                ;; So an exit to it fails properly in a fork too.
                ((exit-cell-p value) value)
                (t (note (make-value-cell (cell-value value)))))))))
@@ -131,7 +131,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
   "Return the copy of FUNCTION, which is not a closure: FUNCTION itself, unless its class is a
 user's and may have slots."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
-        ((typep function 'standard-object) (decided-copy function copier))
+        ((typep function 'standard-object) (copy-by-decision function copier))
         (t function)))
 
 ;;; Replacing references in copies.
@@ -147,7 +147,7 @@ before."
              (setf (cdr list) (forked tail copier))
              (return))
             (t (setf list (setf (cdr list)
-                                (note-copy tail (cons (car tail) (cdr tail)) copier))))))))
+                                (record-copy tail (cons (car tail) (cdr tail)) copier))))))))
 
 (defun replace-references (copy indices copier)
   "Replace the references in COPY by copies. INDICES are numbers of slots, or NIL for objects

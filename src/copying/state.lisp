@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.copying)
 
-(export '(reference digest-state holds-p closed-over fields-of-type slot-kept-p blank-object
-          note-lasting lasting-name lasting-function contradiction contradict must-hold
-          proper-list-of-p))
+(export '(reference digest-state holds-p closed-over fields-of-type saved-slot-p blank-object
+          note-savable-function savable-function-name find-savable-function contradiction
+          contradict must-hold proper-list-of-p))
 
 ;;; An object is digested with its state and its parts. Other objects that it refers to are digested
 ;;; by their REFERENCE.
@@ -23,7 +23,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
     (digest-add digest object))
   (:method ((object structure-object) digest)
     (let ((kind (kind-of object)))
-      (digest-mention object digest)
+      (digest-identity object digest)
       (when kind
         (dolist (slot (kind-decisive-slots kind))
           (digest-slot slot (slot-content slot object) digest))))
@@ -40,7 +40,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
 
 (defvar *digest-depth* 0 "The nesting depth of the object that is being digested.")
 
-(defmethod digest-mention (object digest)
+(defmethod digest-identity (object digest)
   (let ((reference (reference object)))
     (if reference
         (digest-add digest reference)
@@ -58,7 +58,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
     (hash-table (digest-table object digest))
     (pathname (digest-add digest (namestring object)))
     (structure-object
-     (unless (or (kind-of object) (lisps-own-p (type-of object)))
+     (unless (or (kind-of object) (lisp-symbol-p (type-of object)))
        (dolist (slot (class-slot-names (class-of object)))
          (digest-add digest (slot-value object slot)))))))
 
@@ -118,11 +118,11 @@ closures, structures or instances."
 ;;; :MEMORY; slots that are :SCRATCH or a :LINK start as in a new object. Of a structure without a
 ;;; kind it has all slots.
 
-(defun slot-kept-p (slot)
+(defun saved-slot-p (slot)
   "True if saved runs contain SLOT, an element of FIELDS-OF-TYPE."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
-(defun plain-slot (name type)
+(defun describe-plain-slot (name type)
   "Return a description of NAME, a slot with values of TYPE in a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
@@ -134,12 +134,12 @@ closures, structures or instances."
 
 (defun fields-of-type (type)
   "Return a list of the descriptions of all slots of structures of TYPE, a symbol."
-  (let* ((kind (kind-called type))
+  (let* ((kind (kind-named type))
          (slots (and kind (kind-slots kind))))
     (append slots
             (loop for (name slot-type) in (class-slot-types (find-class type))
                   unless (find name slots :key #'kind-slot-name)
-                    collect (plain-slot name slot-type)))))
+                    collect (describe-plain-slot name slot-type)))))
 
 (defun blank-object (type fields)
   "Return a new structure of TYPE, a symbol. The caller must then set its FIELDS, descriptions of
@@ -152,21 +152,21 @@ type; so do not print the object."
 
 ;;; Functions that objects hold and that a file may name. Others are refused.
 
-(defvar *lasting-functions* '()
+(defvar *savable-functions* '()
   "The names of functions that objects of a saved run may hold.")
 
-(defun note-lasting (name)
+(defun note-savable-function (name)
   "Allow files of saved runs to name the function NAME as the contents of a slot. Return NAME."
-  (pushnew name *lasting-functions*)
+  (pushnew name *savable-functions*)
   name)
 
-(defun lasting-name (function)
-  "Return the name of FUNCTION if that name was passed to NOTE-LASTING, or NIL."
-  (find function *lasting-functions* :key #'fdefinition))
+(defun savable-function-name (function)
+  "Return the name of FUNCTION if that name was passed to NOTE-SAVABLE-FUNCTION, or NIL."
+  (find function *savable-functions* :key #'fdefinition))
 
-(defun lasting-function (name)
-  "Return the function named NAME if NAME was passed to NOTE-LASTING, or NIL."
-  (and (member name *lasting-functions*) (fdefinition name)))
+(defun find-savable-function (name)
+  "Return the function named NAME if NAME was passed to NOTE-SAVABLE-FUNCTION, or NIL."
+  (and (member name *savable-functions*) (fdefinition name)))
 
 ;;;; Consistency of restored objects
 

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(current-source *definition* definition-again make-defining reject-clause
+(export '(current-source *definition* reread-definition make-defining reject-clause
           call-with-definition expand-definition forms-or-rejection title check-function-name
-          other-definition-p in-file-p missing-name read-value clause-place current-form-digest
+          replacing-form-p definition-in-file-p undefined-name-of ask-for-form clause-location current-form-digest
           endless-p has-quote-p))
 
 ;;; A defining form is checked when it is expanded, and performed when its expansion is evaluated.
@@ -27,14 +27,14 @@ its file; NIL until it is looked up" :writable)
 the definition or form was typed."
   (if *definition*
       (defining-source *definition*)
-      (source-here)))
+      (source-of-current-form)))
 
 (defun current-form-digest ()
   "Return the digest of the current definition's form, or NIL."
   (and *definition* (form-digest (defining-form *definition*))))
 
 (defun current-operator-and-name ()
-  (and *definition* (head (defining-form *definition*))))
+  (and *definition* (operator-and-name (defining-form *definition*))))
 
 (defun current-docstring ()
   "Return the docstring of the current definition: the value of :documentation, or else the first
@@ -53,19 +53,19 @@ yard\"."
   (let ((form (defining-form definition)))
     (title (first form) (second form))))
 
-(defun clause-place (clause)
+(defun clause-location (clause)
   "Return the file and line of CLAUSE, a part of the current definition, as a text such as
 \"yard.lisp, line 7\", or NIL."
-  (let ((source (if *definition* (current-source) (source-here))))
+  (let ((source (if *definition* (current-source) (source-of-current-form))))
     (when source
       (multiple-value-bind (line ordinal)
-          (clause-line (source-file source)
-                       (and *definition* (defining-form *definition*)) clause)
+          (clause-line-in-file (source-file source)
+                               (and *definition* (defining-form *definition*)) clause)
         (when *definition* (setf (defining-ordinal *definition*) ordinal))
         (format nil "~A~@[, line ~D~]" (source-file source)
-                (or (line-in-text (source-file source) clause (place-in-text clause)) line))))))
+                (or (line-in-text (source-file source) clause (location-in-text clause)) line))))))
 
-(defun reject-clause (definition clause expected &optional (place (clause-place clause)))
+(defun reject-clause (definition clause expected &optional (place (clause-location clause)))
   "Signal MALFORMED-DEFINITION about CLAUSE, a part of DEFINITION, a string such as \"defmap
 watson\". PLACE is the file and line of CLAUSE. EXPECTED describes a valid clause."
   (when *definition* (setf (defining-clause *definition*) clause))
@@ -95,36 +95,36 @@ remains."
 there."
  'use-value "Use the value that you type instead: another clause, definition, name or value.")
 
-(defun read-value (what)
+(defun ask-for-form (what)
   "Ask the user for a form, which the text WHAT describes. Return a list of the form."
   (format *query-io* "~&~A: " what)
   (finish-output *query-io*)
   (list (read *query-io*)))
 
-(defun in-file-p (condition)
+(defun definition-in-file-p (condition)
   "True if the current definition, with the error CONDITION, was read from a file and can be read
 again."
   (declare (ignore condition))
   (and (current-source) t))
 
-(defun definition-again (definition)
+(defun reread-definition (definition)
   "Read the form of DEFINITION again from its file, and return it."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 
-(defun other-definition-p (value &optional (definition *definition*))
+(defun replacing-form-p (value &optional (definition *definition*))
   "True if VALUE is a complete form with the operator of DEFINITION."
   (and (consp value)
        (symbolp (first value))
        (same-name-p (first value) (first (defining-form definition)))))
 
-(defun definition-with (definition value)
+(defun replace-clause (definition value)
   "Return VALUE if it is a complete form that can replace DEFINITION; else the form of DEFINITION
 with VALUE in place of the rejected clause."
   (let* ((form (defining-form definition))
          (clause (defining-clause definition))
          (new (subst value clause form :test #'equal)))
-    (cond ((other-definition-p value definition) value)
+    (cond ((replacing-form-p value definition) value)
           ((and clause (not (equal new form))) new)
           (t (reject-use "~S cannot replace a part of ~A. Give a complete form."
                          value (definition-text definition))))))
@@ -142,36 +142,36 @@ another clause. The restarts remain available for that form."
           :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
           nil)
         (read-again ()
-          :test in-file-p
+          :test definition-in-file-p
           :report (lambda (stream)
                     (format stream "Read ~A again from its file." (definition-text definition)))
-          (instead #'definition-again))
+          (instead #'reread-definition))
         (use-value (value)
           :report (lambda (stream)
                     (format stream "Use another clause of ~A, or another form for it."
                             (definition-text definition)))
-          :interactive (lambda () (read-value "A clause to use, or a whole form"))
-          (instead (lambda (definition) (definition-with definition value))))))))
+          :interactive (lambda () (ask-for-form "A clause to use, or a whole form"))
+          (instead (lambda (definition) (replace-clause definition value))))))))
 
 ;;; Mistakes that Lisp finds.
 
-(defun missing-name (condition)
+(defun undefined-name-of (condition)
   "If CONDITION reports an undefined variable or function, return its name; else NIL."
   (and (typep condition '(or unbound-variable undefined-function))
        (cell-error-name condition)))
 
-(defun head (form)
+(defun operator-and-name (form)
   (subseq form 0 (min 2 (length form))))
 
-(defun reject-value (condition)
+(defun reject-failing-form (condition)
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of the current definition."
-  (let ((name (missing-name condition)))
+  (let ((name (undefined-name-of condition)))
     (reject-clause (definition-text *definition*)
-                   (or name (append (head (defining-form *definition*)) (list +more+)))
+                   (or name (append (operator-and-name (defining-form *definition*)) (list +more+)))
                    (format nil "forms that have values~:[~;, with a quote before names~] (~A)"
                            name (string-right-trim "." (text-of-condition condition))))))
 
-(defun call-blaming (function blame)
+(defun call-reporting-mistakes (function blame)
   "Call FUNCTION. For each error that is not an ARS-MAGNA-ERROR, and so is a mistake in a user's
 form, call BLAME with the error."
   (handler-bind ((error (lambda (condition)
@@ -181,7 +181,8 @@ form, call BLAME with the error."
 
 (defun call-as-definition (source form function)
   (let ((*definition* (make-defining source form)))
-    (call-with-definition-restarts (lambda () (call-blaming function #'reject-value)) #'eval)))
+    (call-with-definition-restarts
+     (lambda () (call-reporting-mistakes function #'reject-failing-form)) #'eval)))
 
 (defun find-part (test form)
   "Return the first part of FORM, a tree of conses, for which TEST returns true, or NIL."
@@ -205,8 +206,8 @@ form, call BLAME with the error."
 (defun rejected-form (condition)
   "Return a form that signals CONDITION, a MALFORMED-DEFINITION, again when the form is evaluated."
   (when *compile-file-truename*
-    (call-at-place (malformed-definition-clause condition)
-                   (lambda () (warn-of-definition "~A" condition))))
+    (call-at-source-location (malformed-definition-clause condition)
+                             (lambda () (warn-of-definition "~A" condition))))
   `(reject-clause ',(malformed-definition-definition condition)
                   ',(malformed-definition-clause condition)
                   ,(malformed-definition-expected condition)
@@ -224,7 +225,7 @@ now.)"
 
 (defun call-with-definition (form function)
   "Call FUNCTION, which expands the definition FORM, and return its values."
-  (let ((*definition* (make-defining (source-here) form)))
+  (let ((*definition* (make-defining (source-of-current-form) form)))
     (call-with-definition-restarts function #'identity)))
 
 (defun expand-definition (form environment function)
@@ -235,7 +236,7 @@ expansion returns the name."
    form
    (lambda ()
      (multiple-value-bind (forms before)
-         (forms-or-rejection function (nested-p environment))
+         (forms-or-rejection function (nested-form-p environment))
        `(progn
           ,@before
           (call-as-definition ',(current-source) ',form (lambda () ,@forms))

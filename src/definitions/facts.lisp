@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(facts known-facts define-facts listed fact-text))
+(export '(facts known-facts define-facts comma-separated fact-text))
 
 ;;; FACTS returns labels and texts. DESCRIBE and editors' inspectors show them. For a symbol,
 ;;; DESCRIBE also shows users' definitions of that name: maps, kickers and the like.
@@ -24,7 +24,7 @@ prefixes."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
     (one-line (safe-text fact :length 400))))
 
-(defun listed (objects)
+(defun comma-separated (objects)
   "Return a text with OBJECTS, such as names, separated by commas; NIL if there are none. Show at
 most 12 of them."
   (and objects
@@ -34,20 +34,20 @@ most 12 of them."
                                                 object
                                                 (fact-text object)))))))
 
-(defun write-facts-of (facts stream)
+(defun write-fact-lines (facts stream)
   (loop for (label text) in facts
         do (format stream "~&  ~A: ~A~%" label text)))
 
 (defun write-facts (object stream)
   (format stream "~&~S~%" object)
-  (write-facts-of (append (facts object) (facts-of-definition (entry-of object))) stream))
+  (write-fact-lines (append (facts object) (facts-of-definition (entry-of-object object))) stream))
 
 (defmacro define-facts ((class variable) &rest labels-and-forms)
   "Make DESCRIBE and inspectors show labels and the values of forms for objects of CLASS. In
 LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound to the object."
   `(progn
      (defmethod facts ((,variable ,class)) (known-facts ,@labels-and-forms))
-     ,@(unless (kind-called class)
+     ,@(unless (kind-named class)
          `((defmethod describe-object ((,variable ,class) stream)
              (write-facts ,variable stream))))))
 
@@ -72,7 +72,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
 
 ;;; Definitions.
 
-(defun entry-of (object)
+(defun entry-of-object (object)
   (loop for registry in *registries*
           thereis (find object (registry-entries registry) :key #'entry-object :test #'eq)))
 
@@ -82,7 +82,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
       (known-facts "Documentation" (entry-documentation entry)
                    "Defined in" (and file
                                      (format nil "~A~@[, line ~D~]" file
-                                             (and head (clause-line file head nil))))))))
+                                             (and head (clause-line-in-file file head nil))))))))
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
 (defun show-entry-p (entry registry symbol)
@@ -97,13 +97,13 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
       (when (and entry (show-entry-p entry registry symbol))
         (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
                 (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
-        (write-facts-of (append (facts (entry-object entry)) (facts-of-definition entry))
-                        stream)))))
+        (write-fact-lines (append (facts (entry-object entry)) (facts-of-definition entry))
+                          stream)))))
 
 ;;; Documentation, of kinds of definition.
 
 (defmethod documentation ((name symbol) (kind symbol))
-  (let ((registry (registry-called kind (open-registries))))
+  (let ((registry (registry-named kind (users-registries))))
     (if registry
         (let ((entry (lookup-entry name registry)))
           (and entry (entry-documentation entry)))
@@ -115,7 +115,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
   "Return a list of lists (file position operator): the present source locations of the definitions
 of NAME, a symbol, as a map, a kicker and so on. Lisp itself knows the locations of variables and
 functions."
-  (loop for registry in (open-registries)
+  (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))
         for place = (and file (entry-head entry) (not (same-name-p 'procedure
@@ -126,4 +126,4 @@ functions."
         when place
           collect (list file (first place) (first (entry-head entry)))))
 
-(tell-sources #'definition-sources)
+(add-definition-sources #'definition-sources)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(make-kind-slot slots-to-show *object-kinds* kind-p kind-of kind-called all-kinds
+(export '(make-kind-slot slots-to-show *object-kinds* kind-p kind-of kind-named all-kinds
           find-kind-name object-slots reset slot-content define-kind))
 
 ;;; A kind is a structure with a role for each slot; DEFINE-KIND lists the roles. They determine the
@@ -26,7 +26,7 @@
   (writer nil function
           "the function of a value and an object that stores the value in the slot" :export))
 
-(defun decisive-p (slot)
+(defun decisive-slot-p (slot)
   "True if SLOT has the role :STATE, or is a :FIXED slot that contains parts of the object."
   (or (eq :state (kind-slot-role slot))
       (and (eq :fixed (kind-slot-role slot)) (kind-slot-part-p slot))))
@@ -34,7 +34,7 @@
 (define-record (object-kind (:conc-name kind-)
                             (:constructor make-kind
                                 (name slots parent
-                                 &aux (decisive-slots (remove-if-not #'decisive-p slots))))
+                                 &aux (decisive-slots (remove-if-not #'decisive-slot-p slots))))
                             (:predicate kind-p))
   "A kind of object, defined by DEFINE-KIND."
   (name nil symbol "the name of the kind, the type of its objects" :export)
@@ -49,8 +49,8 @@
 (define-registry object-kind "kind of object"
   :object-p kind-p :by-symbol t :fixed t :internal t)
 
-(declaim (inline kind-called))
-(defun kind-called (name)
+(declaim (inline kind-named))
+(defun kind-named (name)
   "Return the kind with the name NAME, or NIL. NAME must be the same symbol, not only the same
 string."
   (get name 'object-kind))
@@ -59,9 +59,9 @@ string."
 (defun kind-of (object)
   "Return the kind of OBJECT, or NIL."
   (and (typep object 'structure-object)
-       (kind-called (type-of object))))
+       (kind-named (type-of object))))
 
-(defun based-on-p (kind base)
+(defun kind-includes-p (kind base)
   (loop for each = kind then (kind-parent each)
         while each
           thereis (eq base (kind-name each))))
@@ -69,12 +69,12 @@ string."
 (defun all-kinds (&optional base)
   "Return a list of all kinds in order of definition. If the name BASE is given, list only the kind
 BASE and the kinds that include it."
-  (remove-if-not (lambda (kind) (or (null base) (based-on-p kind base)))
+  (remove-if-not (lambda (kind) (or (null base) (kind-includes-p kind base)))
                  (all-object-kinds)))
 
-(defun look-up-kind-name (name base kinds)
+(defun search-kind-name (name base kinds)
   (loop for kind in kinds
-        when (and (same-name-p name (kind-name kind)) (based-on-p kind base))
+        when (and (same-name-p name (kind-name kind)) (kind-includes-p kind base))
           return (kind-name kind)))
 
 (defun find-kind-name (name base)
@@ -85,10 +85,10 @@ is the kind BASE or includes BASE; NIL if there is none."
         ;; Plans' commands ask this for each argument. The cache is valid until a kind is defined.
         (let ((known (get name 'known-kind-name)))
           (unless (and known (eq base (first known)) (eq kinds (second known)))
-            (setf known (list base kinds (look-up-kind-name name base kinds))
+            (setf known (list base kinds (search-kind-name name base kinds))
                   (get name 'known-kind-name) known))
           (third known))
-        (look-up-kind-name name base kinds))))
+        (search-kind-name name base kinds))))
 
 ;;; The contents of an object.
 
@@ -151,7 +151,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
 
 (defun register-kind (name parent slots conc)
   (let* ((parent (and parent
-                      (or (kind-called parent)
+                      (or (kind-named parent)
                           (reject-clause-of-kind name (list :include parent)
                                                  "a kind to include"))))
          (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
@@ -160,7 +160,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
     (document-readers kind conc (symbol-package name))
     kind))
 
-(defun slots-by-place (groups)
+(defun slots-in-memory-order (groups)
   "Return the slots in GROUPS, a list of lists (role slot...), in their order in memory."
   (stable-sort (loop for (nil . slots) in groups append slots)
                (lambda (one other)
@@ -188,8 +188,8 @@ kind has")))
 
 (defun check-kind-form (name include documentation groups)
   (check-kind-name name include documentation)
-  (let ((known (and include (kind-called include)
-                    (mapcar #'kind-slot-name (kind-slots (kind-called include))))))
+  (let ((known (and include (kind-named include)
+                    (mapcar #'kind-slot-name (kind-slots (kind-named include))))))
     (loop for group in groups
           do (unless (and (proper-list-p group)
                           (member (first group) '(:fixed :state :memory :scratch :link)))
@@ -238,7 +238,7 @@ and :ADDITION are as in DEFINE-RECORD. The roles are
 To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-DEFINITION."
   (multiple-value-bind (name include constructor) (kind-options name-and-options)
     (check-kind-form name include documentation groups)
-    (unless (or (null include) (kind-called include) (find-class include nil environment))
+    (unless (or (null include) (kind-named include) (find-class include nil environment))
       (reject-clause-of-kind name (list :include include) "a kind to include"))
     (kind-definition name include constructor documentation groups)))
 
@@ -248,7 +248,7 @@ To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-
        (define-record (,name ,@(when include `((:include ,include)))
                              (:constructor ,@(or (ensure-list constructor) '(nil))))
          ,documentation
-         ,@(loop for (slot default type text . options) in (slots-by-place groups)
+         ,@(loop for (slot default type text . options) in (slots-in-memory-order groups)
                  collect `(,slot ,default ,type ,text :writable
                                  ,@(intersection '(:export :addition) options))))
        (register-kind ',name ',include

@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
-          copy-message-queue message *robot-told-of* *run-that-reports* *told-of* take-messages
+          copy-message-queue message *reported-robot* *reporting-run* *request-origin* take-messages
           queue-message queue-items message-text phrase write-message *message-limit* make-message))
 
 ;;; Messages are queued as lists of items and become text when they are read. The queue is
@@ -21,14 +21,14 @@ an addition.")
   "What happens to errors in users' code."
   '(member :report :signal :collect))
 
-(defvar *told-of* nil
+(defvar *request-origin* nil
   "The origin, a value of NOTE-OF-ASKER, of the request that messages queued in this thread report
 about; or NIL.")
 
-(defvar *robot-told-of* nil
+(defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread report about, or NIL.")
 
-(defvar *run-that-reports* (constantly nil)
+(defvar *reporting-run* (constantly nil)
   "A function that returns the run to which messages queued in this thread belong, or NIL.")
 
 (define-record (message (:constructor make-message
@@ -37,13 +37,13 @@ about; or NIL.")
   "A message of the simulator or a user."
   (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
   (items '() list "the items that the message is made of" :export)
-  (asker *told-of* t
+  (asker *request-origin* t
          "the origin of the request that the message is about, for example the name of a plan; or
 NIL" :export)
-  (robot *robot-told-of* t
+  (robot *reported-robot* t
          "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
-  (run (funcall *run-that-reports*) t "the run that the message belongs to, or NIL" :export)
+  (run (funcall *reporting-run*) t "the run that the message belongs to, or NIL" :export)
   (cause nil t "the condition or failure in users' code that the message reports, or NIL; see
 troubles.lisp" :export)
   (summary "" string "a text about the cause, on one line")
@@ -96,7 +96,7 @@ listener, errors are shown at once"))
             (message-queue-forgotten copy) (message-queue-forgotten queue)))
     copy))
 
-(defun keep-trouble (message queue)
+(defun record-user-error (message queue)
   "Record MESSAGE, about an error in users' code, as the latest error in QUEUE."
   (push message (message-queue-troubles queue))
   (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
@@ -105,23 +105,23 @@ listener, errors are shown at once"))
              (null (message-queue-unsignalled queue)))
     (setf (message-queue-unsignalled queue) message)))
 
-(defun to-be-seen-p (message)
+(defun unreported-error-p (message)
   "True if MESSAGE is about an error or a mistake in users' code that was not reported in another
 way."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
-(defun echoed-p (message queue)
+(defun shown-at-once-p (message queue)
   "True if MESSAGE is shown at once when QUEUE has no listener."
   (or (eq :at-once (message-notable-p message))
       (and (message-queue-echoed queue)
-           (or (to-be-seen-p message) (eq t (message-notable-p message))))))
+           (or (unreported-error-p message) (eq t (message-notable-p message))))))
 
 (defun queue-message (message queue)
   "Add MESSAGE to QUEUE and notify its listener."
   (with-queue (queue)
     (when (and (message-cause message) (eq :error (message-kind message)))
-      (keep-trouble message queue))
+      (record-user-error message queue))
     (push message (message-queue-newest-first queue))
     (incf (message-queue-count queue))
     (when (> (message-queue-count queue) (* 2 *message-limit*))
@@ -131,7 +131,7 @@ way."
             (message-queue-count queue) *message-limit*)))
   (let ((listener (message-queue-listener queue)))
     (cond (listener (funcall listener))
-          ((echoed-p message queue) (echo-message message queue)))))
+          ((shown-at-once-p message queue) (echo-message message queue)))))
 
 (defun queue-items (kind items &rest options)
   "Queue a message of KIND with ITEMS and OPTIONS, the arguments of MAKE-MESSAGE. Return nothing."
@@ -190,7 +190,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
   (control "" string)
   (arguments '() list))
 (defmethod print-object ((phrase phrase) stream)
-  (printing-words ()
+  (printing-text ()
     (apply #'format stream (phrase-control phrase) (phrase-arguments phrase))))
 
 ;;; Printing.

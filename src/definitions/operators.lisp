@@ -3,8 +3,8 @@
 (in-package :ars-magna.definitions)
 
 (export '(define-argument-type argument-type-text argument-of-type-p find-argument-type
-          argument-type-like trouble-with perhaps-degrees-p degrees-advice check-of-type
-          define-operator check-operands find-operator))
+          similar-argument-type argument-trouble-text perhaps-degrees-p degrees-advice
+          check-argument-type define-operator check-operands find-operator))
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
@@ -24,16 +24,16 @@ TEXT says enough."
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
-(defun argument-type-like (name)
+(defun similar-argument-type (name)
   "Return the name of an argument type of which NAME, a symbol, may be a misspelling; or NIL."
-  (find-if (lambda (known) (resembles-p name known))
+  (find-if (lambda (known) (misspelling-p name known))
            (mapcar #'argument-type-name (all-argument-types))))
 
 (defun argument-of-type-p (value type)
   "True if VALUE can be an argument of TYPE, an argument type or its name."
   (funcall (argument-type-predicate (find-argument-type type)) value))
 
-(defun trouble-with (value type)
+(defun argument-trouble-text (value type)
   "Return a text that says what is wrong with VALUE as an argument of TYPE, an argument type or its
 name; NIL if the description of the type says enough."
   (let ((trouble (argument-type-trouble (find-argument-type type))))
@@ -43,20 +43,20 @@ name; NIL if the description of the type says enough."
   "Return a text that describes the arguments of TYPE, an argument type or its name. If VALUE is
 given, the text also says what is wrong with VALUE."
   (format nil "~A~@[: ~A~]" (argument-type-words (find-argument-type type))
-          (and value-p (trouble-with value type))))
+          (and value-p (argument-trouble-text value type))))
 
-(defun check-of-type (operator name value type)
+(defun check-argument-type (operator name value type)
   "Signal WRONG-ARGUMENT for the argument NAME of OPERATOR unless VALUE is of TYPE."
   (unless (argument-of-type-p value type)
     (reject-argument operator name value (argument-type-text type value))))
 
 ;;; One for each kind of number; see basics/conditions.lisp for the limits.
 
-(define-argument-type 'number #'within-reason-p "a number from -1e9 to 1e9")
-(define-argument-type 'angle #'within-reason-p "an angle in radians, from -1e9 to 1e9")
-(define-argument-type 'metres #'within-reason-p "a number of metres, from -1e9 to 1e9")
-(define-argument-type 'speed #'within-reason-p "a speed in metres per tick, from -1e9 to 1e9")
-(define-argument-type 'ticks #'within-reason-p "a number of ticks, from -1e9 to 1e9")
+(define-argument-type 'number #'sane-number-p "a number from -1e9 to 1e9")
+(define-argument-type 'angle #'sane-number-p "an angle in radians, from -1e9 to 1e9")
+(define-argument-type 'metres #'sane-number-p "a number of metres, from -1e9 to 1e9")
+(define-argument-type 'speed #'sane-number-p "a speed in metres per tick, from -1e9 to 1e9")
+(define-argument-type 'ticks #'sane-number-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'whole-p "a whole number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
@@ -91,9 +91,9 @@ meant."
 ;;; An operator has argument types, and a function that repeats the request when a journal is
 ;;; replayed. A journal can call nothing else.
 
-(define-record (askable (:conc-name operator-)
-                        (:constructor make-operator (name types rest function))
-                        (:predicate operator-p))
+(define-record (journal-operator (:conc-name operator-)
+                                 (:constructor make-operator (name types rest function))
+                                 (:predicate operator-p))
   "A request that a run accepts."
   (name nil symbol "the name of the operator, a symbol" :export)
   (types '() list "the types of the arguments")
@@ -122,4 +122,4 @@ request in the current simulation."
           for number from 1
           for rest = types then (rest rest)
           for type = (if rest (first rest) (operator-rest operator))
-          do (check-of-type name (format nil "argument ~D" number) argument type))))
+          do (check-argument-type name (format nil "argument ~D" number) argument type))))

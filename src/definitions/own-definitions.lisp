@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*kept-variables* overwrite-object call-with-own-definitions))
+(export '(*variables-to-restore* overwrite-object call-with-own-definitions))
 
 (defun overwrite-object (object model)
   "Copy all slots of MODEL to OBJECT, a structure of the same type. Return OBJECT."
@@ -10,7 +10,7 @@
     (unless (eql (slot-value object name) (slot-value model name))
       (setf (slot-value object name) (slot-value model name)))))
 
-(defun keep-entry (entry)
+(defun snapshot-entry (entry)
   "Return a list of ENTRY, a copy of its object, and a list of the value of its variable, or NIL if
 it has no value."
   (let ((variable (entry-variable entry)))
@@ -27,11 +27,11 @@ it has no value."
           do (overwrite-object (entry-object entry) copy)
              (when value
                (setf (global-value (entry-variable entry)) (first value))))
-    (mapc #'reinstate (registry-objects registry))))
+    (mapc #'redo-definition (registry-objects registry))))
 
 (defvar *own-definitions-thread* nil "The thread that is inside WITH-OWN-DEFINITIONS, or NIL.")
 
-(defun claim-definitions ()
+(defun enter-own-definitions ()
   "Record that this thread enters WITH-OWN-DEFINITIONS. Return the value of *OWN-DEFINITIONS-THREAD*
 to restore afterwards. Signals MISUSE if another thread is inside."
   (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
@@ -41,17 +41,18 @@ to restore afterwards. Signals MISUSE if another thread is inside."
 inside."))
     other))
 
-(defvar *kept-variables* '()
+(defvar *variables-to-restore* '()
   "Variables, such as that of the current simulation, whose values WITH-OWN-DEFINITIONS restores.
 Layers add variables.")
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION, then undo its definitions; see WITH-OWN-DEFINITIONS."
-  (let* ((outer (claim-definitions))
-         (variables *kept-variables*)
+  (let* ((outer (enter-own-definitions))
+         (variables *variables-to-restore*)
          (values (mapcar #'symbol-value variables))
          (kept (loop for registry in *registries*
-                     collect (cons registry (mapcar #'keep-entry (registry-entries registry))))))
+                     collect (cons registry
+                                   (mapcar #'snapshot-entry (registry-entries registry))))))
     (in-any-case
       (funcall function)
       (loop for (registry . entries) in kept

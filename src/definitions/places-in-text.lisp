@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(reading-place compiling-place))
+(export '(reading-location compiling-location))
 
-;;; The compiler knows the path of elements that leads to a form: see PLACE-IN-TEXT. The path is
+;;; The compiler knows the path of elements that leads to a form: see LOCATION-IN-TEXT. The path is
 ;;; followed in the text as far as possible: a quoted form, for example, is no list there. The form
 ;;; is then searched for in what has been reached.
 
@@ -40,26 +40,26 @@ cannot be read."
               (setf *last-element* (list text start number begin))
               (values begin end))))))))
 
-(defun bounds-of-place (text place)
+(defun bounds-of-location (text location)
   "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT; if that
 form cannot be found, of the smallest form around it."
-  (destructuring-bind (position . numbers) place
+  (destructuring-bind (position . numbers) location
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))
         (multiple-value-bind (inner-start inner-end) (element-bounds text start number)
           (unless inner-start (return (values start end)))
           (setf start inner-start end inner-end))))))
 
-(defun line-in-text (file form place)
+(defun line-in-text (file form location)
   "Return the line of FORM in FILE. If FORM is NIL or not found, return the line of LOCATION, a
 value of LOCATION-IN-TEXT. Return NIL if both fail."
-  (and place
+  (and location
        (ignore-errors
          (let ((text (text-of-file file)))
-           (multiple-value-bind (start end) (bounds-of-place text place)
+           (multiple-value-bind (start end) (bounds-of-location text location)
              (line-number text (or (and form
                                         (car (find form (forms-in text start end)
-                                                   :key #'cdr :test #'same-words-p)))
+                                                   :key #'cdr :test #'same-printed-form-p)))
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
@@ -67,7 +67,7 @@ value of LOCATION-IN-TEXT. Return NIL if both fail."
   (let ((text (file-text (pathname stream))))
     (line-number text (skip-blanks text (min (form-start stream) (length text))))))
 
-(defun reading-place (condition)
+(defun reading-location (condition)
   "If LOAD signalled CONDITION because it could not read a form, return the native name of the file,
 and the line where the reader stopped; if the form does not end, the line where it begins. Return
 NIL for other conditions. Works only while the file is open."
@@ -76,13 +76,13 @@ NIL for other conditions. Works only while the file is open."
       (let ((cause (cause-of-reading-trouble condition)))
         (values (native-name (pathname stream))
                 (cond ((typep cause 'end-of-file) (line-of-form-being-read stream))
-                      ((undecodable-format cause) (line-of-next stream))
-                      (t (line-reached stream))))))))
+                      ((undecodable-format cause) (line-of-next-character stream))
+                      (t (line-of-last-character stream))))))))
 
-(defun compiling-place ()
+(defun compiling-location ()
   "Return the native name of the file that COMPILE-FILE is compiling, and the line of the current
 form, or NIL if the line is unknown. Return NIL if no file is being compiled."
-  (multiple-value-bind (path place) (compiler-place)
+  (multiple-value-bind (path location) (compiler-location)
     (when path
       (let ((file (native-name path)))
-        (values file (line-in-text file nil place))))))
+        (values file (line-in-text file nil location))))))

@@ -3,8 +3,9 @@
 (in-package :ars-magna.definitions)
 
 (export '(registry define-registry register *definition-listener* lookup-entry
-          from-this-file-p users-p names-to-offer defined-names all-definitions
-          definition-to-replace variable-in-use-p entries-meant take-back reinstate))
+          defined-in-this-file-p users-entry-p names-to-suggest defined-names all-definitions
+          definition-to-replace variable-in-use-p users-entries-named undo-definition
+          redo-definition))
 
 ;;; There is one registry for each kind of definition. Names compare without their package; the
 ;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
@@ -61,7 +62,7 @@ strings and symbols" :writable))
 
 ;;; Finding.
 
-(defun called-p (entry name registry)
+(defun entry-named-p (entry name registry)
   (or (same-name-p name (entry-name entry))
       (loop for alias in (funcall (registry-aliases registry) (entry-object entry))
               thereis (same-name-p name alias))))
@@ -86,37 +87,37 @@ PACKAGE:NAME; or NIL."
       (or (find name entries :key #'entry-name :test #'eq)
           (loop with last = nil
                 for entry in entries
-                when (called-p entry name registry) do (setf last entry)
+                when (entry-named-p entry name registry) do (setf last entry)
                 finally (return last))))))
 
-(defun open-registries ()
+(defun users-registries ()
   (remove-if #'registry-fixed-p *registries*))
 
-(defun entries-meant (name)
+(defun users-entries-named (name)
   "Return the entries of users' definitions with the name NAME, a symbol, in all registries."
-  (loop for registry in (open-registries)
+  (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
-        when (and entry (users-p entry)) collect entry))
+        when (and entry (users-entry-p entry)) collect entry))
 
 (defun defined-names (registry)
   "Return a list of the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))
 
-(defun names-to-offer (registry)
+(defun names-to-suggest (registry)
   "Return a list of the names in REGISTRY in the order in which messages suggest them: those that
 users have defined, the newest first, then the simulator's."
   (let ((entries (registry-entries registry)))
-    (mapcar #'entry-name (append (reverse (remove-if-not #'users-p entries))
-                                 (remove-if #'users-p entries)))))
+    (mapcar #'entry-name (append (reverse (remove-if-not #'users-entry-p entries))
+                                 (remove-if #'users-entry-p entries)))))
 
 (defun find-definition (name registry errorp)
   "Return the object in REGISTRY with the name NAME. If there is none, return NIL, or signal
 UNKNOWN-NAME if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
-          (errorp (reject-name (registry-text registry) name (names-to-offer registry))))))
+          (errorp (reject-name (registry-text registry) name (names-to-suggest registry))))))
 
-(defun from-this-file-p (name registry)
+(defun defined-in-this-file-p (name registry)
   "True if NAME in REGISTRY is defined in the file that is being loaded. (Later forms of the file
 may redefine NAME.)"
   (let ((entry (lookup-entry name registry))
@@ -125,14 +126,14 @@ may redefine NAME.)"
 
 ;;; Defining.
 
-(defgeneric take-back (object)
+(defgeneric undo-definition (object)
   (:documentation "Undo the effects of the definition of OBJECT. The entry in the registry is
 removed elsewhere.")
   (:method (object) object))
 
-(defgeneric reinstate (object)
-  (:documentation "Redo the effects of the definition of OBJECT that TAKE-BACK has undone, because
-the definition is restored.")
+(defgeneric redo-definition (object)
+  (:documentation "Redo the effects of the definition of OBJECT that UNDO-DEFINITION has undone,
+because the definition is restored.")
   (:method (object) object))
 
 (defun entry-to-replace (name registry)
@@ -149,13 +150,13 @@ the definition is restored.")
   (setf (registry-entries registry) entries
         (registry-objects registry) (mapcar #'entry-object entries)))
 
-(defparameter *own-source* '("the simulator itself") "The source of our own definitions.")
+(defparameter *simulator-source* '("the simulator itself") "The source of our own definitions.")
 
-(defun users-p (entry)
+(defun users-entry-p (entry)
   "True if ENTRY is a user's definition, not the simulator's."
-  (not (equal *own-source* (entry-source entry))))
+  (not (equal *simulator-source* (entry-source entry))))
 
-(defun entries-with (new old before registry)
+(defun entries-including (new old before registry)
   "Return the entries of REGISTRY with the entry NEW added. If BEFORE, an object, is given, NEW
 precedes its entry. Else NEW replaces the entry OLD, unless an entry of the same name follows OLD.
 Else NEW is the last."
@@ -172,7 +173,7 @@ Else NEW is the last."
 it."
   (ignore-errors (global-value name)))
 
-(defun free-variable (name kind)
+(defun usable-variable (name kind)
   "Return NAME if a definition of KIND can set the variable NAME. Else return NIL, and warn unless
 NAME is a symbol of Common Lisp or of the simulator."
   (flet ((refuse (control)
@@ -192,11 +193,11 @@ value")))
       (warn-of-definition "The ~A ~(~A~) is redefined~@[ in ~A~]; its earlier definition is in ~A."
                           (registry-text registry) (entry-name new) other file))))
 
-(defun variable-for (name old registry)
+(defun choose-variable (name old registry)
   "Return the variable for a definition of NAME: the variable of the entry OLD; or NAME, if that
 variable is unused; or NIL."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
-        (t (free-variable name (registry-text registry)))))
+        (t (usable-variable name (registry-text registry)))))
 
 (defvar *definition-listener* nil
   "A function that is called with each object that this thread defines, or NIL.")
@@ -207,7 +208,7 @@ variable of NEW, if any, to VALUE. Return true; but if another thread has replac
 nothing and return NIL."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
-      (set-entries registry (entries-with new old before registry))
+      (set-entries registry (entries-including new old before registry))
       (when (entry-variable new) (setf (global-value (entry-variable new)) value))
       t)))
 
@@ -218,8 +219,8 @@ last, or precedes that of the object BEFORE. Return OBJECT and the object that i
 If several threads define NAME at a time, each replaces a different object."
   (loop
     (let* ((old (entry-to-replace name registry))
-           (variable (and variable (variable-for name old registry)))
-           (source (if *marking-p* *own-source* (current-source)))
+           (variable (and variable (choose-variable name old registry)))
+           (source (if *marking-p* *simulator-source* (current-source)))
            (new (make-entry name object source variable)))
       (when (replace-entry old new registry before value)
         (when old (warn-if-replaced old new registry))
@@ -228,7 +229,7 @@ If several threads define NAME at a time, each replaces a different object."
 
 ;;; Undefining.
 
-(defun registry-called (kind registries)
+(defun registry-named (kind registries)
   "Return the registry among REGISTRIES whose kind is KIND, a symbol such as KICKER, or NIL."
   (find-if (lambda (registry)
              (or (same-name-p kind (registry-kind registry))
@@ -236,8 +237,8 @@ If several threads define NAME at a time, each replaces a different object."
            registries))
 
 (defun find-registry (kind)
-  (or (registry-called kind *registries*)
-      (reject-name "kind of definition" kind (mapcar #'usual-name (open-registries)))))
+  (or (registry-named kind *registries*)
+      (reject-name "kind of definition" kind (mapcar #'registry-usual-name (users-registries)))))
 
 (defun all-definitions (kind)
   "Return a list of lists (name object source) for all definitions of KIND, a kind as in UNDEFINE,
@@ -245,9 +246,9 @@ in order. SOURCE is the file of a definition, :OWN for definitions of the simula
 typed definitions."
   (loop for entry in (registry-entries (find-registry kind))
         collect (list (entry-name entry) (entry-object entry)
-                      (if (users-p entry) (source-file (entry-source entry)) :own))))
+                      (if (users-entry-p entry) (source-file (entry-source entry)) :own))))
 
-(defun usual-name (registry)
+(defun registry-usual-name (registry)
   (string-downcase (or (first (registry-synonyms registry)) (registry-kind registry))))
 
 (defun forget-value (variable)
@@ -255,12 +256,12 @@ typed definitions."
   (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
 (defun forget-entry (entry)
-  (take-back (entry-object entry))
+  (undo-definition (entry-object entry))
   (when (entry-variable entry) (forget-value (entry-variable entry))))
 
 (defun check-undefinable (registry entry)
   (when (or (registry-fixed-p registry)
-            (and (registry-sealed-p registry) (not (users-p entry))))
+            (and (registry-sealed-p registry) (not (users-entry-p entry))))
     (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
                 (registry-text registry) (entry-name entry))))
 

@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(note-error-code variable-slip note-dispatch-character value-behind function-meant
-          ours-called test-doubt map-calls map-comparisons compared-words test-forms
-          values-used-in code-doubt))
+(export '(note-error-code similar-variable note-dispatch-character value-to-pass-text
+          function-of-command public-function-named doubtful-test-text map-calls map-comparisons
+          compared-words test-forms values-used-in wrong-error-code-text))
 
-(defun ours-called (name)
+(defun public-function-named (name)
   "Return the symbol of the public function named NAME, a string or symbol, that ARS or NISP
 exports, and the name of that package; or NIL."
   ;; A user's package may have local nicknames.
@@ -28,7 +28,7 @@ simulator's own packages."
                            (starts-with-subseq "ARS-MAGNA" (package-name package))))
                      (and (find-package "ARS") (package-used-by-list "ARS"))))))
 
-(defun elsewhere-text (name predicate)
+(defun other-package-text (name predicate)
   "If another users' package has a symbol with the name of NAME for which PREDICATE is true, return
 a sentence that says how to use that symbol; else NIL."
   (dolist (package (user-packages))
@@ -40,7 +40,7 @@ a sentence that says how to use that symbol; else NIL."
               (format nil "The package ~A has it: type (in-package :~(~:*~A~)) first."
                       (package-name package))))))))
 
-(defun symbols-seen (package test)
+(defun accessible-symbols (package test)
   "Return a list, sorted by name, of the symbols accessible in PACKAGE for which TEST is true,
 without those of Common Lisp."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
@@ -51,54 +51,54 @@ without those of Common Lisp."
 
 ;;; Functions.
 
-(defgeneric function-meant (name)
+(defgeneric function-of-command (name)
   (:documentation "NAME is a symbol without a function. If NAME is a command at the prompt, return
 the name of the function that the command calls; else NIL. The layer that defines commands has a
 method.")
   (:method (name) (declare (ignore name)) nil))
 
-(defun function-slip-text (name)
+(defun undefined-function-text (name)
   (when (and (symbolp name) (symbol-package name))
     (multiple-value-bind (ours package)
-        (ours-called (or (function-meant name) name))
+        (public-function-named (or (function-of-command name) name))
       (if ours
           (if (eq ours (find-symbol (symbol-name ours) (symbol-package name)))
               (format nil "In Lisp, the function is ~(~A~)." ours)
               (format nil "The package ~A has it: write ~(~:*~A:~A~), or type (in-package ~
                            :ars-user) first."
                       package ours))
-          (function-elsewhere-text name)))))
+          (similar-function-text name)))))
 
-(defun function-elsewhere-text (name)
+(defun similar-function-text (name)
   (flet ((like-p (symbol)
            (and (fboundp symbol)
                 (<= (abs (- (length (symbol-name symbol)) (length (symbol-name name)))) 2)
-                (resembles-p name symbol))))
-    (or (elsewhere-text name #'fboundp)
-        (let ((like (nearest-name name (symbols-seen (symbol-package name) #'like-p))))
+                (misspelling-p name symbol))))
+    (or (other-package-text name #'fboundp)
+        (let ((like (nearest-name name (accessible-symbols (symbol-package name) #'like-p))))
           (and like (format nil "Did you mean ~(~A~)?" (unqualified-text like)))))))
 
 ;;; Variables.
 
-(defun defined-slip-text (name)
+(defun definition-name-text (name)
   "If the unbound symbol NAME is the name of a definition, such as a map, return a sentence that
 says so; else NIL."
-  (loop for registry in (open-registries)
+  (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
           return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
-                          (find (char (usual-name registry) 0) "aeiou")
-                          (usual-name registry) (unqualified-text name))))
+                          (find (char (registry-usual-name registry) 0) "aeiou")
+                          (registry-usual-name registry) (unqualified-text name))))
 
-(defun variable-slip (name)
+(defun similar-variable (name)
   "Return the name, in lower case, of the variable of which the unbound symbol NAME may be a
 misspelling; or NIL."
   (let ((meant (and (symbol-package name)
-                    (first (symbols-seen (symbol-package name)
-                                         (lambda (symbol)
-                                           (and (special-variable-p symbol nil)
-                                                (not (constantp symbol))
-                                                (resembles-p name symbol))))))))
+                    (first (accessible-symbols (symbol-package name)
+                                               (lambda (symbol)
+                                                 (and (special-variable-p symbol nil)
+                                                      (not (constantp symbol))
+                                                      (misspelling-p name symbol))))))))
     (and meant (string-downcase (unqualified-text meant)))))
 
 (define-global *error-codes* '() "The error codes of commands, keywords.")
@@ -107,14 +107,14 @@ misspelling; or NIL."
   "Register CODE, a keyword, as an error code of commands."
   (pushnew code *error-codes*))
 
-(defun variable-slip-text (name)
+(defun unbound-variable-text (name)
   (when (and (symbolp name) (symbol-package name))
     (let ((code (find name *error-codes* :test #'string=)))
       (or (and code (format nil "Did you mean ~(~S~)?" code))
-          (elsewhere-text name (lambda (symbol)
-                                 (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
-          (defined-slip-text name)
-          (let ((like (variable-slip name)))
+          (other-package-text name (lambda (symbol)
+                                     (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
+          (definition-name-text name)
+          (let ((like (similar-variable name)))
             (and like (format nil "Did you mean ~A?" like)))))))
 
 ;;; Syntax.
@@ -126,7 +126,7 @@ readtables only.")
   "Register REMEDY, a sentence for the error that Lisp cannot read # followed by CHARACTER."
   (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
 
-(defun syntax-slip-text (condition)
+(defun unreadable-syntax-text (condition)
   "If CONDITION says that Lisp cannot read some syntax, return a sentence that says how to make it
 readable; or NIL."
   (let ((character (and (typep condition 'simple-condition)
@@ -137,41 +137,41 @@ readable; or NIL."
 
 ;;; Types.
 
-(defgeneric value-behind (datum)
+(defgeneric value-to-pass-text (datum)
   (:documentation "If DATUM is an argument of the wrong type, return a sentence that says which
 value to pass in its place; or NIL.")
   (:method (datum)
     (declare (ignore datum))
     nil))
 
-(defun source-known-p (type)
+(defun returning-function-known-p (type)
   "True if the description of TYPE, an argument type, says which function returns such an object."
-  (and (our-own-p (argument-type-name type))
+  (and (simulator-symbol-p (argument-type-name type))
        (search " returns" (argument-type-words type))))
 
 (defun type-remedy (datum type)
   "Return a sentence that says what is wrong with DATUM as an argument of TYPE, or which value to
 give; or NIL."
   (let ((type (and (symbolp type) (find-argument-type type nil))))
-    (when (and type (or (trouble-with datum type) (source-known-p type)))
+    (when (and type (or (argument-trouble-text datum type) (returning-function-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
-(defun slip-text (condition)
+(defun error-hint (condition)
   "Return a sentence that says what the user perhaps meant, or what to do, after CONDITION, an error
 of Lisp's own; or NIL."
   (typecase condition
-    (undefined-function (function-slip-text (cell-error-name condition)))
-    (unbound-variable (variable-slip-text (cell-error-name condition)))
-    (reader-error (syntax-slip-text condition))
+    (undefined-function (undefined-function-text (cell-error-name condition)))
+    (unbound-variable (unbound-variable-text (cell-error-name condition)))
+    (reader-error (unreadable-syntax-text condition))
     (type-error (or (type-remedy (type-error-datum condition)
                                  (type-error-expected-type condition))
-                    (value-behind (type-error-datum condition))))))
+                    (value-to-pass-text (type-error-datum condition))))))
 
-(setf *report-addition* #'slip-text)
+(setf *report-addition* #'error-hint)
 
 ;;;; Tests that are never true, or always
 
-(defgeneric test-doubt (form)
+(defgeneric doubtful-test-text (form)
   (:documentation "Return a sentence that says why FORM, a test in Lisp code, is probably a mistake;
 or NIL. The layer that defines fluents has methods.")
   (:method (form) (declare (ignore form)) nil))
@@ -259,7 +259,7 @@ Lisp or of the simulator."
   :test #'equal
   :documentation "Words that users mistake for the error code of a command that has succeeded.")
 
-(defun code-like (word)
+(defun similar-error-code (word)
   "Return the error code that the user perhaps meant by WORD, which is no error code; or NIL."
   (or (nearest-name word *error-codes*)
       (find-if (lambda (code)
@@ -268,7 +268,7 @@ Lisp or of the simulator."
                        (starts-with-subseq (format nil "~A-" word) code))))
                *error-codes*)))
 
-(defun code-doubt (word)
+(defun wrong-error-code-text (word)
   "If no command ends with the error code WORD, return a sentence that says why; else NIL."
   (let ((code (find word *error-codes* :test #'string-equal)))
     (cond ((not (keywordp word))
@@ -279,6 +279,6 @@ Lisp or of the simulator."
           ((member word +words-of-success+)
            (format nil "no command ends with ~(~S~): the error code of a command that succeeds is
 NIL." word))
-          (t (let ((like (code-like word)))
+          (t (let ((like (similar-error-code word)))
                (and like
                     (format nil "no command ends with ~(~S~). Did you mean ~(~S~)?" word like)))))))

@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(source-here source-file count-in-file part-in-file-p skip-comment line-of-clause
-          form-digest file-digest same-words-p))
+(export '(source-of-current-form source-file count-in-file part-in-file-p skip-comment
+          line-of-clause form-digest file-digest same-printed-form-p))
 
 ;;; A source is a list (file digest): the file that a definition was read from, and a number for its
 ;;; contents then. NIL stands for a typed definition. Definitions keep their source in compiled
 ;;; files, so it is a plain list.
 
-(defun source-here ()
+(defun source-of-current-form ()
   "Return the source of the form that is being compiled or loaded, or NIL."
   (let ((file (if (edited-file)
                   (native-path (edited-file))
@@ -56,11 +56,11 @@ and the end of the form."
               ,@body)
          (delete-package ,words)))))
 
-(defun same-words-p (a b)
+(defun same-printed-form-p (a b)
   "True if the forms A and B look the same, regardless of the packages of their symbols."
   (cond ((and (symbolp a) (symbolp b)) (string= a b))
         ((and (consp a) (consp b))
-         (and (same-words-p (car a) (car b)) (same-words-p (cdr a) (cdr b))))
+         (and (same-printed-form-p (car a) (car b)) (same-printed-form-p (cdr a) (cdr b))))
         ((and (realp a) (realp b)) (= a b))
         ((and (arrayp a) (arrayp b)) (equalp a b))
         (t (or (eql a b)
@@ -104,7 +104,7 @@ if none begins there."
         ((starts-at-p "#\\" text i) (+ i 3))
         ((char= #\\ (char text i)) (+ i 2))))
 
-(defun openings (text start end)
+(defun open-parentheses (text start end)
   (let ((positions '()) (i start))
     (loop while (< i end)
           do (when (char= #\( (char text i)) (push i positions))
@@ -120,22 +120,22 @@ if none begins there."
          (<= (+ position length) end)
          (string-equal word text :start2 (- end length) :end2 end))))
 
-(defun look-for-definitions (text form)
+(defun find-definitions-in-text (text form)
   (destructuring-bind (operator &optional name &rest clauses) form
     (declare (ignore clauses))
     (with-form-reader (text)
-      (loop for position in (openings text 0 (length text))
+      (loop for position in (open-parentheses text 0 (length text))
             when (word-at-p text (1+ position) operator)
               append (multiple-value-bind (found end) (read-words position)
                        (when (and (consp found) (symbolp (first found)) (consp (rest found))
                                   (same-name-p (first found) operator)
-                                  (same-words-p (second found) name))
-                         (list (list position end (same-words-p found form)))))))))
+                                  (same-printed-form-p (second found) name))
+                         (list (list position end (same-printed-form-p found form)))))))))
 
 (defun definition-positions (text form)
   "Return a list (start end equal-p) for each form in TEXT that has the operator and name of FORM.
 EQUAL-P is true if the form equals FORM."
-  (caching (text form) (look-for-definitions text form)))
+  (caching (text form) (find-definitions-in-text text form)))
 
 (defun position-of-definition (positions ordinal)
   "Return the element of POSITIONS, lists of DEFINITION-POSITIONS, whose form is unchanged; else
@@ -148,10 +148,10 @@ number ORDINAL; else the first. Return its number as a second value."
 (defun forms-in (text start end)
   "Return conses (position . form) for the parenthesized forms in TEXT between START and END."
   (with-form-reader (text)
-    (loop for position in (openings text start end)
+    (loop for position in (open-parentheses text start end)
           collect (cons position (read-words position)))))
 
-(defvar *last-place* '(())
+(defvar *last-form-search* '(())
   "A cache: a cons of the list that FORM-POSITION has searched last, and the tail of that list that
 begins with the form found. The cons is replaced, never modified.")
 
@@ -161,10 +161,10 @@ begins with the form found. The cons is replaced, never modified.")
 than once, prefer the first position after that of the last search."
   (let ((forms (caching (text start end) (forms-in text start end))))
     (flet ((look (from)
-             (let ((tail (member form from :key #'cdr :test #'same-words-p)))
-               (when tail (setf *last-place* (cons forms tail)))
+             (let ((tail (member form from :key #'cdr :test #'same-printed-form-p)))
+               (when tail (setf *last-form-search* (cons forms tail)))
                (car (first tail)))))
-      (or (and (eq forms (car *last-place*)) (look (cdr *last-place*)))
+      (or (and (eq forms (car *last-form-search*)) (look (cdr *last-form-search*)))
           (look forms)))))
 
 (defun word-position (text form start end)
@@ -200,7 +200,7 @@ return the line of the definition, or NIL."
           (values (and position (line-number text position))
                   (and place number)))))))
 
-(defun clause-line (file form clause)
+(defun clause-line-in-file (file form clause)
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
@@ -234,7 +234,7 @@ same operator and name. Signals MISUSE if it is not found."
 (defun paren-p (char)
   (find char "()"))
 
-(defun code-alone (text)
+(defun code-without-comments (text)
   "Return TEXT without comments and blanks, but with one space between words."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
@@ -259,9 +259,9 @@ same operator and name. Signals MISUSE if it is not found."
                       (incf i))))
         finally (return (length text))))
 
-(defun code-without (operator text)
-  "Return TEXT, a value of CODE-ALONE, without the top-level forms whose operator has the name
-OPERATOR, a string."
+(defun code-without-forms (operator text)
+  "Return TEXT, a value of CODE-WITHOUT-COMMENTS, without the top-level forms whose operator
+has the name OPERATOR, a string."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
@@ -276,8 +276,8 @@ leave out the top-level forms with that operator."
   ;; Any file can be read this way. The meaning of its bytes does not matter here.
   (let ((text (read-file-into-string file :external-format :latin-1)))
     (caching (text without)
-      (let ((code (code-alone text)) (digest (make-digest)))
-        (add-characters (if without (code-without without code) code) digest)
+      (let ((code (code-without-comments text)) (digest (make-digest)))
+        (add-characters (if without (code-without-forms without code) code) digest)
         (digest-value digest)))))
 
 (defun add-characters (text digest)
@@ -294,7 +294,7 @@ leave out the top-level forms with that operator."
         do (digest-add digest rest)
         until (<= -1 rest 0)))
 
-(defun kind-of-atom (atom)
+(defun atom-type-name (atom)
   "Return the name of the type of ATOM. Atoms that Lisp reads from the same text have the same
 name."
   (typecase atom
@@ -306,7 +306,7 @@ name."
 (defun add-atom (atom digest known)
   "Add ATOM, a part of a form, to DIGEST. For an uninterned symbol, add its number of first
 occurrence, which the table KNOWN holds."
-  (digest-add digest (kind-of-atom atom))
+  (digest-add digest (atom-type-name atom))
   (typecase atom
     (symbol (digest-add digest (if (symbol-package atom)
                                    (symbol-name atom)

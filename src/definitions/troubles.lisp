@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(trouble-set errors-in forget-errors show-unseen *echo-output* drop-unsignalled
-          take-unseen signal-trouble answering-debugger debugger-asking end-inquiries
-          *inquiry-hooks* *debugger-refused-p*))
+(export '(queue-user-error user-code-errors-in forget-errors show-unread-messages *echo-output*
+          drop-unsignalled take-unread-messages signal-trouble answering-debugger debugger-asking
+          end-inquiries *inquiry-hooks* *debugger-refused-p*))
 
 ;;; A message has a cause if it reports an error in users' code, or the failure of a plan that
 ;;; no caller waits for. The error policy of the queue decides what happens then:
@@ -34,7 +34,7 @@ WITH-SIMULATION), RUN-TICKS, RUN-UNTIL, RUN-PLAN and WITH-SIMULATION signal this
         (write-string (cut (one-line (user-code-error-text error)) 200) stream))
       (call-next-method)))
 
-(defun trouble-set (cause text &rest stuff)
+(defun queue-user-error (cause text &rest stuff)
   "Queue an error message with the items STUFF about CAUSE, a condition in users' code or a failure
 of a plan. TEXT is the message on one line. Return nothing."
   (queue-items :error stuff :cause cause :summary text))
@@ -42,7 +42,7 @@ of a plan. TEXT is the message on one line. Return nothing."
 (defun error-of-message (message)
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
-(defun errors-in (queue run-p)
+(defun user-code-errors-in (queue run-p)
   "Return a list of USER-CODE-ERRORs, the oldest first, for the errors in QUEUE that belong to runs
 for which RUN-P is true."
   (let ((messages (with-queue (queue)
@@ -87,9 +87,10 @@ the error; NIL if there was none."
 
 ;;; Unread messages.
 
-(defparameter *most-unread* 20 "The largest number of different unread messages that are shown.")
+(defparameter *shown-unread-messages* 20
+  "The largest number of different unread messages that are shown.")
 
-(defun take-unseen (queue)
+(defun take-unread-messages (queue)
   "Return a list of the unread messages in QUEUE, the oldest first. Mark all messages as read."
   (with-queue (queue)
     (let ((newest-first (message-queue-newest-first queue)))
@@ -101,22 +102,22 @@ the error; NIL if there was none."
       (let ((text (write-message message nil (text-with-command message))))
         (when (= 1 (incf (gethash text counts 0))) (push text texts))))
     (loop for text in (reverse texts)
-          repeat *most-unread*
+          repeat *shown-unread-messages*
           do (format stream "~A~:[~; (~D times)~]~%" (string-right-trim '(#\Newline) text)
                      (< 1 (gethash text counts)) (gethash text counts)))
-    (when (< *most-unread* (length texts))
+    (when (< *shown-unread-messages* (length texts))
       (format stream "... and ~D other messages. To show all, call (error-display) within the
 simulation.~%"
-              (- (length texts) *most-unread*)))))
+              (- (length texts) *shown-unread-messages*)))))
 
 (defun shown-at-end-p (message policy)
   "True if MESSAGE, which is unread, must be shown at the end of its run, under the error policy
 POLICY."
   (let ((notable (message-notable-p message)))
     (or (if (functionp notable) (funcall notable) (eq t notable))
-        (and (not (eq :collect policy)) (to-be-seen-p message)))))
+        (and (not (eq :collect policy)) (unreported-error-p message)))))
 
-(defun show-unseen (queue &optional (wanted (constantly t)))
+(defun show-unread-messages (queue &optional (wanted (constantly t)))
   "Write to the error output the unread messages in QUEUE that must be shown and for which WANTED is
 true."
   (unless flush-all-errors*
@@ -124,7 +125,7 @@ true."
                                      (and (shown-at-end-p message
                                                           (message-queue-error-policy queue))
                                           (funcall wanted message)))
-                                   (take-unseen queue))))
+                                   (take-unread-messages queue))))
       (when messages
         (fresh-line *error-output*)
         (write-counted-messages messages *error-output*)
@@ -135,7 +136,7 @@ true."
 (defvar *echo-output* nil
   "The stream on which the user of this Lisp sees messages of runs; NIL for the error output.")
 
-(defconstant +most-echoed+ 1000 "The largest number of texts that are counted.")
+(defconstant +counted-texts+ 1000 "The largest number of texts that are counted.")
 
 (defvar *echo-counter* (make-message-queue :echoed (make-hash-table :test 'equal))
   "The queue that counts the messages shown for queues that have no table ECHOED.")
@@ -146,7 +147,7 @@ were cleared."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
     (with-queue (counter)
-      (when (< +most-echoed+ (hash-table-count counts)) (clrhash counts))
+      (when (< +counted-texts+ (hash-table-count counts)) (clrhash counts))
       (incf (gethash text counts 0)))))
 
 (defun power-of-ten-p (count)
@@ -191,14 +192,14 @@ are called before the debugger asks for a restart, in the thread of the error.")
 (defvar *debugger-refused-p* nil
   "True while the debugger hook must signal an error instead of asking the user.")
 
-(defun debugger-words (hook)
+(defun debugger-name (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
   "If a debugger asks the user to choose a restart for THREAD, return a text that names the
 debugger; else NIL."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
-    (and inquiry (debugger-words (inquiry-hook inquiry)))))
+    (and inquiry (debugger-name (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
   "Interrupt the threads whose debugger asks for a restart. In each, if GONE-P returns true, its
@@ -212,16 +213,16 @@ debugger has disconnected, and the question ends."
 (defun call-as-debugger (function)
   "Call FUNCTION, which enters a debugger. The debugger also handles errors in code that the user
 types in it."
-  (handler-bind (((or error storage-condition) #'debug-inside))
+  (handler-bind (((or error storage-condition) #'debug-nested-error))
     (funcall function)))
 
-(defun debug-inside (condition)
+(defun debug-nested-error (condition)
   "Let the current debugger handle CONDITION, an error in code that the user has typed in it."
   (unless (typep condition 'time-limit)
     (call-as-debugger (lambda () (invoke-debugger condition)))))
 
 ;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
-(defun enter-outer (condition hook)
+(defun enter-outer-debugger (condition hook)
   "Let a debugger ask the user about CONDITION: that of HOOK, else that of *DEBUGGER-HOOK*, else
 Lisp's own."
   (call-as-debugger (lambda ()
@@ -231,7 +232,7 @@ Lisp's own."
                                (funcall other condition other)))
                             ((null hook) (invoke-debugger condition))))))
 
-(defun restart-unasked (condition)
+(defun choose-restart-unasked (condition)
   "Choose a restart of CONDITION without the user, because no debugger is left: ABORT for errors,
 else CONTINUE. Queue a warning."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
@@ -240,18 +241,18 @@ else CONTINUE. Queue a warning."
     (when (eq name 'continue) (continue condition))
     (abort condition)))
 
-(defun inquire (condition hook)
+(defun ask-for-restart (condition hook)
   "Let the debugger of HOOK ask the user for a restart of CONDITION. If it disconnects, let another
 debugger ask."
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
       (with-lock (*inquiries-lock*) (push inquiry *inquiries*))
-      (unwind-protect (progn (tell-listeners *inquiry-hooks* condition (debugger-words hook))
-                             (enter-outer condition hook))
+      (unwind-protect (progn (call-listeners *inquiry-hooks* condition (debugger-name hook))
+                             (enter-outer-debugger condition hook))
         (with-lock (*inquiries-lock*) (setf *inquiries* (remove inquiry *inquiries*))))
-      (return-from inquire))
-    (ask-how-to-go-on *front-end* condition)
-    (restart-unasked condition)))
+      (return-from ask-for-restart))
+    (ask-user-for-restart *front-end* condition)
+    (choose-restart-unasked condition)))
 
 (defun call-answering-debugger (function answer)
   "Call FUNCTION. If FUNCTION enters a debugger, call ANSWER with the condition, and true if an
@@ -261,13 +262,14 @@ interactive debugger is available. If none is available, ANSWER must not return.
         (foreign (foreign-hook)))
     (flet ((decide (condition this-hook)
              (declare (ignore this-hook))
-             (funcall answer condition (debugger-p foreign))
+             (funcall answer condition (debugger-available-p foreign))
              (cond ((disabled-hook-p hook))
-                   ((and (eq hook foreign) (not *debugger-refused-p*)) (inquire condition hook))
+                   ((and (eq hook foreign) (not *debugger-refused-p*))
+                    (ask-for-restart condition hook))
                    (t (funcall hook condition hook)))))
       (declare (dynamic-extent #'decide))
       (let* ((answerer (cons #'decide foreign))
-             (*answerer* answerer))
+             (*answering-hook* answerer))
         (declare (dynamic-extent answerer))
         (with-debugger-hook (#'decide)
           (funcall function))))))

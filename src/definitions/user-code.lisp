@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*asker* asker-note asker-forked-p *goes-on-in-forks-p* goes-on-in-forks-p note-of-asker
-          note-text call-user-code *user-error-hooks* note-waiting report-break continue-inside
-          user-calls make-user-calls *user-calls* as-users-code abort-user-code
-          *spoilt-by-leaving-p* brief-text text-of-origin recurring-code recurring-remedy
-          report-user-error))
+(export '(*asker* asker-note asker-forked-p *continues-in-forks-p* continues-in-forks-p
+          note-of-asker note-text call-user-code *user-error-hooks* note-debugger-waiting
+          report-break continue-in-user-code user-calls make-user-calls *user-calls* as-users-code
+          abort-user-code *leaving-ends-work-p* brief-text text-of-origin recurring-code
+          recurring-remedy report-user-error))
 
 ;;; Several parties may drive a robot, so users want to know whose command is in progress. Code that
 ;;; acts for others binds *ASKER*: CALL-USER-CODE to what it calls, plans to the current task, the
@@ -30,12 +30,12 @@ or a list of items as OUT prints them. The note must not change when ASKER chang
 does. In a fork, the copy of ASKER is notified when its commands end.")
   (:method (asker) (declare (ignore asker)) nil))
 
-(defvar *goes-on-in-forks-p* nil
+(defvar *continues-in-forks-p* nil
   "True while this thread runs code that continues in forks of the run, regardless of *ASKER*.")
 
-(defun goes-on-in-forks-p ()
+(defun continues-in-forks-p ()
   "True if this thread now makes requests that forks of the run repeat by themselves."
-  (or *goes-on-in-forks-p* (asker-forked-p *asker*)))
+  (or *continues-in-forks-p* (asker-forked-p *asker*)))
 
 (defun note-of-asker ()
   "Return the note by which messages name *ASKER*, the origin of requests."
@@ -95,7 +95,7 @@ be interrupted."
   "Run BODY, users' code that ORIGIN names, as CALL-AS-USERS-CODE calls a function."
   (form-calling 'call-as-users-code body origin))
 
-(defun note-waiting ()
+(defun note-debugger-waiting ()
   "Record for the watcher that users' code waits for an answer in a debugger."
   (when *user-calls* (setf (user-calls-waiting-p *user-calls*) t)))
 
@@ -119,15 +119,15 @@ be interrupted."
   "Functions that are called with the text of each error in users' code that is reported.")
 
 (defun report-user-error (condition origin)
-  "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items. A
-condition OUTLIVED, a request of a finished run, only gives a message, not a USER-CODE-ERROR."
+  "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items.
+For a RUN-IS-OVER-ERROR, a request of a finished run, queue only a message, not a USER-CODE-ERROR."
   (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
         (stuff (list* "Error in " (append (ensure-list origin)
                                           (list ": " (brief-text condition))))))
-    (tell-listeners *user-error-hooks* text)
-    (if (typep condition 'outlived)
+    (call-listeners *user-error-hooks* text)
+    (if (typep condition 'run-is-over-error)
         (apply #'error-set stuff)
-        (apply #'trouble-set condition text stuff))))
+        (apply #'queue-user-error condition text stuff))))
 
 (defun report-break (condition origin)
   "Queue a message that CONDITION, which is no error, was signalled in ORIGIN."
@@ -165,17 +165,18 @@ establishes.")
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
 
-(defvar *spoilt-by-leaving-p* (constantly nil)
+(defvar *leaving-ends-work-p* (constantly nil)
   "A function that returns true if leaving the current code would end the work in progress, such as
 a plan. The caller then cannot retry the code.")
 
-(defun call-offering (function origin go-on again &aux (around *spoilt-by-leaving-p*))
+(defun call-with-user-code-restarts (function origin go-on again
+                                     &aux (around *leaving-ends-work-p*))
   "Call FUNCTION, users' code that ORIGIN names, with restarts: ABORT calls GO-ON; RETRY, if
 possible, calls AGAIN; STOP-SIMULATOR, if possible, stops the work of this thread."
   (declare (type function function go-on again))
   (flet ((retriable-p (condition)
            (declare (ignore condition))
-           (let ((inside *spoilt-by-leaving-p*))
+           (let ((inside *leaving-ends-work-p*))
              (or (eq inside around) (not (funcall (the function inside))))))
          (stop ()
            (funcall (the function (user-calls-stop *user-calls*)))
@@ -193,18 +194,18 @@ possible, calls AGAIN; STOP-SIMULATOR, if possible, stops the work of this threa
                                           :test-function #'stoppable-p))
       (funcall function))))
 
-(defmacro offering ((origin go-on again) &body body)
-  "Run BODY, users' code that ORIGIN names, with the restarts of CALL-OFFERING."
-  (form-calling 'call-offering body origin go-on again))
+(defmacro with-user-code-restarts ((origin go-on again) &body body)
+  "Run BODY, users' code that ORIGIN names, with the restarts of CALL-WITH-USER-CODE-RESTARTS."
+  (form-calling 'call-with-user-code-restarts body origin go-on again))
 
-(defun our-abort-p (restart)
+(defun simulator-abort-p (restart)
   (and (eq 'abort (restart-name restart))
        (starts-with-subseq +leave+ (princ-to-string restart))))
 
-(defun continue-inside (condition)
+(defun continue-in-user-code (condition)
   "Invoke the restart CONTINUE of CONDITION, if users' code has established it."
   (let ((restart (find-if (lambda (restart)
-                            (or (our-abort-p restart) (eq 'continue (restart-name restart))))
+                            (or (simulator-abort-p restart) (eq 'continue (restart-name restart))))
                           (compute-restarts condition))))
     (when (and restart (eq 'continue (restart-name restart)))
       (invoke-restart restart))))
@@ -233,22 +234,22 @@ queue an error message that names ORIGIN (an item or list of items), and return 
                   (when *break-on-user-error* (invoke-debugger condition))
                   (go-on))
                 (answer (condition somebody-p)
-                  (cond (somebody-p (note-waiting))
+                  (cond (somebody-p (note-debugger-waiting))
                         (t (if (typep condition 'serious-condition)
                                (setf trouble condition)
                                (report-break condition origin))
-                           (unless trouble (continue-inside condition))
+                           (unless trouble (continue-in-user-code condition))
                            (go-on)))))
            (declare (dynamic-extent #'note #'answer))
            (return
-             (offering (origin #'go-on #'again)
+             (with-user-code-restarts (origin #'go-on #'again)
                (handler-bind (((or error storage-condition time-limit) #'note))
                  (answering-debugger (#'answer)
                    (as-users-code (origin)
-                     (with-users-dice
+                     (with-users-random-state
                        (let ((*asker* origin))
                          (apply function arguments)))))))))))
      ;; Only now is there room to report it.
      (when (typep trouble 'storage-condition)
-       (regain-room trouble)
+       (recover-memory trouble)
        (report-user-error trouble origin))))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(define-user-macro advice-on-use strange-keyword test-advice body-advice user-macro-form
-          call-blaming-form variable-after))
+(export '(define-user-macro advice-on-use wrong-keyword-text test-advice body-advice user-macro-form
+          call-reporting-form variable-after-key))
 
 ;;; Macros of DEFMACRO signal Lisp's own errors when they are misused, and do not end on circular
 ;;; lists. Those of DEFINE-USER-MACRO signal MALFORMED-DEFINITION for every mistake in the form, at
@@ -20,11 +20,12 @@ CONDITION is the error that occurred, or NIL."
                          (and condition
                               (abridged (string-right-trim "." (text-of-condition condition)))))))
 
-(defun call-blaming-form (function form)
+(defun call-reporting-form (function form)
   "Call FUNCTION, which expands FORM. Report errors other than ARS-MAGNA-ERROR as mistakes in FORM."
   (handler-case
-      (call-blaming function (lambda (condition)
-                               (reject-use-of form "forms that Lisp can compile" condition)))
+      (call-reporting-mistakes function (lambda (condition)
+                                          (reject-use-of form "forms that Lisp can compile"
+                                                         condition)))
     (storage-condition ()
       (reject-use-of form "less deeply nested forms, and macros without endless recursion"))))
 
@@ -35,7 +36,7 @@ OPERATOR that does not fit its lambda list; or NIL.")
     (declare (ignore operator form))
     nil))
 
-(defun strange-keyword (parameters arguments)
+(defun wrong-keyword-text (parameters arguments)
   "Return a text about the first of ARGUMENTS that stands in the place of a keyword, but is not a
 keyword of PARAMETERS, the lambda list of a macro; or about a keyword without a value; or NIL."
   (let* ((keys (member '&key parameters))
@@ -55,7 +56,7 @@ keyword of PARAMETERS, the lambda list of a macro; or about a keyword without a 
   "Return a text about the first of ARGUMENTS that does not fit the lambda list PARAMETERS: a
 keyword, or a form in place of a list; or NIL."
   (when (proper-list-p arguments)
-    (or (strange-keyword parameters arguments)
+    (or (wrong-keyword-text parameters arguments)
         (loop for parameter in parameters
               for argument in arguments
               until (member parameter lambda-list-keywords)
@@ -64,7 +65,7 @@ keyword, or a form in place of a list; or NIL."
                                (format nil "~(~A~) is no list" (unqualified-text argument))
                                (misfit-text parameter argument)))))))
 
-(defun doubt-readtable (form)
+(defun warn-of-nisp-syntax (form)
   "Warn if FORM contains syntax of Nisp, such as !>robot.cameras, that the standard reader has read
 as a symbol."
   (let ((slot (find-part (lambda (part)
@@ -73,16 +74,16 @@ as a symbol."
                                 (starts-with-subseq "!>" (symbol-name part))))
                          form)))
     (when slot
-      (doubt-definition "~A has been read as a symbol, not as a slot. Begin your file or session ~
-                         with (in-readtable :nisp)." slot))))
+      (warn-of-style "~A has been read as a symbol, not as a slot. Begin your file or session ~
+                      with (in-readtable :nisp)." slot))))
 
-(defun call-fitting (form usage parse)
+(defun call-parsing-form (form usage parse)
   "Call PARSE, which parses FORM, and then the function that PARSE returns. Signals
 MALFORMED-DEFINITION with USAGE, a form that shows what fits, if FORM does not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that is a proper list"))
-  (doubt-readtable form)
-  (call-blaming-form
+  (warn-of-nisp-syntax form)
+  (call-reporting-form
    (handler-case (funcall parse)
      (error ()
        (reject-use-of form (let ((*print-pretty* nil))
@@ -91,13 +92,13 @@ MALFORMED-DEFINITION with USAGE, a form that shows what fits, if FORM does not f
                                          (misfit-text (rest usage) (rest form))))))))
    form))
 
-(defun expand-fitting (form environment usage parse)
-  "Return the value of CALL-FITTING. Inside another form or a compiled file, if CALL-FITTING signals
-MALFORMED-DEFINITION, return a form that signals the error later."
-  (first (forms-or-rejection (lambda () (list (call-fitting form usage parse)))
-                             (nested-p environment))))
+(defun expand-parsing-form (form environment usage parse)
+  "Return the value of CALL-PARSING-FORM. Inside another form or a compiled file, if
+CALL-PARSING-FORM signals MALFORMED-DEFINITION, return a form that signals this error later."
+  (first (forms-or-rejection (lambda () (list (call-parsing-form form usage parse)))
+                             (nested-form-p environment))))
 
-(defun variable-after (key lambda-list)
+(defun variable-after-key (key lambda-list)
   "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without KEY and the
 variable."
   (let ((rest (member key lambda-list)))
@@ -108,26 +109,27 @@ variable."
 does not fit LAMBDA-LIST, or for which BODY signals an error, signals MALFORMED-DEFINITION, with the
 form USAGE as an example."
   (multiple-value-bind (body declarations documentation) (parse-body body :documentation t)
-    (multiple-value-bind (environment rest) (variable-after '&environment lambda-list)
-      (multiple-value-bind (whole parameters) (variable-after '&whole rest)
+    (multiple-value-bind (environment rest) (variable-after-key '&environment lambda-list)
+      (multiple-value-bind (whole parameters) (variable-after-key '&whole rest)
         (with-gensyms (form arguments)
           (let ((environment (or environment (gensym "ENVIRONMENT"))))
             `(defmacro ,name (&whole ,form &rest ,arguments &environment ,environment)
                ,@(when documentation (list documentation))
                (declare (ignore ,arguments))
-               (expand-fitting ,form ,environment ',usage
-                               (lambda ()
-                                 (let (,@(when whole `((,whole ,form))))
-                                   ,@(when whole `((declare (ignorable ,whole))))
-                                   (destructuring-bind ,parameters (rest ,form)
-                                     ,@declarations
-                                     (lambda () ,@body))))))))))))
+               (expand-parsing-form ,form ,environment ',usage
+                                    (lambda ()
+                                      (let (,@(when whole `((,whole ,form))))
+                                        ,@(when whole `((declare (ignorable ,whole))))
+                                        (destructuring-bind ,parameters (rest ,form)
+                                          ,@declarations
+                                          (lambda () ,@body))))))))))))
 
 (defmacro define-user-macro (name lambda-list &body body)
   "Define the macro NAME for users, like DEFMACRO. A use of the macro that does not fit LAMBDA-LIST,
 or for which BODY signals an error, signals MALFORMED-DEFINITION."
-  (let ((shown (nth-value 1 (variable-after
-                             '&whole (nth-value 1 (variable-after '&environment lambda-list))))))
+  (let ((shown (nth-value 1 (variable-after-key
+                             '&whole
+                             (nth-value 1 (variable-after-key '&environment lambda-list))))))
     `(progn
        ,(user-macro-form name lambda-list (cons name shown) body)
        (show-lambda-list ',name ',shown)
@@ -138,7 +140,7 @@ or for which BODY signals an error, signals MALFORMED-DEFINITION."
 (defun body-form (forms)
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
-(defun test-meant (form)
+(defun intended-test (form)
   "If FORM, a test, is quoted data or a function, and so always true, return a list of the form that
 the user probably meant; else NIL."
   (typecase form
@@ -146,14 +148,14 @@ the user probably meant; else NIL."
      (let ((data (second form)))
        (list (if (and (symbolp data) (fboundp data) (not (boundp data))) (list data) data))))
     ((cons (eql function) (cons symbol null)) (list (list (second form))))
-    ((cons (eql function) (cons cons null)) (test-meant (second form)))
+    ((cons (eql function) (cons cons null)) (intended-test (second form)))
     ((cons symbol (cons list))
      (and (string= "LAMBDA" (first form)) (list (body-form (cddr form)))))))
 
 (defun test-advice (form)
   "If FORM, a test, is quoted data or a function, and so always true, return a text that says so and
 what to write; else NIL."
-  (let ((meant (test-meant form)) (*print-case* :downcase) (*print-pretty* t)
+  (let ((meant (intended-test form)) (*print-case* :downcase) (*print-pretty* t)
         (*print-right-margin* 10000))
     (and meant
          (format nil "~S is ~:[a function~;data~], which always counts as true. Write only the ~

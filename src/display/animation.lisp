@@ -193,7 +193,7 @@ Signals the errors of REPLAY."
 (defun file-names-text (files)
   "Return a text with the first and the last name of FILES, a list of numbered files in reverse
 order."
-  (format nil "~A~@[ to ~A~]" (shown-name (first (last files)))
+  (format nil "~A~@[ to ~A~]" (file-name-text (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
 
 (defun warn-of-older-frames (file count)

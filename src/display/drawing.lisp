@@ -22,7 +22,7 @@
     (reject-argument operator "drawable" canvas "the window that was passed to the drawing code"))
   (unless (gcontext-p gcontext)
     (reject-argument operator "gcontext" gcontext "draw-gcontext*"))
-  (unless (every #'within-reason-p numbers)
+  (unless (every #'sane-number-p numbers)
     (reject-argument operator "coordinates" numbers "numbers of pixels, from -1e9 to 1e9")))
 
 (defun check-sequence (operator canvas gcontext numbers multiple)

@@ -184,4 +184,4 @@ instead."
       (remove-observer (cdr entry) new)
       (keep-history new))))
 
-(attend *rewind-hooks* copy-history-after-rewind)
+(add-listener *rewind-hooks* copy-history-after-rewind)

@@ -62,7 +62,7 @@ Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
 ;;; Files.
 
 (defun write-picture-file (text file)
-  (write-file-anew (lambda (out) (write-string text out)) file "the picture"))
+  (overwrite-file (lambda (out) (write-string text out)) file "the picture"))
 
 (defun png-remedy (words)
   (cond ((search "larger than" words) "Choose a smaller scale, or save it as .svg")
@@ -75,7 +75,7 @@ rsvg-convert."
   (let ((words (one-line words)))
     (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[failed without a ~
                  message~;~:*says ~S~]. An older file of this name is unchanged. ~A."
-                (shown-name file) (and (plusp (length words)) (cut words 300))
+                (file-name-text file) (and (plusp (length words)) (cut words 300))
                 (png-remedy words))))
 
 (defun write-png (svg out file)
@@ -94,7 +94,7 @@ OPERATOR if FILE has another type or cannot be written. The message lists ENDING
 possible types."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
-    (when (many-files-p file)
+    (when (wildcard-name-p file)
       (reject "the name of one file; write \\\\ before each * ? and [ in a string of Lisp"))
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in an existing directory; make ~A first" missing))))
@@ -107,8 +107,8 @@ FILE."
   (ecase kind
     (:svg (write-picture-file svg file))
     (:png (let ((file (merge-pathnames file)))
-            (write-file-anew (lambda (out) (write-png svg out file)) file "the picture"
-                             :kind :image)))))
+            (overwrite-file (lambda (out) (write-png svg out file)) file "the picture"
+                            :kind :image)))))
 
 (defun save-snapshot (snapshot robot file &rest look &key (display :all) &allow-other-keys)
   "Save a picture of SNAPSHOT in FILE as SAVE-PICTURE does. ROBOT is the image of a robot in

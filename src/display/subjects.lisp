@@ -16,14 +16,14 @@
   "Return ANGLE, in radians, as a text in degrees and in radians. Degrees are more than -180 and at
 most 180. Radians are never reduced (reading 50), so they can be several turns."
   (let ((degrees (- 180 (mod (- 180 (round (* angle (/ 180 pi)))) 360))))
-    (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (hundredths angle)
+    (format nil "~D deg (~,2F rad~:[~; in all~])" degrees (zero-if-tiny angle)
             (< (+ pi 0.01d0) (abs angle)))))
 
 (defun attribute-value-text (value)
   "Return VALUE, the value of an attribute, as a text in lower case. Numbers are decimals without
 exponents."
   (typecase value
-    (float (if (within-reason-p value) (number-text value) (princ-to-string value)))
+    (float (if (sane-number-p value) (number-text value) (princ-to-string value)))
     (cons (format nil "(~{~A~^ ~})" (mapcar #'attribute-value-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 

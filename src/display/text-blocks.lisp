@@ -188,7 +188,7 @@ character.")
 block."
   (make-glyph :robot (arrow-glyph (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
-                      (hundredths (robot-image-x robot)) (hundredths (robot-image-y robot))
+                      (zero-if-tiny (robot-image-x robot)) (zero-if-tiny (robot-image-y robot))
                       (remove-duplicates (loop for image in things
                                                collect (thing-name (thing-image-thing image)))
                                          :from-end t))

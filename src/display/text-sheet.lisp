@@ -75,8 +75,8 @@ Y is outside VIEW."
 (defun own-position-marks (view odometer)
   (let ((x (odometer-image-x odometer)) (y (odometer-image-y odometer)))
     (glyph-mark-at view x y (make-glyph :robot #\@
-                                        (format nil "believed (~,2F,~,2F)" (hundredths x)
-                                               (hundredths y))
+                                        (format nil "believed (~,2F,~,2F)" (zero-if-tiny x)
+                                               (zero-if-tiny y))
                                         :bold))))
 
 (defun designator-marks (view robot designator)

@@ -100,5 +100,5 @@ NIL."
             (push text *reported-messages*)
             (out text t)))))))
 
-(attend *simulator-hooks* announce-display)
+(add-listener *simulator-hooks* announce-display)
 (pushnew 'display *simulator-hook-options*)

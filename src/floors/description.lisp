@@ -61,7 +61,7 @@ MODE."
 (defun origin-in (file entry)
   (let ((numbers (and (consp (entry-value entry)) (mapcar #'read-decimal (entry-value entry)))))
     (unless (and (= 3 (length numbers))
-                 (every (lambda (number) (and number (within-reason-p number))) numbers))
+                 (every (lambda (number) (and number (sane-number-p number))) numbers))
       (reject-entry file entry
                     "a list [x, y, yaw] of numbers from -1e9 to 1e9, metres and radians"))
     numbers))
@@ -94,14 +94,14 @@ exist."
     (when trouble
       (reject-floor file (entry-line entry) "the image ~A cannot be read: ~A. Put the image ~
                                              there, or correct the line"
-                    (shown-name image) trouble))
+                    (file-name-text image) trouble))
     image))
 
 (defun warn-of-key (file entry)
   "Warn if the key of ENTRY, a line of FILE, is unknown and resembles a known key."
   (let* ((known (cons "mode" (mapcar #'car *example-lines*))) (key (entry-key entry))
          (like (unless (member key known :test #'string=)
-                 (find-if (lambda (other) (or (string-equal key other) (resembles-p key other)))
+                 (find-if (lambda (other) (or (string-equal key other) (misspelling-p key other)))
                           known))))
     (when like
       (warn-of-definition "~A, line ~D: the key ~A is unknown and ignored; did you mean ~A?"
@@ -138,7 +138,7 @@ exist."
   "Signal UNUSABLE-FLOOR unless FILE looks like the description of a floor by its size and first
 bytes."
   (check-readable file)
-  (let ((advice (file-advice file :floor)))
+  (let ((advice (advice-on-file file :floor)))
     (when advice (reject-floor file nil "~A" advice)))
   (let ((size (file-size file)))
     (when (< +most-description-octets+ size)

@@ -79,7 +79,7 @@ written."
     (error (condition)
       (reject-floor file nil "the file cannot be written and is unchanged: ~A. Give the name of a ~
                               file that you may write"
-                    (unwritten-reason condition)))))
+                    (write-failure-text condition)))))
 
 (defun check-description-name (file path)
   "Signal WRONG-ARGUMENT about FILE if its path PATH is no valid name for EXPORT-MAP."
@@ -107,7 +107,7 @@ NIL if FILE is no valid description."
   "True if the file PATH does not exist or is empty."
   (let ((there (probe-file path)))
     (or (null there)
-        (ignore-errors (and (plain-file-p there) (zerop (file-size there)))))))
+        (ignore-errors (and (regular-file-p there) (zerop (file-size there)))))))
 
 (defun check-files-replaceable (path image)
   "Signal UNUSABLE-FLOOR if the files PATH and IMAGE must not be replaced, because PATH does not
@@ -122,7 +122,7 @@ describe IMAGE, or because IMAGE is no image."
             ((null named) (reject path "the description of a map"))
             ((not (equal named (resolve-link image)))
              (reject path (format nil "the description of ~A" (native-name image))))
-            ((foreign-file-p image :image) (reject image "a PGM or PNG image"))))))
+            ((other-kind-of-file-p image :image) (reject image "a PGM or PNG image"))))))
 
 (addition export-map)
 (defun export-map (map file &key unknown)

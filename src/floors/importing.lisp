@@ -12,7 +12,7 @@
 
 (defun check-pose (operator x y angle)
   (loop for (name value) in `((x ,x) (y ,y) (angle ,angle))
-        unless (within-reason-p value)
+        unless (sane-number-p value)
           do (reject-argument operator name value "a number from -1e9 to 1e9")))
 
 (addition map-to-frame)
@@ -96,7 +96,7 @@ package made of the letters and digits of the name of FILE, with dashes for othe
 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
                 "the width of a cell in pixels, an integer from 1 to 32767")
-  (check-option :cell (or (null cell) (and (within-reason-p cell) (plusp cell) (null pixels))) cell
+  (check-option :cell (or (null cell) (and (sane-number-p cell) (plusp cell) (null pixels))) cell
                 "the width of a cell in metres, and not :pixels as well")
   (if (null cell)
       (or pixels 1)

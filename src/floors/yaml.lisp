@@ -10,7 +10,7 @@
    (reason :initarg :reason :reader unusable-floor-reason))
   (:report (lambda (condition stream)
              (format stream "~A~@[, line ~D~]: ~A."
-                     (shown-name (unusable-floor-file condition))
+                     (file-name-text (unusable-floor-file condition))
                      (unusable-floor-line condition)
                      (unusable-floor-reason condition))))
   (:documentation "A file that IMPORT-MAP was to read, or EXPORT-MAP to write, cannot be used."))
@@ -33,7 +33,7 @@ UNUSABLE-FLOOR for ~user."
   (when (and (stringp name) (starts-with-subseq "~" name) (not (starts-with-subseq "~/" name)))
     (reject-floor name nil "~~ is supported only in ~~/, your home directory; write the whole name
 of the file"))
-  (path-called name))
+  (path-of-name name))
 
 (defun check-readable (file)
   (let ((trouble (unusable-file-text file)))

@@ -28,7 +28,7 @@ WRONG-ARGUMENT."
 
 ;; Beyond that, the part of a turn is too imprecise.
 (defmacro check-angle (operator place)
-  `(check-argument ,operator ,place (within-reason-p ,place)
+  `(check-argument ,operator ,place (sane-number-p ,place)
                    "an angle in radians, from -1e9 to 1e9"))
 
 (declaim (inline reduced-angle))

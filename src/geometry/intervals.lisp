@@ -17,7 +17,7 @@ intervals along an axis. COMBINE joins the values of FORM for two axes."
                          (ignorable ,low-a ,high-a ,low-b ,high-b))
                 ,form))
          (declare (inline compare))
-         (dispatch ,name (a b) "two intervals or numbers, or two point intervals or points"
+         (dispatch-on-types ,name (a b) "two intervals or numbers, or two point intervals or points"
            ((span span) (compare (low a) (high a) (low b) (high b)))
            ((region region)
             (,combine (compare (low-x a) (high-x a) (low-x b) (high-x b))
@@ -51,7 +51,7 @@ return the wider of the gaps along the two axes (manual, Table 3.2)."
 (public in-interval)
 (defun in-interval (x interval)
   "True if the number or point X is in INTERVAL, bounds included (manual, Table 3.2)."
-  (dispatch in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
+  (dispatch-on-types in-interval (x interval) "a number and an INTERVAL, or a PT and a PT-INTERVAL"
     ((finite span) (<= (low interval) (double x) (high interval)))
     ((pt region) (and (<= (low-x interval) (%pt-x x) (high-x interval))
                       (<= (low-y interval) (%pt-y x) (high-y interval))))))
@@ -67,7 +67,7 @@ return the wider of the gaps along the two axes (manual, Table 3.2)."
 (defun interval-width (interval)
   "Return the largest distance between two elements of INTERVAL. For a point interval, this is the
 diagonal (manual, Table 3.2; reading 45)."
-  (dispatch interval-width (interval) "an INTERVAL or PT-INTERVAL"
+  (dispatch-on-types interval-width (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (- (high interval) (low interval)))
     ((region) (length-of (- (high-x interval) (low-x interval))
                          (- (high-y interval) (low-y interval))))))
@@ -79,14 +79,14 @@ diagonal (manual, Table 3.2; reading 45)."
   (flet ((width ()
            (let ((common (interval-intersect a b)))
              (if common (interval-width common) 0d0))))
-    (dispatch interval-overlap-width (a b) "two intervals or two point intervals"
+    (dispatch-on-types interval-overlap-width (a b) "two intervals or two point intervals"
       ((span span) (width))
       ((region region) (width)))))
 
 (public nominal)
 (defun nominal (interval)
   "Return the centre of INTERVAL, the best estimate: a number, or a new PT (manual, Table 3.2)."
-  (dispatch nominal (interval) "an INTERVAL or PT-INTERVAL"
+  (dispatch-on-types nominal (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (centre (low interval) (high interval)))
     ((region) (%make-pt (centre (low-x interval) (high-x interval))
                         (centre (low-y interval) (high-y interval))))))
@@ -101,7 +101,7 @@ diagonal (manual, Table 3.2; reading 45)."
 (defun interval-intersect! (a b)
   "Change A into the intersection of the intervals A and B, and return A. If they do not intersect,
 leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
-  (dispatch interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
+  (dispatch-on-types interval-intersect! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span)
      (when (interval-intersect? a b)
        (%intersect! a (low b) (high b))))
@@ -115,7 +115,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 (defun interval-intersect (a b)
   "Return the intersection of the intervals A and B, a new interval; NIL if they do not intersect
 (manual, Table 3.2)."
-  (dispatch interval-intersect (a b) "two intervals or two point intervals"
+  (dispatch-on-types interval-intersect (a b) "two intervals or two point intervals"
     ((span span) (interval-intersect! (lift a) b))
     ((region region) (interval-intersect! (lift a) b))))
 
@@ -129,7 +129,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 (defun interval-lbi! (a b)
   "Grow the interval A as little as possible so that it contains the interval B, and return A
 (manual, Table 3.2)."
-  (dispatch interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
+  (dispatch-on-types interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span) (%bound! a (low b) (high b)))
     ((pt-interval region)
      (%bound! (%pt-interval-x a) (low-x b) (high-x b))
@@ -139,7 +139,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 (public interval-lbi)
 (defun interval-lbi (a b)
   "Return the least interval that contains the intervals A and B (manual, Table 3.2)."
-  (dispatch interval-lbi (a b) "two intervals or two point intervals"
+  (dispatch-on-types interval-lbi (a b) "two intervals or two point intervals"
     ((span span) (interval-lbi! (lift a) b))
     ((region region) (interval-lbi! (lift a) b))))
 
@@ -147,14 +147,14 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 (defun add-to-lbi! (interval x)
   "Grow INTERVAL as little as possible so that it contains the number or point X, and return
 INTERVAL (manual, Table 3.2)."
-  (dispatch add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
+  (dispatch-on-types add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((interval finite) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))
 
 (public add-to-lbi)
 (defun add-to-lbi (interval x)
   "Return the least interval that contains INTERVAL and the number or point X (manual, Table 3.2)."
-  (dispatch add-to-lbi (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
+  (dispatch-on-types add-to-lbi (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((span finite) (interval-lbi! (lift interval) x))
     ((region pt) (interval-lbi! (lift interval) x))))
 
@@ -162,7 +162,7 @@ INTERVAL (manual, Table 3.2)."
 (defun interval-lift (x)
   "Return the interval that contains only X: an INTERVAL if X is a number, a PT-INTERVAL if X is a
 point (manual, Table 3.2)."
-  (dispatch interval-lift (x) "a number or a PT"
+  (dispatch-on-types interval-lift (x) "a number or a PT"
     (((or finite pt)) (lift x))))
 
 (public lift-lbi)
@@ -173,7 +173,7 @@ point (manual, Table 3.2)."
   (check-argument lift-lbi x (typep x '(or finite pt)) "a number or a PT")
   (let ((interval (lift x)))
     (dolist (x more interval)
-      (dispatch lift-lbi (interval x) "all numbers or all points"
+      (dispatch-on-types lift-lbi (interval x) "all numbers or all points"
         ((interval finite) (interval-lbi! interval x))
         ((pt-interval pt) (interval-lbi! interval x))))))
 
@@ -194,7 +194,7 @@ most to the centre."
 (defun grow-interval! (interval amount)
   "Move each boundary of INTERVAL outward by the number AMOUNT, and return INTERVAL. A negative
 AMOUNT shrinks INTERVAL, at most to its centre (manual, Table 3.2)."
-  (dispatch grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
+  (dispatch-on-types grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((interval finite)
      (multiple-value-call #'%set-interval! interval (%grown interval (double amount))))
     ((pt-interval finite)
@@ -207,6 +207,6 @@ AMOUNT shrinks INTERVAL, at most to its centre (manual, Table 3.2)."
 (defun grow-interval (interval amount)
   "Return a new interval: INTERVAL with each boundary moved outward by the number AMOUNT. A negative
 AMOUNT shrinks the new interval, at most to the centre of INTERVAL (manual, Table 3.2)."
-  (dispatch grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
+  (dispatch-on-types grow-interval (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((span finite) (grow-interval! (lift interval) amount))
     ((region finite) (grow-interval! (lift interval) amount))))

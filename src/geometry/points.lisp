@@ -44,7 +44,7 @@ NAME. The text EXPECTED says which operands are possible."
   (reject-argument operator name value
                    (if (and (realp value) (not (finite-p value))) +number-text+ expected)))
 
-(defmacro dispatch (operator operands expected &body clauses)
+(defmacro dispatch-on-types (operator operands expected &body clauses)
   "Evaluate the forms of the first clause in CLAUSES, of the form ((TYPE...) FORM...), whose types
 fit the values of the variables OPERANDS. Signals WRONG-ARGUMENT, with the text EXPECTED, if no
 clause fits or the result is too large."
@@ -54,7 +54,7 @@ clause fits or the result is too large."
                          collect `(typep ,operand ',type))))
          (refuse (operand)
            `(reject-operand ',operator ',operand ,operand ,expected)))
-    `(within-floats (,operator ,(first (last operands)))
+    `(check-overflow (,operator ,(first (last operands)))
        (cond ,@(loop for (types . forms) in clauses
                      collect `(,(test types) ,@forms))
              ,@(loop for operand in operands
@@ -95,7 +95,7 @@ clause fits or the result is too large."
 (defun add! (a b)
   "Change A into the sum of A and B, and return A. Intervals add bound by bound (manual,
 Table 3.1)."
-  (dispatch add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
+  (dispatch-on-types add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (low b) (high b)))
     ((pt-interval region) (%add-region! a (low-x b) (high-x b) (low-y b) (high-y b))))
@@ -106,7 +106,7 @@ Table 3.1)."
   "Return the sum of A and B. They are two points (as vectors), two intervals, or two point
 intervals. One of two intervals may be a number, and one of two point intervals a point (manual,
 Table 3.1)."
-  (dispatch add (a b) "two points or point intervals, or two intervals or numbers"
+  (dispatch-on-types add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((finite finite) (+ (double a) (double b)))
     ((span span) (add! (lift a) b))
@@ -116,7 +116,7 @@ Table 3.1)."
 (defun subtract! (a b)
   "Change A into A minus B, and return A. For intervals, the result contains all differences of
 their elements (manual, Table 3.1; reading 48)."
-  (dispatch subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
+  (dispatch-on-types subtract! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (- (high b)) (- (low b))))
     ((pt-interval region)
@@ -127,7 +127,7 @@ their elements (manual, Table 3.1; reading 48)."
 (defun subtract (a b)
   "Return A minus B. They are two points (as vectors), two intervals, or two point intervals. One of
 two intervals may be a number, and one of two point intervals a point (manual, Table 3.1)."
-  (dispatch subtract (a b) "two points or point intervals, or two intervals or numbers"
+  (dispatch-on-types subtract (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((finite finite) (- (double a) (double b)))
     ((span span) (subtract! (lift a) b))
@@ -137,7 +137,7 @@ two intervals may be a number, and one of two point intervals a point (manual, T
 (defun neg! (a)
   "Change A into its negative, and return A. The bounds of an interval are swapped (manual, Table
 3.1)."
-  (dispatch neg! (a) "a PT, INTERVAL or PT-INTERVAL"
+  (dispatch-on-types neg! (a) "a PT, INTERVAL or PT-INTERVAL"
     ((pt) (set-pt! a (- 0d0 (%pt-x a)) (- 0d0 (%pt-y a))))
     ((interval) (%neg! a))
     ((pt-interval)
@@ -148,7 +148,7 @@ two intervals may be a number, and one of two point intervals a point (manual, T
 (public neg)
 (defun neg (a)
   "Return the negative of A, a point, number, interval or point interval (manual, Table 3.1)."
-  (dispatch neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
+  (dispatch-on-types neg (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((finite) (- 0d0 (double a)))
     (((or pt interval pt-interval)) (neg! (copy-obj a)))))
 
@@ -156,7 +156,7 @@ two intervals may be a number, and one of two point intervals a point (manual, T
 (defun mul! (a factor)
   "Multiply A by the number FACTOR, and return A. A negative FACTOR swaps the bounds of an interval.
 If A is an interval, FACTOR may be an interval too (manual, Table 3.1)."
-  (dispatch mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
+  (dispatch-on-types mul! (a factor) "a PT, INTERVAL or PT-INTERVAL and a number"
     ((pt finite) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
     ((interval span)
@@ -172,7 +172,7 @@ If A is an interval, FACTOR may be an interval too (manual, Table 3.1)."
 (defun mul (a factor)
   "Return A, a point, number, interval or point interval, multiplied by the number FACTOR. If FACTOR
 is an interval, return the interval or point interval of all products (manual, Table 3.1)."
-  (dispatch mul (a factor) "a point, interval or point interval and a number"
+  (dispatch-on-types mul (a factor) "a point, interval or point interval and a number"
     ((pt finite) (mul! (copy-obj a) factor))
     ((finite finite) (* (double a) (double factor)))
     ((span span) (mul! (lift a) factor))
@@ -180,7 +180,7 @@ is an interval, return the interval or point interval of all products (manual, T
 
 ;;; Lengths.
 
-(declaim (inline length-of least-size greatest-size))
+(declaim (inline length-of least-length greatest-length))
 
 (defun scaled-length (x y most)
   "Return the length of the vector (X, Y) if the squares of X and Y overflow or underflow. MOST is
@@ -198,31 +198,31 @@ the larger of their absolute values."
         (sqrt (+ (* x x) (* y y)))
         (scaled-length x y most))))
 
-(defun least-size (interval)
+(defun least-length (interval)
   (max 0d0 (%interval-min interval) (- (%interval-max interval))))
 
-(defun greatest-size (interval)
+(defun greatest-length (interval)
   (max (abs (%interval-min interval)) (abs (%interval-max interval))))
 
 (public norm)
 (defun norm (a)
   "Return the Euclidean length of the vector to the point A, in metres. If A is an interval or point
 interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)."
-  (dispatch norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
+  (dispatch-on-types norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
     ((finite) (abs (double a)))
-    ((interval) (%make-interval (least-size a) (greatest-size a)))
+    ((interval) (%make-interval (least-length a) (greatest-length a)))
     ((pt-interval)
      (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))
-       (%make-interval (length-of (least-size x) (least-size y))
-                       (length-of (greatest-size x) (greatest-size y)))))))
+       (%make-interval (length-of (least-length x) (least-length y))
+                       (length-of (greatest-length x) (greatest-length y)))))))
 
 (public dist)
 (defun dist (a b)
   "Return the Euclidean distance between the points A and B, in metres. If A or B is an interval or
 point interval, return the INTERVAL of the distances between their elements (manual, Table 3.1;
 reading 42)."
-  (dispatch dist (a b) "two points or point intervals, or two intervals or numbers"
+  (dispatch-on-types dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))
     ((region region) (norm (subtract a b)))))

@@ -20,7 +20,7 @@
   (:documentation "The result of an operation is too large for a double-float."))
 
 ;; An operation that uses another one reports its own operands.
-(defmacro within-floats ((operator operand) &body body)
+(defmacro check-overflow ((operator operand) &body body)
   "Evaluate BODY. Run BODY. If a floating-point number overflows, signal WRONG-ARGUMENT about the
 variable OPERAND."
   `(handler-case (progn ,@body)
@@ -178,13 +178,13 @@ function copies the bounds of an interval into that side."
 (addition pt-interval-dx)
 (defun pt-interval-dx (pt-interval)
   "Return the width of PT-INTERVAL along x, in metres."
-  (within-floats (pt-interval-dx pt-interval)
+  (check-overflow (pt-interval-dx pt-interval)
     (side-length (%pt-interval-x pt-interval))))
 
 (addition pt-interval-dy)
 (defun pt-interval-dy (pt-interval)
   "Return the width of PT-INTERVAL along y, in metres."
-  (within-floats (pt-interval-dy pt-interval)
+  (check-overflow (pt-interval-dy pt-interval)
     (side-length (%pt-interval-y pt-interval))))
 
 ;; Inline, so that bounds need not be boxed on the way.
@@ -229,17 +229,17 @@ keys of the table must not be modified."
     (t (cl:equal a b))))
 
 ;; 0 and -0 are the same here, and not to SXHASH.
-(defun hash (object)
+(defun equal-hash (object)
   "Return a hash code, an integer, of OBJECT. Objects that are EQUAL have the same hash code."
   (flet ((mix (a b) (sxhash (list (+ 0d0 a) (+ 0d0 b)))))
     (typecase object
       (pt (mix (%pt-x object) (%pt-y object)))
       (interval (mix (%interval-min object) (%interval-max object)))
-      (pt-interval (logxor (hash (%pt-interval-x object))
-                           (* 3 (ash (hash (%pt-interval-y object)) -3))))
+      (pt-interval (logxor (equal-hash (%pt-interval-x object))
+                           (* 3 (ash (equal-hash (%pt-interval-y object)) -3))))
       (t (sxhash object)))))
 
-(sb-ext:define-hash-table-test equal hash)
+(sb-ext:define-hash-table-test equal equal-hash)
 
 (defun shown-number (number)
   "Return NUMBER rounded for printing: to a millionth, if floats of its size are that exact."

@@ -3,8 +3,8 @@
 (in-package :ars-magna.host)
 
 (export '(method-code declared-lambda-list same-code-p code-references
-          lambda-list-of takes-count-p callable-with-p function-file files-besides-functions
-          call-as-from-file tell-sources))
+          lambda-list-of accepts-count-p callable-with-p function-file files-of-other-definitions
+          call-recording-file add-definition-sources))
 
 ;;; Since SBCL 2.4.10, names of called functions are not among the constants of code but in a
 ;;; linkage table. Names of macros, constants and inline functions are in the cross references,
@@ -46,7 +46,7 @@
         collect (internal (:sb-kernel #:code-header-ref) code index)))
 
 ;; SBCL 2.2 begins the constants with the names of all functions, including local ones.
-(defparameter *described-among-constants-p*
+(defparameter *functions-among-constants-p*
   (eq 'linked-names
       (first (constants-from (code-of #'linked-names)
                              (internal-value :sb-vm #:code-constants-offset))))
@@ -55,7 +55,7 @@
 (defun first-constant (code)
   "Return the index of the first constant of CODE after the descriptions of its functions."
   (+ (internal-value :sb-vm #:code-constants-offset)
-     (if *described-among-constants-p*
+     (if *functions-among-constants-p*
          (* (internal-value :sb-vm #:code-slots-per-simple-fun)
             (internal (:sb-kernel #:code-n-entries) code))
          0)))
@@ -68,7 +68,7 @@ the names that they use."
             (linked-names code)
             (names-used code))))
 
-(defun constant-or-called-name (constant)
+(defun constant-or-function-name (constant)
   "If CONSTANT, a constant of code, refers to a function by name, return that name; else return
 CONSTANT."
   (if (internal-type-p constant :sb-kernel #:fdefn)
@@ -91,14 +91,14 @@ other functions, constants and closed-over values. Numbers, characters and strin
    (lambda (object) (typep object '(or number character string bit-vector null)))
    (if (typep function 'generic-function)
        (mapcar #'method-code (methods-of-generic function))
-       (append (mapcar #'constant-or-called-name (code-constants function))
+       (append (mapcar #'constant-or-function-name (code-constants function))
                (when (closure-p function) (closure-values function))))))
 
 (defun lambda-list-of (name)
   "Return the lambda list of NAME: a function, or the name of a function or macro."
   (sb-introspect:function-lambda-list name))
 
-(defun takes-count-p (lambda-list count)
+(defun accepts-count-p (lambda-list count)
   "True if a function with the ordinary lambda list LAMBDA-LIST accepts COUNT arguments. Keywords
 and their values count as arguments."
   (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
@@ -109,24 +109,24 @@ and their values count as arguments."
   "True if FUNCTION, a function or its name, accepts COUNT arguments, or if its lambda list is
 unknown."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
-    (or unknown-p (takes-count-p list count))))
+    (or unknown-p (accepts-count-p list count))))
 
 ;;; The source files of functions. SBCL does not know the file of forms that are evaluated singly.
 
-(defvar *dates-of-files* (make-hash-table :test 'equal :synchronized t)
+(defvar *write-dates* (make-hash-table :test 'equal :synchronized t)
   "A table from the names of files whose forms were evaluated one by one to their write dates.")
 
 (defun evaluated-file-p (namestring)
   "True if NAMESTRING is the name of a file whose forms were evaluated one by one."
   (and namestring
-       (not (many-files-p namestring))
-       (gethash (native-name namestring) *dates-of-files*)))
+       (not (wildcard-name-p namestring))
+       (gethash (native-name namestring) *write-dates*)))
 
-(defun call-as-from-file (function path)
+(defun call-recording-file (function path)
   "Call FUNCTION, which evaluates forms read from the file PATH. Functions that FUNCTION defines are
 recorded as defined in PATH."
   (let ((name (native-name path)) (errors *error-output*))
-    (setf (gethash name *dates-of-files*) (file-write-date path))
+    (setf (gethash name *write-dates*) (file-write-date path))
     ;; The summary that a unit was left is useless here: the caller knows.
     (let ((*error-output* (make-broadcast-stream)))
       ;; SBCL parses this as a Lisp pathname.
@@ -140,7 +140,7 @@ time of the definition; NIL if the definition was typed."
     (and path
          (let ((name (native-name (translate-logical-pathname path))))
            (values name (or (sb-introspect:definition-source-file-write-date source)
-                            (gethash name *dates-of-files*)))))))
+                            (gethash name *write-dates*)))))))
 
 (defun file-of-code (function)
   "Return the values of FUNCTION-FILE, using only the debug information in the code of FUNCTION."
@@ -159,7 +159,7 @@ file at that time; NIL if FUNCTION was typed."
     ;; first forms only, and looks for those of later ones.
     (error () (ignore-errors (file-of-code function)))))
 
-(defun files-besides-functions (symbol)
+(defun files-of-other-definitions (symbol)
   "Return lists (file write-date), with values as of FUNCTION-FILE, for the definitions of SYMBOL as
 other things than a function."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
@@ -172,7 +172,7 @@ other things than a function."
 ;;; Editors ask Lisp where a name is defined as a function, a variable and so on. Our own
 ;;; definitions are reported as declarations of that name, since no other type is unused.
 
-(defun tell-sources (function)
+(defun add-definition-sources (function)
   "Make Lisp report further definition sources of symbols. FUNCTION returns those of a symbol: lists
 (file position operator)."
   (wrap-function 'sb-introspect:find-definition-sources-by-name

@@ -2,14 +2,15 @@
 
 (in-package :ars-magna.host)
 
-(export '(show-lambda-list nested-p edited-file error-context context-original-form
-          compiler-error-p keep-place in-source-p call-at-place at-end-of-unit call-as-unit
-          place-in-text compiler-place form-start line-reached line-of-next
-          encapsulated-condition undecodable-format))
+(export '(show-lambda-list nested-form-p edited-file error-context context-original-form
+          compiler-error-p copy-source-location has-source-location-p call-at-source-location
+          at-end-of-unit call-as-unit location-in-text compiler-location form-start
+          line-of-last-character line-of-next-character encapsulated-condition undecodable-format))
 
-;;; SBCL records the position of each list that it has read to compile or load. KEEP-PLACE gives a
-;;; list made from another the position of that, so that the compiler's notes point to what the
-;;; author wrote. All this is in tables and variables of the compiler.
+;;; SBCL records the location of each list that it has read to compile or load.
+;;; COPY-SOURCE-LOCATION gives a list made from another list the location of that list, so that the
+;;; compiler's notes point to the text of the author. The locations are in tables and variables of
+;;; the compiler.
 
 (defmacro compiler-variable (name)
   `',(internal-name :sb-c name))
@@ -24,37 +25,37 @@ of the macro NAME."
     (funcall (fdefinition `(setf ,(internal-name :sb-c '#:%simple-fun-arglist)))
              lambda-list function)))
 
-(defun nested-p (environment)
+(defun nested-form-p (environment)
   "True if a form in ENVIRONMENT is inside another form that is being compiled."
   (and environment (internal (:sb-c #:lexenv-lambda) environment) t))
 
-;;; Places.
+;;; Source locations.
 
-(defun places ()
+(defun source-locations ()
   "Return the table of the source locations of forms in the current compilation, or NIL."
   (let ((table (value-if-bound (compiler-variable #:*source-paths*))))
     (and (hash-table-p table) table)))
 
-(defun place-of (form)
+(defun source-location (form)
   "Return the source location of FORM in the current compilation, or NIL."
-  (let ((places (places)))
-    (and places (consp form) (values (gethash form places)))))
+  (let ((table (source-locations)))
+    (and table (consp form) (values (gethash form table)))))
 
-(defun in-source-p (form)
+(defun has-source-location-p (form)
   "True if FORM has a source location in the current compilation."
-  (and (place-of form) t))
+  (and (source-location form) t))
 
-(defun keep-place (new old)
+(defun copy-source-location (new old)
   "Give the form NEW the source location of the form OLD, unless NEW has one. Return NEW."
-  (let ((place (and (consp new) (not (eq new old)) (place-of old))))
-    (when (and place (not (place-of new)))
-      (setf (gethash new (places)) place))
+  (let ((location (and (consp new) (not (eq new old)) (source-location old))))
+    (when (and location (not (source-location new)))
+      (setf (gethash new (source-locations)) location))
     new))
 
-(defun call-at-place (form function)
+(defun call-at-source-location (form function)
   "Call FUNCTION. The compiler attributes its warnings to FORM."
-  (let ((place (place-of form)))
-    (progv (and place (list (compiler-variable #:*current-path*))) (list place)
+  (let ((location (source-location form)))
+    (progv (and location (list (compiler-variable #:*current-path*))) (list location)
       (funcall function))))
 
 ;;; An editor that compiles a piece of a file copies it to a temporary file and tells the compiler
@@ -89,11 +90,11 @@ the unit was aborted."
 
 ;;; SBCL also records where each top-level form begins in the text.
 
-(defvar *kept-place* nil
+(defvar *deferred-location* nil
   "While deferred work is done: a list (form . location) of the form it is about and its location in
 the text.")
 
-(defun place-at (path)
+(defun source-location-at (path)
   "Return the location in the text, as of LOCATION-IN-TEXT, of the form with the source path PATH, a
 list of numbers, the innermost first; NIL if the location is unknown."
   (destructuring-bind (&optional top . numbers) (reverse path)
@@ -104,23 +105,23 @@ list of numbers, the innermost first; NIL if the location is unknown."
       (and top positions (< top (length positions))
            (cons (aref positions top) numbers)))))
 
-(defun compiler-place ()
+(defun compiler-location ()
   "Return the pathname of the file that is being compiled, and the location of the current form, as
 of LOCATION-IN-TEXT, or NIL if unknown. Return NIL if no file is being compiled."
   (let* ((context (and *compile-file-truename* (error-context)))
          (file (and context (internal (:sb-c #:compiler-error-context-file-name) context))))
     (when (pathnamep file)
-      (values file (place-at (internal (:sb-c #:compiler-error-context-original-source-path)
-                                       context))))))
+      (values file (source-location-at
+                    (internal (:sb-c #:compiler-error-context-original-source-path) context))))))
 
-(defun place-in-text (form)
+(defun location-in-text (form)
   "Return the location of FORM in the text that is being compiled or loaded; NIL if unknown. A
 location is a list (position index...): the position after which the top-level form begins, and the
 indices, from 0, of the elements that lead to FORM."
   (cond
-    ((and *kept-place* (eq form (first *kept-place*))) (rest *kept-place*))
+    ((and *deferred-location* (eq form (first *deferred-location*))) (rest *deferred-location*))
     ((edited-file) nil)
-    (t (place-at (nthcdr 2 (place-of form))))))
+    (t (source-location-at (nthcdr 2 (source-location form))))))
 
 ;;; What can be checked only when a whole file, or all files of a system, have been read.
 ;;;
@@ -144,9 +145,9 @@ the form, and the form's location in the text."
 attributes the warnings of FUNCTION to FORM. Outside of compiling and loading, do nothing."
   (when (and *unit* (not (gethash form (unit-tasks *unit*))))
     (setf (gethash form (unit-tasks *unit*))
-          (list function (call-at-place form #'error-context) (place-in-text form)))))
+          (list function (call-at-source-location form #'error-context) (location-in-text form)))))
 
-(defun call-noting-warnings (function)
+(defun call-as-compiler (function)
   "Call FUNCTION and report its warnings as those of the compiler. Return two values: whether there
 were warnings, and whether there were others than style warnings."
   (let ((warned nil) (failed nil))
@@ -164,19 +165,19 @@ were warnings, and whether there were others than style warnings."
     (values warned failed)))
 
 (defun end-unit (unit)
-  "Do the deferred work of UNIT, in order. Return the values of CALL-NOTING-WARNINGS."
+  "Do the deferred work of UNIT, in order. Return the values of CALL-AS-COMPILER."
   (if (plusp (hash-table-count (unit-tasks unit)))
-      (call-noting-warnings
+      (call-as-compiler
        (lambda ()
          (loop for form being the hash-keys of (unit-tasks unit)
-                 using (hash-value (function place in-text))
-               do (let ((*kept-place* (cons form in-text)))
-                    ;; The compiler attributes warnings of FUNCTION to PLACE.
-                    (progv (list (compiler-variable #:*compiler-error-context*)) (list place)
+                 using (hash-value (function location in-text))
+               do (let ((*deferred-location* (cons form in-text)))
+                    ;; The compiler attributes warnings of FUNCTION to LOCATION.
+                    (progv (list (compiler-variable #:*compiler-error-context*)) (list location)
                       (funcall function))))))
       (values nil nil)))
 
-(defun leave-to-outer (unit)
+(defun move-tasks-to-outer (unit)
   (loop for form being the hash-keys of (unit-tasks unit) using (hash-value task)
         do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
 
@@ -188,7 +189,7 @@ new unit."
       (let ((*unit* (make-unit kind (and (not own) *unit*))))
         (multiple-value-prog1 (funcall function)
           (if (and (unit-outer *unit*) (not (unit-files-p *unit*)))
-              (leave-to-outer *unit*)
+              (move-tasks-to-outer *unit*)
               (let ((unit (shiftf *unit* nil))) (end-unit unit)))))))
 
 (defun call-as-unit (function)
@@ -236,13 +237,13 @@ cannot read even its first character; NIL if LOAD is not reading STREAM."
   (and (internal-type-p stream :sb-int #:form-tracking-stream)
        (or (internal (:sb-int #:form-tracking-stream-form-start-char-pos) stream) 0)))
 
-(defun line-of-next (stream)
+(defun line-of-next-character (stream)
   "Return the number of the line of the next character that LOAD will read from STREAM. FORM-START
 must not return NIL for STREAM."
   (car (internal (:sb-int #:line/col-from-charpos) stream)))
 
 ;; A word may end by the newline after it, which has been read by then.
-(defun line-reached (stream)
+(defun line-of-last-character (stream)
   "Return the number of the line of the last character that LOAD has read from STREAM. FORM-START
 must not return NIL for STREAM."
   (destructuring-bind (line . column) (internal (:sb-int #:line/col-from-charpos) stream)

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(*report-addition* *front-end* serve-while-waiting hook-of-front-end ask-how-to-go-on
-          input-of-programs debugger-p foreign-hook debugger-hook global-debugger-hook
-          *editor-gone-p* with-debugger-hook *answerer* calls-under-way disabled-hook-p
+(export '(*report-addition* *front-end* serve-while-waiting hook-of-front-end ask-user-for-restart
+          program-input debugger-available-p foreign-hook debugger-hook global-debugger-hook
+          *editor-gone-p* with-debugger-hook *answering-hook* calls-in-progress disabled-hook-p
           take-foreground yield-foreground))
 
 ;;; A debugger of Lisp or an editor writes a report as PRINC does.
@@ -38,12 +38,12 @@ this function repeatedly.")
 disconnected; or NIL.")
   (:method (front-end) (declare (ignore front-end))))
 
-(defgeneric ask-how-to-go-on (front-end condition)
+(defgeneric ask-user-for-restart (front-end condition)
   (:documentation "Let the user choose a restart for CONDITION, because the debugger of an editor
 has disconnected. Return only if FRONT-END cannot ask the user.")
   (:method (front-end condition) (declare (ignore front-end condition))))
 
-(defgeneric input-of-programs (front-end stream)
+(defgeneric program-input (front-end stream)
   (:documentation "Return the stream that users' code reads in place of STREAM, in a thread of a
 run.")
   (:method (front-end stream) (declare (ignore front-end)) stream))
@@ -51,7 +51,7 @@ run.")
 ;;;; Debuggers
 
 ;; One of our own hooks, perhaps around others of ours, does not show that a person is present.
-(defvar *answerer* nil
+(defvar *answering-hook* nil
   "The pair (hook . foreign-hook) of the debugger hook that CALL-ANSWERING-DEBUGGER has set last,
 and the hook of another program that was set before; or NIL.")
 
@@ -60,21 +60,21 @@ and the hook of another program that was set before; or NIL.")
   "A function that returns true if the global debugger hook belongs to the server of an editor that
 has disconnected.")
 
-(defun stale-p (hook)
+(defun disconnected-hook-p (hook)
   "True if HOOK is not the simulator's, and belongs to an editor that has disconnected."
   (and (functionp hook)
-       (not (eq hook (first *answerer*)))
+       (not (eq hook (first *answering-hook*)))
        (funcall *editor-gone-p*)))
 
 (defun foreign-hook ()
   "Return the debugger hook. If the simulator has set it, return the hook of another program that
 was set before."
   (let ((hook (debugger-hook)))
-    (if (and hook (eq hook (first *answerer*)))
-        (rest *answerer*)
+    (if (and hook (eq hook (first *answering-hook*)))
+        (rest *answering-hook*)
         hook)))
 
-(defun debugger-p (&optional (hook (foreign-hook)))
+(defun debugger-available-p (&optional (hook (foreign-hook)))
   "True if an interactive debugger is available: there is a terminal, or a program such as an editor
 has set HOOK or *DEBUGGER-HOOK*."
   (cond ((and *debugger-hook* (not (funcall *editor-gone-p*))) t)
@@ -86,7 +86,7 @@ has set HOOK or *DEBUGGER-HOOK*."
 itself, in threads that do not bind another; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK
 means that there is no debugger."
   (let ((hook sb-ext:*invoke-debugger-hook*))
-    (if (stale-p hook) (hook-of-front-end *front-end*) hook)))
+    (if (disconnected-hook-p hook) (hook-of-front-end *front-end*) hook)))
 
 (defun (setf debugger-hook) (function)
   (setf sb-ext:*invoke-debugger-hook* function))
@@ -105,7 +105,7 @@ debugger hook, unless the hook uses this macro."
 
 ;;; The call stack, and the terminal that threads share with the debugger.
 
-(defun calls-under-way (&optional (limit 100))
+(defun calls-in-progress (&optional (limit 100))
   "Return a list of at most LIMIT calls in progress, the newest first. A call is a list (function
 argument...), as far as the compiler has kept the arguments."
   (internal (:sb-debug #:list-backtrace) :count limit))

@@ -4,8 +4,8 @@
 
 (export '(function-arguments form-behind-comma bound-in-walk-p variable-kind local-variable-p
           known-variable-p special-variable-p local-function-p known-function-p macro-expander
-          lisps-own-p extended-environment evaluate-form walk-form expand-in-walk users-symbol-p
-          variable-name-p variable-forms variable-name-trouble undefined-name still-undefined-p
+          lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk users-symbol-p
+          variable-name-p defvar-forms variable-name-trouble undefined-name still-undefined-p
           lock-violation locked-symbol copy-nicknames))
 
 (defun function-arguments (name)
@@ -76,7 +76,7 @@ and so on, or NIL if it is not known."
   (destructuring-bind (name lambda-list &rest body) definition
     (sb-cltl2:enclose (sb-cltl2:parse-macro name lambda-list body environment) environment)))
 
-(defun lisps-own-p (name)
+(defun lisp-symbol-p (name)
   "True if the symbol NAME belongs to Common Lisp or to SBCL."
   (let ((package (symbol-package name)))
     (and package
@@ -110,7 +110,7 @@ expansion)."
 
 (defun users-macro-p (form environment)
   (and (symbolp (first form))
-       (not (lisps-own-p (first form)))
+       (not (lisp-symbol-p (first form)))
        (macro-function (first form) environment)))
 
 (defun walk-form (form environment visit)
@@ -125,12 +125,12 @@ second value. A replacement gets the source location of the form that it replace
                (setf entered form)
                (expanded form form environment))
              (expanded (new form environment)
-               (values (keep-place (walk new environment) form) t))
+               (values (copy-source-location (walk new environment) form) t))
              (replacement (form context environment)
                (cond ((not (eq context :eval)) form)
                      ((and (consp form) (eq form (shiftf entered nil))) form)
                      (t (multiple-value-bind (new done) (funcall visit form environment)
-                          (keep-place new form)
+                          (copy-source-location new form)
                           (cond (done (values new t))
                                 ((atom new) new)
                                 ((not (eq new form)) (expanded new form environment))
@@ -165,7 +165,7 @@ such as those of Common Lisp and of the simulator, cannot."
        (symbol-package name)
        (null (variable-name-trouble name))))
 
-(defun variable-forms (name)
+(defun defvar-forms (name)
   "Return the forms, or NIL, that declare NAME a special variable."
   (when (variable-name-p name) `((defvar ,name))))
 

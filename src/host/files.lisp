@@ -2,14 +2,14 @@
 
 (in-package :ars-magna.host)
 
-(export '(base-directory native-name native-path native-path-of-directory path-called
-          existing-path missing-directory many-files-p replace-file plain-file-p
-          check-unprotected dangling-link-p name-in-directory file-size unusable-file-text
-          shown-name +illegible+ encoded decoded truncate-file call-with-file-lock make-directories
-          make-new-directory process-number copy-permissions temporary-file-prefix
-          remove-abandoned-files *many-files-text* check-name-legible environment-value
-          real-microseconds date-and-time run-command run-attached run-filter octet-input
-          text-output descriptor-stream input-within-p rows-and-columns char-width))
+(export '(base-directory native-name native-path native-path-of-directory path-of-name
+          existing-path missing-directory wildcard-name-p replace-file regular-file-p
+          check-writable dangling-link-p name-in-directory file-size unusable-file-text
+          file-name-text +illegible+ utf-8-encoded utf-8-decoded truncate-file call-with-file-lock
+          make-directories make-new-directory process-id copy-permissions temporary-file-prefix
+          remove-abandoned-files *wildcard-text* check-name-decodable environment-value
+          real-microseconds date-and-time run-command run-attached run-filter octet-input-stream
+          text-output-stream descriptor-stream wait-for-input window-rows-and-columns char-width))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defconstant +illegible+ (code-char #xFFFD)
@@ -30,7 +30,7 @@
   "Return the pathname of NAME, the operating system's name of a directory."
   (sb-ext:parse-native-namestring name nil *default-pathname-defaults* :as-directory t))
 
-(defun path-called (name &key directory)
+(defun path-of-name (name &key directory)
   "Return the pathname of NAME, a string or pathname, as a file, or as a directory if DIRECTORY is
 true. ~ and ~/ are the home directory."
   (flet ((path (name) (if directory (native-path-of-directory name) (native-path name))))
@@ -51,15 +51,15 @@ true. ~ and ~/ are the home directory."
   "Return the name of PATH for system calls. A relative PATH starts in the BASE-DIRECTORY."
   (native-name (merge-pathnames path (base-directory))))
 
-(defun many-files-p (name)
+(defun wildcard-name-p (name)
   "True if NAME, a pathname or string, has wildcards, or an unclosed bracket ([)."
   (handler-case (wild-pathname-p name)
     (error () t)))
 
-(defun shown-name (file)
+(defun file-name-text (file)
   "Return FILE, a pathname or string, as a native name for messages. Show an empty name as two
 quotes."
-  (let ((name (if (and (pathnamep file) (not (many-files-p file))) (native-name file) file)))
+  (let ((name (if (and (pathnamep file) (not (wildcard-name-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
 (defun name-in-directory (path)
@@ -79,7 +79,7 @@ quotes."
   "If the directory of PATH, a pathname or string, does not exist, return the name of the directory;
 else NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
-    (unless (or (many-files-p directory) (uiop:directory-exists-p directory))
+    (unless (or (wildcard-name-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))
 
 (defun replace-file (file by)
@@ -94,14 +94,14 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
     (when status
       (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
-(defun plain-file-p (path)
+(defun regular-file-p (path)
   "True if PATH is a regular file: no directory, device or pipe. Signals an error if PATH does not
 exist."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
-(defun check-unprotected (path)
+(defun check-writable (path)
   "Signal an error if the file PATH, a pathname, exists and is write-protected, or this process may
 not write it."
   (let ((name (system-name path)))
@@ -117,20 +117,20 @@ not write it."
     (and (ignore-errors (sb-posix:lstat name))
          (not (ignore-errors (sb-posix:stat name))))))
 
-(defparameter *many-files-text*
+(defparameter *wildcard-text*
   "its name has wildcards; in a Lisp string, write \\\\ before each * ? and ["
   "The reason why a name with wildcards cannot be used.")
 
 (defun unusable-file-text (path)
   "Return a text that says why PATH, a pathname or string, cannot be used as a regular file, or
 NIL."
-  (cond ((many-files-p path) *many-files-text*)
+  (cond ((wildcard-name-p path) *wildcard-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
         ((not (ignore-errors (sb-posix:stat (system-name path))))
-         "it does not exist, or cannot be accessed")
-        ((not (plain-file-p path)) "it is a directory or a device")))
+         "there is no such file, or it cannot be accessed")
+        ((not (regular-file-p path)) "it is a directory or a device")))
 
-(defun check-name-legible (path)
+(defun check-name-decodable (path)
   "Signal an error if the name PATH has bytes that are not valid text. (Different names of that sort
 look the same.)"
   (when (find +illegible+ (native-name path))
@@ -138,11 +138,11 @@ look the same.)"
 
 ;;; Text of arbitrary octets. (SBCL's UTF-8 streams loop at some invalid ones.)
 
-(defun encoded (text)
+(defun utf-8-encoded (text)
   "Return TEXT in UTF-8, each octet as a Latin 1 character."
   (map 'string #'code-char (sb-ext:string-to-octets text :external-format :utf-8)))
 
-(defun decoded (octets)
+(defun utf-8-decoded (octets)
   "Return the UTF-8 text of OCTETS, a string of Latin 1 characters, with +ILLEGIBLE+ for each
 invalid octet."
   (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
@@ -187,7 +187,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
            (values t (funcall function)))
       (sb-posix:close descriptor))))
 
-(defun process-number ()
+(defun process-id ()
   "Return the ID of this process."
   (sb-posix:getpid))
 
@@ -205,7 +205,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
 
 (defun temporary-file-prefix ()
   "Return the prefix of the names of temporary files of this process."
-  (format nil "~A~D-" (host-file-prefix) (process-number)))
+  (format nil "~A~D-" (host-file-prefix) (process-id)))
 
 (defun abandoned-file-p (file)
   (let ((name (file-namestring file)) (prefix (host-file-prefix)))
@@ -250,7 +250,7 @@ it cannot be run. If OUTPUT is :STRING, return the output as a string, as a seco
         (values status text))
     (error () nil)))
 
-(defparameter *tied-start*
+(defparameter *tied-start-code*
   "setpriv --pdeathsig TERM true 2>/dev/null && exec setpriv --pdeathsig TERM \"$@\"; exec \"$@\""
   "Shell code that runs a program. On systems with the command setpriv, the program is terminated
 when this process ends for any reason.")
@@ -261,7 +261,7 @@ keywords of UIOP:LAUNCH-PROGRAM. PROGRAM is terminated on a non-local exit, or w
 ends. Return the exit status of the shell, or NIL if it cannot be run; with :ERROR-OUTPUT :STREAM
 also the error output, a string."
   (let ((process (handler-case (apply #'uiop:launch-program
-                                      (list* "sh" "-c" *tied-start* "sh" program arguments)
+                                      (list* "sh" "-c" *tied-start-code* "sh" program arguments)
                                       streams)
                    (error () (return-from run-tied nil))))
         (errors (eq :stream (getf streams :error-output)))
@@ -299,17 +299,17 @@ output as a string."
   "A stream on a file, pipe or terminal of this process."
   (internal-name :sb-sys '#:fd-stream))
 
-(defun octet-input (descriptor)
+(defun octet-input-stream (descriptor)
   "Return an input stream on the file DESCRIPTOR, with one character for each octet."
   (internal (:sb-sys #:make-fd-stream) descriptor :input t :buffering :full
                                                   :external-format :latin-1))
 
-(defun text-output (descriptor)
+(defun text-output-stream (descriptor)
   "Return a UTF-8 output stream on the file DESCRIPTOR."
   (internal (:sb-sys #:make-fd-stream) descriptor :output t :buffering :full
                                                   :external-format '(:utf-8 :replacement #\?)))
 
-(defun input-within-p (stream seconds)
+(defun wait-for-input (stream seconds)
   "Wait at most SECONDS until STREAM, a stream on a file descriptor, has input or is at its end.
 Return true if so."
   (or (listen stream)
@@ -318,10 +318,10 @@ Return true if so."
 
 ;;;; The terminal
 
-(defconstant +ask-for-size+ (if (uiop:featurep :linux) #x5413 #x40087468)
+(defconstant +window-size-request+ (if (uiop:featurep :linux) #x5413 #x40087468)
   "The system's request number for the size of a terminal window.")
 
-(defun rows-and-columns ()
+(defun window-rows-and-columns ()
   "Return the numbers of rows and columns of the terminal window; zeros if unknown."
   (sb-alien:with-alien ((size (array sb-alien:unsigned-short 4)))
     (setf (sb-alien:deref size 0) 0
@@ -329,7 +329,7 @@ Return true if so."
     (sb-alien:alien-funcall
      (sb-alien:extern-alien "ioctl" (function sb-alien:int sb-alien:int sb-alien:unsigned-long
                                               (* (array sb-alien:unsigned-short 4))))
-     1 +ask-for-size+ (sb-alien:addr size))
+     1 +window-size-request+ (sb-alien:addr size))
     (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
 
 (defun char-width (char)

@@ -3,11 +3,11 @@
 (in-package :ars-magna.host)
 
 (export '(deferring-interrupts allowing-interrupts with-interruptible-wait
-          interrupts-deferred-p protecting-strictly
+          interrupts-deferred-p unwind-protect-strictly
           call-holding-interrupts call-open-to-interrupts waiting-at-most deadline-passed
           in-any-case call-interruptible call-each time-limit let-callers-handle call-with-limit
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
-          die-of-interrupts die-of-termination))
+          end-on-interrupt end-on-termination))
 
 ;;; A thread is interrupted by a time limit, Ctrl-C, another thread, or a request to end. An
 ;;; interrupt may exit from the code that it hits. It is deferred where that would leave a lock held
@@ -18,7 +18,7 @@
 ;;; allows interrupts. So interrupts are deferred strictly. To allow them, code calls a function
 ;;; that was made outside.
 
-(defvar *holding* nil
+(defvar *interrupt-deferral* nil
   "How this thread defers interrupts: NIL, not at all; :STRICTLY, everywhere; or a function
 (function waiting-p) that calls its first argument with interrupts allowed, if WAITING-P is true
 only while SBCL waits.")
@@ -26,10 +26,10 @@ only while SBCL waits.")
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()
   "True if this thread defers interrupts now."
-  (and *holding* t))
+  (and *interrupt-deferral* t))
 
 (defun call-deferring-interrupts (function)
-  (if *holding*
+  (if *interrupt-deferral*
       (funcall function)
       (internal (:sb-sys #:without-interrupts)
         (flet ((let-in (function waiting-p)
@@ -37,19 +37,19 @@ only while SBCL waits.")
                      (internal (:sb-sys #:allow-with-interrupts) (funcall function))
                      (internal (:sb-sys #:with-local-interrupts) (funcall function)))))
           (declare (dynamic-extent #'let-in))
-          (let ((*holding* #'let-in))
+          (let ((*interrupt-deferral* #'let-in))
             (funcall function))))))
 
 (defun call-allowing-interrupts (function)
   "Call FUNCTION with interrupts allowed, unless they are strictly deferred."
-  (let ((holding *holding*))
+  (let ((holding *interrupt-deferral*))
     (etypecase holding
       (null (internal (:sb-sys #:with-interrupts) (funcall function)))
-      (function (let ((*holding* nil)) (funcall holding function nil)))
+      (function (let ((*interrupt-deferral* nil)) (funcall holding function nil)))
       ((eql :strictly) (funcall function)))))
 
 (defun call-with-interruptible-wait (function)
-  (let ((holding *holding*))
+  (let ((holding *interrupt-deferral*))
     (if (functionp holding)
         (funcall holding function t)
         (funcall function))))
@@ -68,7 +68,7 @@ WITH-INTERRUPTIBLE-WAIT."
   (form-calling 'call-with-interruptible-wait body))
 
 ;; SBCL allows interrupts at the end of a protected form. That could skip what is to follow.
-(defmacro protecting-strictly (form &body cleanup)
+(defmacro unwind-protect-strictly (form &body cleanup)
   "Evaluate FORM and then CLEANUP, as UNWIND-PROTECT does. No interrupt can occur between FORM and
 CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outside."
   `(internal (:sb-sys #:without-interrupts)
@@ -83,12 +83,12 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 (defun call-holding-interrupts (function)
   "Call FUNCTION with interrupts deferred, except within CALL-OPEN-TO-INTERRUPTS."
   (internal (:sb-sys #:without-interrupts)
-    (let* ((holding *holding*)
+    (let* ((holding *interrupt-deferral*)
            (*open-to-interrupts* (lambda (function)
-                                   (let ((*holding* holding))
+                                   (let ((*interrupt-deferral* holding))
                                      (internal (:sb-sys #:with-local-interrupts)
                                        (funcall function)))))
-           (*holding* :strictly))
+           (*interrupt-deferral* :strictly))
       (funcall function))))
 
 (defun call-open-to-interrupts (function)
@@ -126,7 +126,7 @@ thread at its deadline."
         (unwind-protect (call-interruptible open-p first)
           (call-rest others))))))
 
-;; PROTECTING-STRICTLY is for little work that is done often; it allows no interrupts.
+;; UNWIND-PROTECT-STRICTLY is for little work that is done often; it allows no interrupts.
 (defmacro in-any-case (&body forms)
   "Evaluate FORMS in order. After a non-local exit such as THROW from a form, still evaluate the
 others. Interrupts are deferred until the end, except during waits and in users' code. Return the
@@ -206,11 +206,11 @@ thread. GIVE-UP may make a non-local exit."
 ;;; In some states Lisp can no longer handle a signal, so the system itself ends the process. (It
 ;;; also does when the terminal closes, unless NOHUP is in effect.)
 
-(defun die-of-interrupts ()
+(defun end-on-interrupt ()
   "Make Ctrl-C end this process at once, for example while its memory is being saved."
   (handle-signal sb-posix:sigint :default))
 
-(defun die-of-termination ()
+(defun end-on-termination ()
   "Make SIGTERM and Ctrl-\\ end this process at once."
   (handle-signal sb-posix:sigterm :default)
   (handle-signal sb-posix:sigquit :default))

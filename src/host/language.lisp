@@ -3,9 +3,10 @@
 (in-package :ars-magna.host)
 
 (export '(*hot* compiler-note declaim-final assume-type form-calling global-value define-global
-          weak-table-p make-similar-table make-weak weak-value define-event attend tell-listeners
-          finite-p positive-infinity-p double-to-bits bits-to-double finite-double-p cell-index
-          tick-count double random-words words-of-state fill-words wrap-renewal))
+          weak-table-p make-similar-table make-weak weak-value define-event add-listener
+          call-listeners finite-p positive-infinity-p double-to-bits bits-to-double
+          finite-double-p cell-index tick-count double random-words random-state-words
+          fill-random-words wrap-random-renewal))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
@@ -83,12 +84,12 @@ collected."
 arguments listeners are called."
   `(defvar ,name '() ,documentation))
 
-(defmacro attend (event listener)
+(defmacro add-listener (event listener)
   "Add the function named LISTENER to EVENT. It will be called before the listeners that were added
 earlier."
   `(pushnew ',listener ,event))
 
-(defun tell-listeners (listeners &rest arguments)
+(defun call-listeners (listeners &rest arguments)
   "Call each function in LISTENERS, the value of an event variable, with ARGUMENTS."
   (dolist (listener listeners)
     (apply listener arguments)))
@@ -168,16 +169,16 @@ infinities, NaNs, and integers and ratios that are too large."
   "The type of the words of a random state."
   '(simple-array (unsigned-byte 32) (627)))
 
-(declaim (inline words-of-state fill-words))
-(defun words-of-state (state)
+(declaim (inline random-state-words fill-random-words))
+(defun random-state-words (state)
   "Return the words of the random state STATE itself, not a copy."
   (the random-words (internal (:sb-kernel #:random-state-state) state)))
 
-(defun fill-words (seed words)
+(defun fill-random-words (seed words)
   "Fill WORDS, the words of a random state, from SEED, an integer of 32 bits."
   (internal (:sb-kernel #:init-random-state) seed words))
 
-(defun wrap-renewal (wrapper)
+(defun wrap-random-renewal (wrapper)
   "When SBCL renews the used-up words of a random state, call WRAPPER with SBCL's function and the
 words."
   (wrap-function (internal-name :sb-kernel '#:random-mt19937-update) wrapper))

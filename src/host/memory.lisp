@@ -2,13 +2,14 @@
 
 (in-package :ars-magna.host)
 
-(export '(heap-bytes make-room room-p dynamic-usage collections regain-room stack-full-p))
+(export '(heap-bytes collect-garbage-early heap-room-p dynamic-usage collections recover-memory
+          stack-full-p))
 
 (defun dynamic-usage ()
   "Return the number of bytes on the heap that are in use, including garbage."
   (internal (:sb-kernel #:dynamic-usage)))
 
-(defun octets-before-garbage ()
+(defun octets-before-collection ()
   "Return the number of bytes that can be allocated before SBCL's next garbage collection; a large
 number if that is unknown."
   (let ((trigger (ignore-errors
@@ -30,14 +31,14 @@ number if that is unknown."
   (sb-ext:dynamic-space-size))
 
 ;; The stack is scrubbed, because its old values would keep objects alive.
-(defun make-room (octets)
+(defun collect-garbage-early (octets)
   "Collect garbage now, if otherwise a garbage collection would occur while new objects of OCTETS
 are allocated. A later collection would have to copy the new objects."
-  (when (< (octets-before-garbage) octets (sb-ext:bytes-consed-between-gcs))
+  (when (< (octets-before-collection) octets (sb-ext:bytes-consed-between-gcs))
     (scrub-stack)
     (sb-ext:gc)))
 
-(defun room-p (octets)
+(defun heap-room-p (octets)
   "True if new objects of OCTETS fit on the heap. Collects garbage first if OCTETS is large."
   (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
     (or (< octets (/ (heap-bytes) 100))
@@ -65,7 +66,7 @@ are allocated. A later collection would have to copy the new objects."
   "True if CONDITION, a STORAGE-CONDITION, is a stack overflow."
   (search "STACK" (string (type-of condition))))
 
-(defun regain-room (condition)
+(defun recover-memory (condition)
   "After a non-local exit because of CONDITION, a full stack or a full heap, restore the guard pages
 of the stack or collect garbage."
   (when (typep condition 'storage-condition)

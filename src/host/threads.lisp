@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.host)
 
-(export '(atomic-count swap-if memory-barrier make-lock with-lock call-if-free make-semaphore
-          wait-on-semaphore wait-a-while wait-patiently call-when-free *leaving-p*
-          call-when-leaving start-thread own-thread-p join-thread interrupt-thread current-thread
-          users-thread-p yield-thread spread-specials call-telling-names bound-elsewhere-text
-          run-elsewhere-text))
+(export '(atomic-count swap-if-eq memory-barrier make-lock with-lock call-if-free make-semaphore
+          wait-on-semaphore wait-and-serve wait-while-serving call-when-free *exiting-p*
+          call-at-exit start-thread own-thread-p join-thread interrupt-thread current-thread
+          users-thread-p yield-thread function-with-specials call-recording-names
+          other-thread-robot-text other-thread-run-text))
 
 ;;; A PLACE here is a structure's slot, by its accessor, the CAR or CDR of a cons, or a symbol's
 ;;; value.
@@ -15,7 +15,7 @@
   "The type of structure slots that ATOMIC-INCF and ATOMIC-DECF can change."
   'sb-ext:word)
 
-(defmacro swap-if (place old new)
+(defmacro swap-if-eq (place old new)
   "Atomically set PLACE to NEW if the value of PLACE is EQ to OLD. Return true if PLACE was set."
   (with-gensyms (before)
     `(let ((,before ,old))
@@ -59,18 +59,18 @@ decremented."
         (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
         (bordeaux-threads:wait-on-semaphore semaphore))))
 
-(defun wait-a-while (semaphore seconds)
+(defun wait-and-serve (semaphore seconds)
   "Wait on SEMAPHORE for at most SECONDS, but first serve the front end and other threads that need
 the terminal. Return true if SEMAPHORE was decremented. Call this function in a loop."
   (yield-foreground)
   (serve-while-waiting *front-end*)
   (wait-on-semaphore semaphore seconds))
 
-(defun wait-patiently (semaphore seconds)
+(defun wait-while-serving (semaphore seconds)
   "Wait on SEMAPHORE for SECONDS in all, by short waits between which this thread serves others. The
 time for serving others does not count. Return true if SEMAPHORE was decremented."
   (loop for left = seconds then (- left 0.2)
-        thereis (wait-a-while semaphore (min left 0.2))
+        thereis (wait-and-serve semaphore (min left 0.2))
         while (< 0.2 left)))
 
 (defun call-when-free (lock function)
@@ -99,22 +99,22 @@ initial thread of Lisp."
                                 :name name))
 
 ;; SBCL ends all threads when it exits.
-(defvar *leaving-p* nil "True while this Lisp exits.")
+(defvar *exiting-p* nil "True while this Lisp exits.")
 
-(defun note-leaving ()
-  (setf *leaving-p* t))
+(defun note-exiting ()
+  (setf *exiting-p* t))
 
-(defun call-when-leaving (name)
+(defun call-at-exit (name)
   "Register the function NAME to be called when this Lisp exits, before its threads end."
   (pushnew name sb-ext:*exit-hooks*))
 
-(call-when-leaving 'note-leaving)
+(call-at-exit 'note-exiting)
 
 ;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
 (defun report-unit-end (function left-p)
   "Call FUNCTION to report that a compilation unit has ended; if LEFT-P is true, it was aborted.
 Report nothing if the unit was aborted because this Lisp exits."
-  (unless (and left-p *leaving-p* (own-thread-p))
+  (unless (and left-p *exiting-p* (own-thread-p))
     (funcall function left-p)))
 
 (wrap-unit-summaries #'report-unit-end)
@@ -141,7 +141,7 @@ nothing."
   "Let other threads run for a moment."
   (bordeaux-threads:thread-yield))
 
-(defun spread-specials (function &rest symbols)
+(defun function-with-specials (function &rest symbols)
   "Return a function that calls FUNCTION with the current values of the variables SYMBOLS. New
 threads start with global values; such a function gives them the values bound in this thread."
   (let ((values (mapcar #'symbol-value symbols)))
@@ -158,20 +158,21 @@ threads start with global values; such a function gives them the values bound in
   "A list of one element, which has a list (thread number name...) for each WITH-SIMULATION in
 progress.")
 
-(defvar *bindings-made* (list 0) "A list of one integer: how many times CALL-TELLING-NAMES has bound
+(defvar *binding-count* (list 0)
+  "A list of one integer: how many times CALL-RECORDING-NAMES has bound
 names.")
 
-(defun call-telling-names (names function)
+(defun call-recording-names (names function)
   "Call FUNCTION, in which this thread has bound NAMES to robots, and record the bindings for
 messages in other threads. Return the values of FUNCTION."
-  (let ((entry (list* (current-thread) (incf (car *bindings-made*)) names)))
+  (let ((entry (list* (current-thread) (incf (car *binding-count*)) names)))
     (in-any-case
       (progn (atomic-push entry (car *bound-names*))
              (funcall function))
       (loop for entries = (car *bound-names*)
-            until (swap-if (car *bound-names*) entries (remove entry entries :test #'eq))))))
+            until (swap-if-eq (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
-(defun run-elsewhere-text ()
+(defun other-thread-run-text ()
   "Return a text that says how code in this thread can use the run of another thread; NIL if no
 thread has bound a run."
   (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
@@ -181,7 +182,7 @@ thread has bound a run."
                       (current-simulation))) (make-thread (lambda () ... simulation)))."
                  (cddr entry) (thread-name (first entry))))))
 
-(defun bound-elsewhere-text (name)
+(defun other-thread-robot-text (name)
   "Return a text that says how code in this thread can use the robot that another thread has bound
 NAME to, and the number of that binding. Return NIL if no other thread has bound NAME, or this
 thread has."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(untried-host-text wrap-function unwrap-function wrapped-p))
+(export '(untested-version-text wrap-function unwrap-function wrapped-p))
 
 ;;; Internal names of SBCL change. INTERNAL looks a name up when a file of this folder is compiled,
 ;;; among all names that it has had, and fails with a clear error. No file names such a symbol
@@ -53,7 +53,7 @@ compiled."
              (string-right-trim "." (subseq version 0 end)))))
     (uiop:version< (numbers other) (numbers version))))
 
-(defun untried-host-text (&optional (version (lisp-implementation-version)))
+(defun untested-version-text (&optional (version (lisp-implementation-version)))
   "Return a warning if the VERSION of SBCL is later or earlier than all tested versions; else NIL."
   (flet ((sentence (than)
            (format nil "SBCL ~A is ~A than the versions ARS MAGNA was tested with, ~A to ~A."
@@ -61,7 +61,7 @@ compiled."
     (cond ((later-version-p version (first (last *tried-versions*))) (sentence "newer"))
           ((later-version-p (first *tried-versions*) version) (sentence "older")))))
 
-(format *error-output* "~@[~&ars-magna: ~A~%~]" (untried-host-text))
+(format *error-output* "~@[~&ars-magna: ~A~%~]" (untested-version-text))
 
 ;;;; Functions of SBCL or a library, wrapped by ours
 

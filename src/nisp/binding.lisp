@@ -28,17 +28,17 @@ LAMBDA-LIST."
                             (format nil "parameters before the body: (continuation (err &rest ~
                                          results) ~S)" shown)))
             ((and (null body) (symbolp (first lambda-list)) (fboundp (first lambda-list)))
-             (doubt-definition "continuation: ~S is taken for the list of parameters, and the body ~
-                                is empty. Write (continuation (err &rest results) ~:*~S)."
-                               shown))))))
+             (warn-of-style "continuation: ~S is taken for the list of parameters, and the body ~
+                             is empty. Write (continuation (err &rest results) ~:*~S)."
+                            shown))))))
 
-(defun doubt-codes (variable body)
+(defun warn-of-error-codes (variable body)
   "Warn if BODY, the body of a CONTINUATION, compares the first parameter, VARIABLE, with a keyword
 that is no error code."
   (map-comparisons (lambda (subject word form)
                      (declare (ignore form))
-                     (cl:let ((doubt (and (eq subject variable) (code-doubt word))))
-                       (when doubt (doubt-definition "continuation: ~A" doubt))))
+                     (cl:let ((doubt (and (eq subject variable) (wrong-error-code-text word))))
+                       (when doubt (warn-of-style "continuation: ~A" doubt))))
                    body))
 
 (public continuation)
@@ -48,7 +48,7 @@ The form is like LAMBDA, but types may follow the parameters, and unused paramet
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)
-    (doubt-codes (first lambda-list) body)
+    (warn-of-error-codes (first lambda-list) body)
     `#'(lambda ,lambda-list
          (declare (ignorable ,@(lambda-list-variables lambda-list)))
          ,@body)))

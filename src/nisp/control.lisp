@@ -8,8 +8,8 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun doubt-test (operator test)
-    (cl:let ((doubt (test-doubt test)))
-      (when doubt (doubt-definition "~(~A~): ~A" operator doubt)))))
+    (cl:let ((doubt (doubtful-test-text test)))
+      (when doubt (warn-of-style "~(~A~): ~A" operator doubt)))))
 
 (public if)
 (defmacro if (test then &rest else)
@@ -118,18 +118,18 @@ export."
 (defun lambda-keyword-p (form)
   (member form lambda-list-keywords))
 
-(defun type-like (type)
+(defun similar-type (type)
   "Return the name of a known type of which TYPE, an unknown type, may be a misspelling; or NIL."
   (and type
        (symbolp type)
        (not (find-nisp-type type))
        (not (find-class type nil))
-       (find-if (lambda (name) (resembles-p type name)) (known-types))))
+       (find-if (lambda (name) (misspelling-p type name)) (known-types))))
 
-(defun doubt-type (operator type)
-  (when (type-like type)
-    (doubt-definition "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
-                      operator type (type-like type))))
+(defun warn-of-type (operator type)
+  (when (similar-type type)
+    (warn-of-style "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
+                   operator type (similar-type type))))
 
 (defun without-types (operator list what)
   "Return LIST without hyphens and types. The text WHAT describes the elements; error messages name
@@ -142,7 +142,7 @@ OPERATOR."
         if (hyphen-p element)
           do (when (or typed (atom tail) (hyphen-p (first tail)))
                (reject-clause operator list "each hyphen between a variable and its type"))
-             (doubt-type operator (pop tail))
+             (warn-of-type operator (pop tail))
              (setf typed t)
         else
           do (setf typed (lambda-keyword-p element))

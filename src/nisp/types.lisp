@@ -57,7 +57,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
                    (sort (loop for type being the hash-values of *nisp-types*
                                when (nisp-type-maker type) collect (nisp-type-name type))
                          #'string<)))
-    (unless (takes-count-p (nisp-type-parameters known) (length arguments))
+    (unless (accepts-count-p (nisp-type-parameters known) (length arguments))
       (reject-use "(make ~A~{ ~S~}): a ~A is made by (make ~A~{ ~(~A~)~})."
                   type arguments (nisp-type-name known)
                   (nisp-type-name known) (nisp-type-parameters known)))
@@ -106,18 +106,18 @@ has the accessor's name."))
         when (and type (eq (nisp-type-class type) (class-name class)))
           append (nisp-type-slots type)))
 
-(defun own-slots (object)
+(defun users-slot-names (object)
   "If the class of OBJECT is a user's, return a list of the names, symbols, of its slots; else NIL."
   (let ((class (class-of object)))
     (when (and (typep class '(or structure-class standard-class))
                (users-symbol-p (class-name class))
-               (not (our-own-p (class-name class))))
+               (not (simulator-symbol-p (class-name class))))
       (class-slot-names class))))
 
 (defun slot-names (object)
   "Return a list of the names, strings, of the slots of OBJECT that programs can use."
   (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
-                                   (mapcar #'symbol-name (own-slots object)))
+                                   (mapcar #'symbol-name (users-slot-names object)))
                            :test #'string=)
         #'string<))
 
@@ -135,7 +135,7 @@ has the accessor's name."))
          (name (generic-name accessor))
          (setter (consp name))
          (slot (subseq (symbol-name (if setter (second name) name)) 2))
-         (own (find slot (own-slots object) :test #'string=)))
+         (own (find slot (users-slot-names object) :test #'string=)))
     (cond ((null own) (reject-slot object slot setter))
           (setter (setf (slot-value object own) (first arguments)))
           (t (slot-value object own)))))

@@ -33,13 +33,13 @@ INITARG. PARSE-CAMERA is such a function for cameras."
   (let ((map (or (find-map environment nil)
                  (funcall reject environment (map-choices-text environment)))))
     (destructuring-bind (x y) position
-      (unless (and (within-reason-p x) (within-reason-p y))
+      (unless (and (sane-number-p x) (sane-number-p y))
         (funcall reject position "a position (x y), two numbers from -1e9 to 1e9"))
       (let ((trouble (start-problem-text map x y)))
         (when trouble
           (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
                                            (map-name map) trouble))))
-      (unless (within-reason-p angle)
+      (unless (sane-number-p angle)
         (funcall reject angle (argument-type-text 'angle)))
       map)))
 
@@ -228,4 +228,4 @@ evaluated. An earlier robot named NAME takes no more commands. Signals MALFORMED
                        (lambda ()
                          (check-robot-form definition name start options)
                          (values (robot-forms definition name start options environment)
-                                 (variable-forms name))))))
+                                 (defvar-forms name))))))

@@ -133,7 +133,7 @@ robot's bin."
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
     (mapc #'enforce-robot-containment (world-robots (thing-world thing)))))
 
-(note-lasting 'watch-container)
+(note-savable-function 'watch-container)
 
 (defun enforce-containment (world)
   "Enforce the rules of containment in WORLD: pull robots' parts out of things that are out of

@@ -54,8 +54,8 @@ ERRORP is NIL."
   "Return a text that says why a robot cannot start at (X,Y) in MAP, or NIL if a robot can."
   (cond ((not (map-index map x y))
          (format nil "~A is outside the map, which is ~D by ~D metres"
-                 (point-in-text x y) (map-width map) (map-height map)))
-        ((wall-at-p map x y) (format nil "~A is inside a wall" (point-in-text x y)))))
+                 (point-text x y) (map-width map) (map-height map)))
+        ((wall-at-p map x y) (format nil "~A is inside a wall" (point-text x y)))))
 
 (defun check-start (blueprint map)
   (let ((trouble (start-problem-text map (blueprint-x blueprint) (blueprint-y blueprint))))
@@ -103,10 +103,10 @@ outside the map (reading 215)."
   (let* ((robot (if (robot-p resource) resource (part-robot resource)))
          (newest (and (robot-retired robot) (find-robot (robot-name robot) nil))))
     (when (robot-retired robot)
-      (reject-outlived "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that the ~
-                        variable ~(~A~) holds now.~]"
-                       operator (robot-name robot) (robot-retired robot)
-                       (and newest (null (robot-retired newest)) (robot-name robot))))))
+      (reject-finished-run "~(~A~): the run of this ~(~A~) is over: ~A.~@[ Command the robot that ~
+                            the variable ~(~A~) holds now.~]"
+                           operator (robot-name robot) (robot-retired robot)
+                           (and newest (null (robot-retired newest)) (robot-name robot))))))
 
 (defun remove-robot (robot reason)
   (let ((world (robot-world robot)))
@@ -114,7 +114,7 @@ outside the map (reading 215)."
       (in-any-case
         (retire-robot robot reason)
         (call-run-enders robot)
-        (abandon (timeline-of robot) (robot-resources robot))
+        (interrupt-resources (timeline-of robot) (robot-resources robot))
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
 (defun remove-robots-named (name reason)
@@ -158,10 +158,10 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
         (when (current-resident-world-p world) (setf robot (ensure-robot-in world blueprint))))
       (when robot (return robot)))))
 
-(defmethod take-back ((blueprint blueprint))
+(defmethod undo-definition ((blueprint blueprint))
   (remove-robots-named (blueprint-name blueprint) "its definition has been taken back"))
 
-(defmethod reinstate ((blueprint blueprint))
+(defmethod redo-definition ((blueprint blueprint))
   (let ((robot (blueprint-robot blueprint)))
     (when (robot-p robot)
       (let ((world (robot-world robot)))

@@ -129,9 +129,9 @@ journalled."
 POS and ANGLE of the prompt do. A warning is queued if the position is inside a wall. Signals
 WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument place-robot robot (robot-p robot) (argument-type-text 'robot robot))
-  (check-of-type 'place-robot 'x x 'number)
-  (check-of-type 'place-robot 'y y 'number)
-  (check-of-type 'place-robot 'angle angle 'angle)
+  (check-argument-type 'place-robot 'x x 'number)
+  (check-argument-type 'place-robot 'y y 'number)
+  (check-argument-type 'place-robot 'angle angle 'angle)
   (warn-of-angle 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)

@@ -13,7 +13,7 @@
                       "part number ~D of ~A is invalid" position robot)
            (must-hold (typep (part-location part) '(or null thing storage-bin))
                       "the location of ~A is invalid" part)
-           (check-occupant part)))
+           (check-pending-event part)))
 
 (defun check-contents (holder contents most)
   (must-hold (and (proper-list-of-p #'thing-p contents)
@@ -69,7 +69,7 @@
 
 (defun check-pose (robot)
   "Signal CONTRADICTION unless the position, heading and speeds of ROBOT are valid in its map."
-  (must-hold (every #'within-reason-p
+  (must-hold (every #'sane-number-p
                     (list (robot-x robot) (robot-y robot) (robot-angle robot)
                           (robot-speed robot) (robot-turn-angle robot)))
              "a coordinate, angle or speed of ~A is too large" robot)
@@ -87,7 +87,7 @@ a state that a run can reach."
                   (robot-blueprint robot)
                   (eq (robot-name robot) (blueprint-name (robot-blueprint robot))))
              "a robot does not belong to its world")
-  (check-occupant robot)
+  (check-pending-event robot)
   (check-pose robot)
   (loop for (nil reader type) in *part-vectors*
         do (check-parts robot (funcall reader robot) type))

@@ -75,8 +75,8 @@ had no track. See reading 161."
     (when track
       (setf (camera-tracking camera) nil)
       (when warning
-        (let ((*told-of* (track-asker track))
-              (*robot-told-of* (robot-name (camera-robot camera))))
+        (let ((*request-origin* (track-asker track))
+              (*reported-robot* (robot-name (camera-robot camera))))
           (warning-set warning)))
       (if (eq code :interrupt)
           (report-track-end track code)
@@ -90,7 +90,7 @@ had no track. See reading 161."
 warnings unless SILENTLY."
   (when (designator-valid-p designator)
     (unless silently
-      (let ((*robot-told-of* (robot-name (designator-robot designator))))
+      (let ((*reported-robot* (robot-name (designator-robot designator))))
         (warning-set (format nil "Removing ~A" designator))))
     (dolist (camera (tracking-cameras designator))
       (stop-track camera :lost-track
@@ -104,8 +104,8 @@ track is lost and no other camera tracks the designator, drop the designator."
   (let* ((track (camera-tracking camera))
          (designator (stop-track camera code warning)))
     (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
-      (let ((*told-of* (track-asker track))
-            (*robot-told-of* (robot-name (camera-robot camera))))
+      (let ((*request-origin* (track-asker track))
+            (*reported-robot* (robot-name (camera-robot camera))))
         (drop-designator designator)))))
 
 (defun lose-track (camera)
@@ -128,7 +128,7 @@ track is lost and no other camera tracks the designator, drop the designator."
           (unless (and new-location (valid-after-move-p designator by-hand))
             (drop-designator designator)))))))
 
-(note-lasting 'watch-thing)
+(note-savable-function 'watch-thing)
 
 (defun valid-after-move-p (designator by-hand)
   "True if DESIGNATOR stays valid although its denotation has moved. A tracked designator stays

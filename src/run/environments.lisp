@@ -11,7 +11,7 @@
   "The symbols that a headless simulation binds to their current values. So assignments in the
 simulation are undone at its end and do not affect other simulations.")
 
-(pushnew '*simulation-variables* *kept-variables*)
+(pushnew '*simulation-variables* *variables-to-restore*)
 
 ;; CLEAN-SIMULATION sets it together with the parameters of the run.
 (pushnew '*noise-before-cleaning* *simulation-variables*)
@@ -81,8 +81,8 @@ the dice that SIMULATION was loaded with, if any."
            (simulation-environment simulation))
       (let ((environment (environment-in-this-thread simulation))
             (dice (simulation-dice simulation)))
-        (if (and dice (not (assoc *lisps-dice* environment)))
-            (acons *lisps-dice* dice environment)
+        (if (and dice (not (assoc *random-state-variable* environment)))
+            (acons *random-state-variable* dice environment)
             environment))))
 
 (defun restore-environment (simulation)

@@ -60,7 +60,7 @@ ignored."
 (defun users-commands (simulation)
   (loop for name in (remove-duplicates (mapcar #'second (journal-entries-so-far simulation)))
         for entry = (lookup-entry name *commands*)
-        when (and entry (users-p entry)) collect name))
+        when (and entry (users-entry-p entry)) collect name))
 
 (defun definition-names-in-use (kind simulation)
   (let ((map (world-map (simulation-world simulation))))

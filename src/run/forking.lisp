@@ -69,10 +69,10 @@ cannot be copied."
   "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
 has no dice for CL:RANDOM, which is so if it is live, new dice are made."
   (let ((environment (environment-of simulation)))
-    (if (assoc *lisps-dice* environment)
+    (if (assoc *random-state-variable* environment)
         environment
-        (acons *lisps-dice* (seeded-lisps-dice (+ (simulation-seed simulation)
-                                                  (simulation-tick simulation)))
+        (acons *random-state-variable* (seeded-random-state (+ (simulation-seed simulation)
+                                                               (simulation-tick simulation)))
                environment))))
 
 ;; If a continuation makes a fork, other continuations and plans have not acted yet in that tick.
@@ -120,7 +120,7 @@ Signals MISUSE after +FORK-ATTEMPTS+ attempts."
         repeat +fork-attempts+
         for fork = (funcall try)
         unless (eq :busy fork) return fork
-        do (wait-a-while moment 0.002)
+        do (wait-and-serve moment 0.002)
         finally (refuse-fork "the plans of ~A are still working. Let plans wait between long calls ~
                               of Lisp functions, or end them by (end-plan :all)."
                              (simulation-name simulation))))
@@ -154,7 +154,7 @@ that cannot be copied, and true; or NIL and false if the user wants no fork."
 (defun fork-or-ask (simulation continuations)
   "Return a fork of SIMULATION, or NIL if the user has chosen to make none."
   (let ((decisions '()))
-    (make-room (octets-of-copy (simulation-world simulation)))
+    (collect-garbage-early (octets-of-copy (simulation-world simulation)))
     (loop
       (handler-case (return (await-fork simulation continuations decisions))
         (cannot-fork (condition)
@@ -221,7 +221,7 @@ WRONG-ARGUMENT if FORK is no fork."
                   "a fork, as FORK-SIMULATION returns")
   (let ((fork (latest-successor fork)))
     (unless (simulation-over fork)
-      (show-unseen (simulation-messages fork))
+      (show-unread-messages (simulation-messages fork))
       (setf (timeline-over (simulation-timeline fork)) "the fork has been released")))
   (values))
 

@@ -61,14 +61,14 @@ forks the run keeps, see KEEP-FORKS. The run is over at the end."
          (robots (simulation-robots simulation)))
     (setf (simulation-variables simulation)
           (append variables (mapcar #'robot-name robots) *simulation-variables*
-                  (list *lisps-dice*)))
+                  (list *random-state-variable*)))
     (progv (simulation-variables simulation)
         (append (robots-named variables) robots (mapcar #'symbol-value *simulation-variables*)
                 (list (or (simulation-dice simulation)
-                          (seeded-lisps-dice (simulation-seed simulation)))))
+                          (seeded-random-state (simulation-seed simulation)))))
       (store-environment simulation)
       (in-any-case
-        (call-telling-names
+        (call-recording-names
          (remove-duplicates (append variables (mapcar #'robot-name robots)))
          (lambda ()
            (call-reporting-errors
@@ -88,13 +88,14 @@ as the error policy of the message queue of SIMULATION says."
             (signal-trouble queue)
             (setf left-p nil))
           (warn-of-unpassed-ticks simulation left-p)
-          (show-unseen queue)
+          (show-unread-messages queue)
           (end-headless simulation)
           ;; What the end interrupts is no error.
-          (show-unseen queue (lambda (message)
-                               (and (message-cause message)
-                                    (or left-p
-                                        (not (eq message (message-queue-unsignalled queue))))))))
+          (show-unread-messages
+           queue (lambda (message)
+                   (and (message-cause message)
+                        (or left-p
+                            (not (eq message (message-queue-unsignalled queue))))))))
       (signal-trouble queue))))
 
 (defun warn-of-unpassed-ticks (simulation left-p)
@@ -121,7 +122,7 @@ last successor.")
     (retire-robots (simulation-robots last) reason)
     (end-simulation last reason)
     (unless (eq last simulation)
-      (tell-listeners *rewound-end-hooks* simulation last))))
+      (call-listeners *rewound-end-hooks* simulation last))))
 
 (defun variables-among (names)
   "Return a list of the symbols in NAMES, a list of names or a single name, that can be variables."
@@ -146,7 +147,7 @@ USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they
 shown or read. If SIMULATION was rewound, its successor is used. When a simulator starts, the errors
 of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest-successor (resolve-simulation simulation 'simulation-errors))))
-    (errors-in (simulation-messages simulation)
+    (user-code-errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest-successor run)))))))
 
 ;;; The macro, and warnings about misspelt forms.
@@ -176,9 +177,9 @@ command."
                                            (get (first used) 'command-signature)))
                                     (values-used-in form))))
                  (when call
-                   (doubt-definition "~(~A~) returns nothing: it only begins the command. The ~
-                                      results go to the continuation, when ticks have ~
-                                      passed." (first call)))))
+                   (warn-of-style "~(~A~) returns nothing: it only begins the command. The ~
+                                   results go to the continuation, when ticks have ~
+                                   passed." (first call)))))
              body))
 
 (defun unquoted-settings-p (form)

@@ -24,7 +24,7 @@ finds it: a list (KIND argument...) of a keyword and plain data. Otherwise retur
           when position
             return (list :method (qualified-name (manipulation-name manipulation)) position)))
   (:method ((function function))
-    (let ((name (lasting-name function)))
+    (let ((name (savable-function-name function)))
       (and name (list :function name))))
   (:method ((number float))
     (and (typep number 'double-float)
@@ -53,7 +53,7 @@ such object."
                    (:character (code-char (the (integer 0 (#.char-code-limit)) argument)))
                    (:double-float (bits-to-double (the (unsigned-byte 64) argument)))))
         (symbol (and (eq :function kind)
-                     (or (lasting-function argument)
+                     (or (find-savable-function argument)
                          (error "~A is not a function that a saved run may refer to" argument)))))
       (error "~A is not a kind of object that a saved run may refer to" (short-text kind))))
 
@@ -131,9 +131,9 @@ WHY, a text."
 
 (defun savable-type-p (type)
   "True if structures of TYPE, a symbol, can be saved slot by slot."
-  (or (kind-called type)
+  (or (kind-named type)
       (member type '(place cell interruption command-failure pt interval pt-interval))
-      (not (or (lisps-own-p type) (our-own-p type)))))
+      (not (or (lisp-symbol-p type) (simulator-symbol-p type)))))
 
 (defun structure-shape (object inventory)
   (let ((type (type-of object)))
@@ -160,7 +160,7 @@ same structure can be made. Signals MISUSE."
 
 (defun shape-fields (shape)
   (and (eq :object (first shape))
-       (remove-if-not #'slot-kept-p (fields-of-type (second shape)))))
+       (remove-if-not #'saved-slot-p (fields-of-type (second shape)))))
 
 ;;; Finding objects.
 

@@ -214,5 +214,5 @@ WRONG-ARGUMENT unless FILE is a file name."
 new file has been written and read as a check. Signals MISUSE and leaves FILE unchanged if that
 fails, for example if an entry contains a function or another object without a readable form."
   (check-printable journal)
-  (write-file-anew (lambda (out) (write-data-lines (journal-data journal) out)) file "the journal"
+  (overwrite-file (lambda (out) (write-data-lines (journal-data journal) out)) file "the journal"
                    :kind :journal :check #'check-readable))

@@ -98,7 +98,7 @@ they close over. See RESTORED-ARGUMENTS."
 current tick, in the journal and the past of SIMULATION, if SIMULATION keeps them."
   (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
-      (when (and journal (not (and request (asked-inside-p request))))
+      (when (and journal (not (and request (requested-inside-tick-p request))))
         (add-entry journal (simulation-tick simulation)
                    (cons operator (arguments-to-keep arguments))))
       (record-act simulation operator arguments request))))
@@ -153,8 +153,8 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
   (let ((journal (simulation-journal simulation)))
     (when journal
       (loop for remarks = (journal-remarks journal)
-            until (swap-if (journal-remarks journal) remarks
-                           (remove remark remarks :test #'eq))))))
+            until (swap-if-eq (journal-remarks journal) remarks
+                              (remove remark remarks :test #'eq))))))
 
 (defun add-error-remark (text)
   "Add a remark about an error in users' code, with its text TEXT, to the journal of the current
@@ -163,7 +163,7 @@ run, if any."
     (let ((robots (simulation-robots *simulation*)))
       (add-remark *simulation* :error text (and (null (rest robots)) (first robots))))))
 
-(attend *user-error-hooks* add-error-remark)
+(add-listener *user-error-hooks* add-error-remark)
 
 ;;; Beginning and end.
 
@@ -225,7 +225,7 @@ if SIMULATION keeps no journal."
 works in another run."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
-      (reject-outlived "~(~A~): this object belongs to another run in ~(~A~), which is over: ~A. ~
+      (reject-finished-run "~(~A~): this object belongs to another run in ~(~A~), which is over: ~A. ~
                         FIND-THING and robots' names return the objects of the current run."
                        operator (timeline-name timeline) (timeline-over timeline)))))
 
@@ -264,9 +264,9 @@ again."
           (unless (simulation-over simulation)
             (record-operation simulation operator arguments)))
         (permitting-changes (world) (funcall function)))
-      (let ((by-itself-p (goes-on-in-forks-p)))
+      (let ((by-itself-p (continues-in-forks-p)))
         (asking (timeline)
-          (let ((*goes-on-in-forks-p* by-itself-p))
+          (let ((*continues-in-forks-p* by-itself-p))
             (perform-change world operator arguments))))))
 
 (defmethod parameters-bound ((timeline timeline) world)

@@ -129,4 +129,4 @@ ends; or NIL."
                        (ignore-errors (undone-work-text (map-resident map))))))
         (when text (format *error-output* "~&*WARNING* -> ~A~%" text))))))
 
-(call-when-leaving 'warn-of-undone-work)
+(call-at-exit 'warn-of-undone-work)

@@ -20,12 +20,12 @@ SIMULATOR."
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
         (*standard-output* (or (simulation-output simulation) *standard-output*))
-        (*standard-input* (input-of-programs *front-end* *standard-input*))
+        (*standard-input* (program-input *front-end* *standard-input*))
         (variables (set-difference (simulation-variables simulation)
-                                   (cons *lisps-dice* *simulation-variables*))))
+                                   (cons *random-state-variable* *simulation-variables*))))
     (progv variables (robots-named variables)
       (call-with-parameters
-       '() (lambda () (rolling ((seeded-lisps-dice (simulation-seed simulation)))
+       '() (lambda () (with-random-state ((seeded-random-state (simulation-seed simulation)))
                         (funcall function)))))))
 
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
@@ -34,9 +34,9 @@ Plans also get a thread if REAL is true and thinking is not charged. Return SIMU
 MISUSE if SIMULATION is already live, WRONG-ARGUMENT for a rate that is neither a positive number
 nor :FREE."
   (check-parameters)
-  (let ((output (editors-output))
+  (let ((output (editor-output-stream))
         ;; Users' code there, and its debugger, read and print as in this thread.
-        (caller (spread-specials
+        (caller (function-with-specials
                  (lambda (function)
                    (in-any-case
                      (call-with-thread-bindings simulation function)
@@ -47,7 +47,7 @@ nor :FREE."
       (setf (simulation-output simulation) output
             *echo-output* output
             (simulation-plans-dice-p simulation) t)
-      (give-threads (simulation-timeline simulation) real)
+      (choose-plan-threads (simulation-timeline simulation) real)
       (start-pacing (simulation-timeline simulation)
                     (lambda () (tick simulation))
                     (lambda () (idle-p simulation))
@@ -64,7 +64,7 @@ successor. Return SIMULATION."
     (unclaim-pacing timeline)
     (let ((latest (latest-successor simulation)))
       (unless (eq simulation latest)
-        (call-alone (simulation-timeline latest) (constantly nil)))))
+        (call-without-clock (simulation-timeline latest) (constantly nil)))))
   simulation)
 
 ;;; Starting and stopping.
@@ -111,8 +111,8 @@ MISUSE in a nested call, when this thread is already starting WORLD."
                       (stop-pacing timeline)
                       (funcall function))
                ;; Another thread may have stopped it meanwhile and be starting it again.
-               (swap-if (custody-starter custody) (current-thread) nil))))
-      (call-alone timeline #'start))))
+               (swap-if-eq (custody-starter custody) (current-thread) nil))))
+      (call-without-clock timeline #'start))))
 
 (defun make-current-simulation (simulation everywhere)
   "Make SIMULATION the current simulation of this thread, and of all threads if EVERYWHERE is true."
@@ -142,7 +142,7 @@ current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
 meanwhile."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
-        (everywhere (and *simulation* (pacer-p (simulation-timeline *simulation*)))))
+        (everywhere (and *simulation* (pacing-thread-p (simulation-timeline *simulation*)))))
     (call-while-starting world (lambda ()
                            ;; Its map may have been replaced while it was made.
                            (when (and (eq world (map-resident (world-map world)))
@@ -160,7 +160,7 @@ meanwhile."
   "Signal MISUSE if the plist OPTIONS has a keyword that is an option of neither SIMULATOR nor its
 hooks."
   (unless (getf options :allow-other-keys)
-    (let ((strange (strange-keyword `(&key rate seed journal keep thinking
+    (let ((strange (wrong-keyword-text `(&key rate seed journal keep thinking
                                            ,@*simulator-hook-options*)
                                     options)))
       (when strange (reject-use "simulator: ~A" strange)))))
@@ -181,20 +181,20 @@ MISUSE if the robot no longer fits into its map. See reading 238."
   (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
-  (check-of-type 'simulator 'keep keep 'fork-count)
+  (check-argument-type 'simulator 'keep keep 'fork-count)
   (check-thinking 'simulator thinking)
   (let ((robot (loop for candidate = (robot-to-start robot)
                      do (check-not-fork candidate)
                      when (start-world-of-robot candidate rate seed journal keep thinking)
                        return candidate)))
-    (tell-listeners *simulator-hooks* robot options)
+    (call-listeners *simulator-hooks* robot options)
     (set-variables-globally (robot-simulation robot))
     robot))
 
 ;; Lisp itself only says that the number of keyword arguments is odd.
 (define-compiler-macro simulator (&whole form &rest arguments)
   (when (and arguments (evenp (length arguments)) (not (keywordp (second arguments))))
-    (doubt-definition "simulator takes one robot and keyword arguments; its world contains all ~
+    (warn-of-style "simulator takes one robot and keyword arguments; its world contains all ~
                        robots of the robot's map."))
   form)
 

@@ -24,7 +24,7 @@
   "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not check, or NIL."
   (cond ((not (settings-p (getf head :noise))) "the noise in the head makes no sense")
         ((settings-error-text (getf head :noise)))
-        ((not (or (null (getf head :dice)) (lisps-dice-numbers-p (getf head :dice))))
+        ((not (or (null (getf head :dice)) (random-state-numbers-p (getf head :dice))))
          "the dice in the head make no sense")
         ((not (typep (getf head :tick) 'tick-count)) "the tick in the head is not a tick")
         ((not (typep (getf head :digest) '(unsigned-byte 64))) "the digest in the head is not a ~
@@ -170,7 +170,7 @@ Return SIMULATION."
           (timeline-run timeline) simulation
           (simulation-messages simulation) (make-message-queue)
           (simulation-dice simulation) (and (getf head :dice)
-                                            (lisps-dice-of-numbers (getf head :dice)))
+                                            (random-state-of-numbers (getf head :dice)))
           (simulation-known-parameters simulation)
           (parameter-vector (simulation-known-parameters simulation) (getf head :parameters))
           (world-kicker-generation world) (- *kicker-generation*

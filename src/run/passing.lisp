@@ -148,7 +148,7 @@ WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
 returns; a live SIMULATION passes them at its pace. Return nothing."
   (check-argument step-ticks count (whole-p count 1) "a whole number of ticks, from 1 to 1e9")
   (if (live-p simulation)
-      (let-pass count simulation)
+      (pass-then-pause count simulation)
       (run-ticks count simulation))
   (values))
 
@@ -161,7 +161,7 @@ ended; otherwise return false and, unless SECONDS are given, queue a warning tha
 progress. Kickers and tracks do not end, so AWAIT-IDLE does not wait for them. If SIMULATION is not
 live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS is a number from 0 to
 1e9, and MISUSE if the simulator is paused after a failure, because the wait would never end."
-  (check-argument await-idle seconds (and (within-reason-p seconds) (<= 0 seconds))
+  (check-argument await-idle seconds (and (sane-number-p seconds) (<= 0 seconds))
                   "a number of seconds, from 0 to 1e9")
   (let ((simulation (resolve-simulation simulation 'await-idle)))
     (cond ((not (live-p simulation)) (idle-p simulation))
@@ -210,12 +210,12 @@ failed."
         thereis (all-at-rest-p simulation)
         while (and (< (seconds-now) due) (live-p simulation))
         do (check-wait-while-paused 'await-idle simulation)
-           (wait-patiently idle (min 0.02 (max 0 (- due (seconds-now)))))))
+           (wait-while-serving idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
 (defun check-wait-while-paused (operator simulation)
   "If OPERATOR waits for a live SIMULATION that is paused, signal MISUSE if no user can resume it;
 otherwise queue a warning, once in a run."
-  (when (stands-still-p simulation)
+  (when (paused-without-steps-p simulation)
     (unless *waits-while-paused-p*
       (reject-use "~(~A~): the run is paused, so this would wait for ever. Call (resume) first."
                   operator))

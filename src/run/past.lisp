@@ -57,7 +57,7 @@ or NIL."
 (defun repeated-by-forks-p (request)
   "True if a fork makes REQUEST by itself, because the code that made REQUEST also runs in the
 fork."
-  (or (request-forked-p request) (asked-inside-p request)))
+  (or (request-forked-p request) (requested-inside-tick-p request)))
 
 (defun request-act (request simulation operator arguments)
   "Return the act for REQUEST, which SIMULATION performs. OPERATOR and ARGUMENTS are those of
@@ -70,7 +70,7 @@ REQUEST; ARGUMENTS are externalized and memorized."
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-in-this-thread timeline)
               (timeline-moments timeline)
-              (goes-on-in-forks-p) operator arguments nil)))
+              (continues-in-forks-p) operator arguments nil)))
 
 (defun record-act (simulation operator arguments &optional request)
   "If SIMULATION has a past, record that OPERATOR was called with ARGUMENTS, or that REQUEST asked
@@ -98,23 +98,23 @@ for this call. ARGUMENTS are externalized unless OPERATOR is a function, see ACT
 (defun update-rolled-dice (simulation past)
   "Store the current dice of programs of SIMULATION in PAST. Return the dice if they were rolled
 since the last call, or NIL. Only in a headless run do all programs share the same dice."
-  (when (member *lisps-dice* (simulation-variables simulation) :test #'eq)
+  (when (member *random-state-variable* (simulation-variables simulation) :test #'eq)
     (let ((before (past-rolled past)))
-      (setf (past-rolled past) (dice-rolled before))
+      (setf (past-rolled past) (take-random-snapshot before))
       (if (eq before (past-rolled past)) nil (past-rolled past)))))
 
 (defun record-dice (simulation)
   "Record the dice of programs in the past of SIMULATION if code that a fork may not repeat has
 rolled them."
   (let ((rolled (update-rolled-dice simulation (simulation-past simulation))))
-    (when rolled (record-act simulation #'roll-back (list rolled)))))
+    (when rolled (record-act simulation #'restore-random-snapshot (list rolled)))))
 
 (defun record-outside-act (simulation function &rest arguments)
   "If SIMULATION has a past, record an act of a program outside the run that is not in the journal.
 A call of FUNCTION with ARGUMENTS repeats the act. Acts that a fork repeats by itself are not
 recorded. Return nothing."
   (when (and (simulation-past simulation)
-             (not (goes-on-in-forks-p))
+             (not (continues-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.
              (not (changing-phase-p (phase-in-this-thread (simulation-timeline simulation)))))
     (when (eq simulation *simulation*) (record-dice simulation))
@@ -134,7 +134,7 @@ recorded. Return nothing."
   (or (< (act-tick act) tick)
       (and (= (act-tick act) tick)
            (eq :change (act-kind act))
-           (telling-phase-p (act-phase act)))))
+           (notifying-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
   "ACTS is a list with the newest act first. Return its tail of acts that were done before the end
@@ -251,7 +251,7 @@ have stopped."
     (when (and past (past-wanted past))
       (loop repeat +fork-checks+
             while (past-wanted past)
-            do (wait-a-while moment 0.002))
+            do (wait-and-serve moment 0.002))
       (setf (past-wanted past) nil))))
 
 (defun keep-fork-if-affordable (simulation past)
@@ -284,7 +284,7 @@ earliest. COUNT is the largest number of forks, from 2 to 1000 and by default 30
 world it is smaller. NIL drops all forks and keeps no more. Recent forks are closer together than
 old forks. Keeping forks takes about a hundredth of the run's time; requests to the run are kept,
 too. Return nothing. Signals WRONG-ARGUMENT, and MISUSE if the run is over."
-  (check-of-type 'keep-forks 'count count 'fork-count)
+  (check-argument-type 'keep-forks 'count count 'fork-count)
   (let ((simulation (resolve-simulation simulation 'keep-forks)))
     (check-not-over simulation 'keep-forks)
     (asking (simulation)

@@ -74,11 +74,11 @@ request of ACT."
 
 (defun redo-in-tick (repetition)
   "Repeat the acts that were done in the current tick after the world had changed, up to the current
-moment; see BEGIN-MOMENT."
+moment; see COUNT-MOMENT."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))
-                                                 (telling-phase-p (act-phase act))
+                                                 (notifying-phase-p (act-phase act))
                                                  (<= (act-moment act) moments))))
         while act
         unless (act-own-p act) do (repeat-act act repetition)))
@@ -126,7 +126,7 @@ moment; see BEGIN-MOMENT."
   "Advance SIMULATION, a kept fork that is the current simulation, to the tick GOAL and repeat ACTS,
 which begin with the oldest. Return the tick at which a plan diverged, or NIL."
   (let ((repetition (make-repetition simulation acts))
-        (*repeated* (simulation-timeline simulation))
+        (*repeated-timeline* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.
     (advance-to goal repetition)
     (dolist (request (repetition-held repetition))

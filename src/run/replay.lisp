@@ -102,7 +102,7 @@ repeated."
   "Repeat JOURNAL in SIMULATION. Call BEGINNING with SIMULATION before its first tick passes."
   (let* ((entries (journal-entries journal))
          (before (count 0 entries :key #'first))
-         (*repeated* (simulation-timeline simulation)))
+         (*repeated-timeline* (simulation-timeline simulation)))
     (perform-entries (subseq entries 0 before) 1 simulation)
     (funcall beginning simulation)
     (perform-entries (nthcdr before entries) (1+ before) simulation)
@@ -140,7 +140,7 @@ simulation when the entries before the first tick have been repeated."
          (when observer (add-observer observer simulation))
          (perform-journal journal simulation beginning)
          ;; Messages of the repetition are not shown again.
-         (take-unseen (simulation-messages simulation))
+         (take-unread-messages (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)
@@ -194,7 +194,7 @@ STATE-DIGEST."
 that is already in FILE is replaced. Signals MISUSE, for example if FILE exists but is not a
 journal, and WRONG-ARGUMENT unless FILE is a file name; then FILE is unchanged."
   (check-argument save-journal file (typep file '(or string pathname)) "the name of a file")
-  (check-not-foreign file :journal "journal")
+  (check-kind-of-file file :journal "journal")
   (asking (simulation) (write-journal (journal-up-to-now simulation) file)))
 
 (addition load-journal)

@@ -84,7 +84,7 @@ result."
 
 (defun retire-named-robot (name reason)
   "Retire the robot NAME, which does not fit into the new map, for REASON."
-  (unless (from-this-file-p name *robots*)
+  (unless (defined-in-this-file-p name *robots*)
     (warn-of-definition "The robot ~(~A~) takes no more commands: ~A." name reason))
   ;; A headless run may have bound the variable to another robot here.
   (let ((robot (ignore-errors (global-value name))))
@@ -104,7 +104,7 @@ result."
 (defun end-world-run (world reason)
   "End the run of WORLD and retire its robots, for REASON. WORLD cannot be started again. Return
 false if another world has become resident in its map."
-  (call-alone (ensure-timeline world)
+  (call-without-clock (ensure-timeline world)
               (lambda ()
                 (when (eq world (map-resident (world-map world)))
                   (retire-robots (world-robots world) reason)
@@ -142,7 +142,7 @@ false if another world has become resident in its map."
   ;; There may be robots of a map that was undefined.
   (remake-robots new))
 
-(defmethod reinstate ((map map))
+(defmethod redo-definition ((map map))
   (let* ((world (map-resident map))
          (simulation (and world (world-simulation world))))
     (when world
@@ -151,4 +151,4 @@ false if another world has become resident in its map."
       (restart-world world (simulation-seed simulation))))
   map)
 
-(setf *kept-variables* (union *kept-variables* '(*simulation* *world*)))
+(setf *variables-to-restore* (union *variables-to-restore* '(*simulation* *world*)))

@@ -90,7 +90,7 @@ names NAMES."
                (savable-type-p type))
     (error "the file has objects of a kind that is not loaded, ~A" (short-text type)))
   (let ((fields (fields-of-type type)))
-    (unless (equal names (field-names (remove-if-not #'slot-kept-p fields)))
+    (unless (equal names (field-names (remove-if-not #'saved-slot-p fields)))
       (error "its objects of the kind ~(~A~) have other slots than the kind that is loaded; ~
               another version of the simulator, or of the kind, saved the file"
              type))
@@ -129,7 +129,7 @@ names NAMES."
 (defun fill-object (object values fields type)
   "Store VALUES in the FIELDS of OBJECT that are saved, and initial values in its other fields."
   (dolist (field fields)
-    (store-slot (cond ((not (slot-kept-p field)) (funcall (kind-slot-initial field)))
+    (store-slot (cond ((not (saved-slot-p field)) (funcall (kind-slot-initial field)))
                       (values (pop values))
                       (t (error "there are too few values for a ~(~A~)" type)))
                 field object type))
@@ -175,7 +175,7 @@ names NAMES."
   "Store VALUES, the contents of a line, in OBJECT. True if OBJECT is complete."
   (ecase (first shape)
     (:array (fill-array object values loader))
-    (:object (when (collect-values values (count-if #'slot-kept-p fields) loader)
+    (:object (when (collect-values values (count-if #'saved-slot-p fields) loader)
                (fill-object object (reverse (loader-values loader)) fields (second shape))
                t))
     (:table (when (collect-values values (* 2 (third shape)) loader)

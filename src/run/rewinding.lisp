@@ -25,7 +25,7 @@ clock of the current simulation, return that. Otherwise return NIL."
 (defun check-rewind-allowed-here (simulation)
   "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not the current
 simulation."
-  (cond ((goes-on-in-forks-p)
+  (cond ((continues-in-forks-p)
          (reject-use "rewind: a plan has made this call, and would undo itself. Use PROJECT or ~
                       TRY-BEST to look ahead."))
         ((run-paced-by-this-thread simulation)
@@ -140,7 +140,7 @@ robots."
         (simulation-gate new) (simulation-gate old)
         (simulation-messages new) (simulation-messages old)
         (simulation-messages old) (make-message-queue))
-  (tell-listeners *rewind-hooks* old new))
+  (call-listeners *rewind-hooks* old new))
 
 (defun end-rewound (old new)
   "End OLD, because NEW replaces OLD."
@@ -199,13 +199,13 @@ signal MISUSE."
          (live-p (claim-pacing timeline))
          (done-p nil))
     (in-any-case
-      (call-alone timeline
-                  (lambda ()
-                    (replace-owned-run new old
-                                       (lambda ()
-                                         (setf done-p t)
-                                         (when live-p
-                                           (start-successor new old rate paused-p))))))
+      (call-without-clock timeline
+                          (lambda ()
+                            (replace-owned-run new old
+                                               (lambda ()
+                                                 (setf done-p t)
+                                                 (when live-p
+                                                   (start-successor new old rate paused-p))))))
       (unless done-p (release-fork new)))
     new))
 

@@ -249,8 +249,9 @@ reading 218."
     (seed-world (simulation-world simulation) seed)
     (dolist (participant (simulation-participants simulation))
       (participant-reseed participant seed))
-    (cond ((member *lisps-dice* (simulation-variables simulation)) (reseed-lisps-dice seed))
-          ((simulation-dice simulation) (reseed-lisps-dice seed (simulation-dice simulation)))))
+    (cond ((member *random-state-variable* (simulation-variables simulation))
+           (reseed-random-state seed))
+          ((simulation-dice simulation) (reseed-random-state seed (simulation-dice simulation)))))
   seed)
 
 (define-operator 'set-seed '(integer) #'set-seed)
@@ -292,7 +293,7 @@ the next tick. Runs in the modes :FREE and :CHARGED are the same on every machin
 in progress or waiting, are interrupted; further requests are refused."
   (let ((timeline (simulation-timeline simulation))
         (robots (simulation-robots simulation)))
-    (call-alone
+    (call-without-clock
      timeline
      (lambda ()
        (unless (timeline-over timeline)
@@ -304,7 +305,7 @@ in progress or waiting, are interrupted; further requests are refused."
                (notify-of-end simulation)
                (progn (call-each (lambda (request) (perform request timeline))
                                  (take-requests timeline))
-                      (abandon timeline (mapcan #'robot-resources robots)))))))))))
+                      (interrupt-resources timeline (mapcan #'robot-resources robots)))))))))))
 
 ;;; The digest.
 

@@ -94,7 +94,7 @@ definitions."
   (loop for request in (append (waiting-events simulation) (waiting-requests simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
-        when (and entry (users-p entry))
+        when (and entry (users-entry-p entry))
           collect (definition-of :command entry)))
 
 (defun head-for-programs (simulation)
@@ -102,9 +102,9 @@ definitions."
 DIRTY-SIMULATION would restore, and the dice of CL:RANDOM. For a live run there are no dice, because
 each of its threads has its own."
   (let ((dice (and (headless-p simulation)
-                   (cdr (assoc *lisps-dice* (environment-of simulation))))))
+                   (cdr (assoc *random-state-variable* (environment-of simulation))))))
     (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
-           (and dice (list :dice (lisps-dice-numbers dice))))))
+           (and dice (list :dice (random-state-numbers dice))))))
 
 (defun saved-run-head (simulation programs journal)
   "Return the head for the file in which SIMULATION is saved. PROGRAMS is a value of
@@ -166,7 +166,7 @@ cannot be saved. Return the truename of FILE."
   (let ((programs (head-for-programs simulation)))
     (call-with-savable-run
      (lambda (simulation journal)
-       (write-file-anew (lambda (out) (write-saved-run simulation journal programs out)) file
+       (overwrite-file (lambda (out) (write-saved-run simulation journal programs out)) file
                         "the run" :kind :run
                         :check (lambda (path)
                                  (check-loadable path (simulation-name simulation)))))
@@ -193,7 +193,7 @@ Signals:
 After an error, FILE is unchanged."
   (check-argument save-simulation file (typep file '(or string pathname)) "the name of a file")
   (check-argument save-simulation simulation (simulation-p simulation) "a simulation")
-  (check-not-foreign file :run "saved run")
+  (check-kind-of-file file :run "saved run")
   (flet ((save (without-p)
            (asking (simulation) (write-simulation simulation file without-p))))
     (handler-case (save nil)

@@ -14,7 +14,7 @@
   ((file   :initarg :file   :reader damaged-file-name)
    (reason :initarg :reason :reader damaged-file-reason))
   (:report (lambda (condition stream)
-             (format stream "~A cannot be used: ~A." (shown-name (damaged-file-name condition))
+             (format stream "~A cannot be used: ~A." (file-name-text (damaged-file-name condition))
                      (damaged-file-reason condition))))
   (:documentation "A file cannot be used, because it is damaged or was not saved by the
 simulator."))
@@ -23,7 +23,7 @@ simulator."))
   "Write to STREAM that the file of CONDITION is not a usable file of KIND, and that OPERATOR saves
 such a file."
   (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
-          (shown-name (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
+          (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
 
 (addition damaged-journal)
 (define-condition damaged-journal (damaged-file)
@@ -66,7 +66,7 @@ only its beginning."
     (when (or last (plusp (length line)))
       (string-right-trim '(#\Return) (if (every (lambda (char) (< (char-code char) 128)) line)
                                          line
-                                         (decoded line))))))
+                                         (utf-8-decoded line))))))
 
 (defun comment-line-p (line)
   "True if LINE is a comment or empty; an editor may have put a byte order mark before it."
@@ -119,7 +119,7 @@ error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
     (stream-error ()
       (error damage :file file :reason "the operating system does not let the file be read"))
     ((or error storage-condition) (trouble)
-      (error damage :file file :reason (or (file-advice file kind)
+      (error damage :file file :reason (or (advice-on-file file kind)
                                            (one-line-text trouble))))))
 
 (defun damage-reason (trouble)

@@ -56,14 +56,14 @@
   (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
 a RESOURCE structure; lists and strings are the same resource if they look the same"))
 
-(declaim (inline add-behind detach-ring))
-(defun add-behind (last event)
+(declaim (inline add-to-ring detach-ring))
+(defun add-to-ring (last event)
   "Add EVENT to the ring whose last event is LAST, or NIL; return EVENT, the new last one."
   (setf (event-queued-p event) t
         (event-next event) (if last (shiftf (event-next last) event) event))
   event)
 
-(define-modify-macro append-event (event) add-behind)
+(define-modify-macro append-event (event) add-to-ring)
 
 (defun detach-ring (last)
   "Cut the ring whose last event is LAST, and return its first event; NIL if LAST is NIL."
@@ -228,7 +228,7 @@ order of queueing."
 
 ;; RESOURCE structures hold their pending events, so copying these copies that too.
 (defmethod copy-plan-value ((agenda agenda) fork)
-  (let ((copy (note-copy agenda (make-agenda) fork)))
+  (let ((copy (record-copy agenda (make-agenda) fork)))
     (setf (agenda-tick copy) (agenda-tick agenda))
     (dolist (event (pending-events agenda) copy)
       (let ((twin (forked event fork)) (resource (event-resource event)))

@@ -12,7 +12,7 @@ world calls FUNCTION between two ticks. Return the values of FUNCTION. Errors of
 signalled in this thread. Signals MISUSE inside a tick of another world, and if FUNCTION is
 aborted."
   (let ((custody (timeline-custody (timeline-of object))))
-    (call-with-custody custody function (lambda () (ask-holder custody function)))))
+    (call-with-custody custody function (lambda () (ask-owner custody function)))))
 
 (addition asking)
 (defmacro asking ((object) &body body)
@@ -36,7 +36,7 @@ Return its values."
         (if (typep condition 'serious-condition) condition :aborted)))
 
 ;; An answering user thread may itself have a time limit, which does not apply to the question.
-(defun for-asker-p (condition)
+(defun condition-for-asker-p (condition)
   "True if CONDITION, signalled while this thread answers a question, belongs to the asking thread."
   (or (own-thread-p) (not (typep condition 'time-limit))))
 
@@ -53,7 +53,7 @@ Return its values."
                     (multiple-value-list (as-users-code ("what another thread has asked for")
                                            (funcall (question-function question))))
                     (question-trouble question) nil)))
-        ((and serious-condition (satisfies for-asker-p)) (condition)
+        ((and serious-condition (satisfies condition-for-asker-p)) (condition)
           (note-trouble question condition)))
     (abort () :report "Tell the asking thread that it was aborted.")))
 
@@ -81,7 +81,7 @@ ask questions."
 
 (defun await-answer (question custody)
   (loop until (wait-while-answering (question-answered question))
-        do (release-if-dead custody)
+        do (release-custody-if-dead custody)
            ;; If no thread owns the world any more, this one answers the pending questions.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
@@ -91,11 +91,11 @@ thread."
   (let ((seclusion *seclusion*))
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 
-(defun ask-holder (custody function)
+(defun ask-owner (custody function)
   (check-outside-ticks)
   (let ((question (make-question (keeping-seclusion function))))
     (atomic-push (lambda () (answer question)) (custody-questions custody))
-    (wake-holder custody)
+    (wake-if-asleep custody)
     (in-any-case
       (await-answer question custody)
       (setf (question-given-up-p question) t))
@@ -111,5 +111,5 @@ ALLOWING-INTERRUPTS. Return nothing."
       (atomic-push (lambda () (deferring-interrupts (answer question)))
                    (custody-questions custody))
       ;; If this thread gets custody, it answers when it gives that up.
-      (call-with-custody custody (constantly nil) (lambda () (wake-holder custody))))
+      (call-with-custody custody (constantly nil) (lambda () (wake-if-asleep custody))))
     (values)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(stands-still-p start-pacing))
+(export '(paused-without-steps-p start-pacing))
 
 ;;; While the run is idle the thread sleeps, and simulated time stands still. Between ticks it
 ;;; answers questions. It owns the world until it ends, for any reason. Functions given to it pass a
@@ -22,7 +22,7 @@
   "True if the clock of PACING is paused, and no requested ticks remain to be passed."
   (and (pacing-paused-p pacing) (zerop (pacing-steps pacing))))
 
-(defun stands-still-p (simulation)
+(defun paused-without-steps-p (simulation)
   "True if the live SIMULATION is paused, and no requested ticks remain to be passed."
   (if-paced (pacing simulation) (pause-in-effect-p pacing)))
 
@@ -54,7 +54,7 @@
   "Pause the clock of PACING because of the condition TROUBLE, an error in the simulator itself."
   (let ((text (format nil "The simulator failed and is paused; RESUME continues: ~A"
                       (brief-text trouble))))
-    (trouble-set trouble text text))
+    (queue-user-error trouble text text))
   (setf (pacing-paused-p pacing) t
         (pacing-trouble pacing) (brief-text trouble)))
 
@@ -68,7 +68,7 @@ clock."
 (defun run-paced (custody pacing)
   "Pass ticks at the pace of PACING, until PACING is stopped or another thread has CUSTODY."
   (loop with due = (seconds-now)
-        until (or (pacing-stopping-p pacing) (not (mine-p custody)))
+        until (or (pacing-stopping-p pacing) (not (has-custody-p custody)))
         do (answer-questions custody)
            (cond ((nothing-to-do-p pacing)
                   ;; The timeout covers tests that come true without a request (reading 88).
@@ -87,10 +87,10 @@ was killed."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)
-      (unless *leaving-p*
+      (unless *exiting-p*
         (let ((text (format nil "The simulator's thread was ended from outside. (simulator ROBOT) ~
                                  starts another.")))
-          (trouble-set :ended text text))))
+          (queue-user-error :ended text text))))
     (when (eq pacing (custody-pacing custody))
       (setf (custody-pacing custody) nil))
     (give-up-custody custody)
@@ -101,7 +101,7 @@ was killed."
   "Signal the semaphore READY when this thread can be ended at any moment. Wait for the semaphore
 START. Then pass ticks at the pace of PACING, if this thread has got custody."
   (let* ((custody (pacing-custody pacing))
-         (*held* (list custody))
+         (*held-custodies* (list custody))
          (*user-calls* (pacing-calls pacing)))
     (in-any-case
       (progn (signal-semaphore ready)
@@ -136,7 +136,7 @@ START. Then pass ticks at the pace of PACING, if this thread has got custody."
             (let ((custody (pacing-custody pacing)))
               (setf (timeline-pacing (pacing-timeline pacing)) pacing
                     (custody-pacing custody) pacing)
-              (hand-over custody (pacing-thread pacing)))
+              (hand-over-custody custody (pacing-thread pacing)))
             (setf (pacing-stopping-p pacing) t))
         (signal-semaphore start)))))
 

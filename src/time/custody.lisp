@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(answer-questions call-with-custody mine-p answer-own-questions))
+(export '(answer-questions call-with-custody has-custody-p answer-own-questions))
 
 ;;; One thread at a time owns a world and the successive timelines of its runs: it has custody. It
 ;;; paces the world, or has custody while it passes ticks or changes the world. A thread takes
@@ -20,30 +20,30 @@
                 :writable)
   (starter nil t "the thread that is starting the world, or NIL. Can be set" :writable :export))
 
-(defvar *held* '()
+(defvar *held-custodies* '()
   "The list of custodies that this thread has taken and not given up.")
 
-(declaim (inline mine-p))
-(defun mine-p (custody)
+(declaim (inline has-custody-p))
+(defun has-custody-p (custody)
   "True if this thread has CUSTODY."
   (eq (custody-thread custody) (current-thread)))
 
 (defun take-custody (custody)
   "Take CUSTODY for this thread, if no thread has it. Return true if this thread has taken it."
-  (swap-if (custody-thread custody) nil (current-thread)))
+  (swap-if-eq (custody-thread custody) nil (current-thread)))
 
 (defun answer-questions (custody)
   "Call the functions that other threads have left for the owner of CUSTODY, in order."
   (loop for questions = (custody-questions custody)
         while questions
-        when (swap-if (custody-questions custody) questions '())
+        when (swap-if-eq (custody-questions custody) questions '())
           do (call-each #'funcall (reverse questions))))
 
 (defun give-up-custody (custody)
   "Give up CUSTODY, after answering pending questions."
   (in-any-case
-    (when (mine-p custody) (answer-questions custody))
-    (swap-if (custody-thread custody) (current-thread) nil)
+    (when (has-custody-p custody) (answer-questions custody))
+    (swap-if-eq (custody-thread custody) (current-thread) nil)
     (progn (memory-barrier)
            ;; A question may have come just now.
            (when (and (custody-questions custody) (take-custody custody))
@@ -53,39 +53,39 @@
   "Take CUSTODY and call FUNCTION. If another thread has CUSTODY, call OTHERWISE instead. Return the
 values of the call. FUNCTION and OTHERWISE can be interrupted if this thread allowed interrupts
 before."
-  (if (mine-p custody)
+  (if (has-custody-p custody)
       (funcall function)
       (let ((open-p (not (interrupts-deferred-p))))
         (deferring-interrupts
           (if (take-custody custody)
-              (let* ((held (cons custody *held*)) (*held* held))
+              (let* ((held (cons custody *held-custodies*)) (*held-custodies* held))
                 (declare (dynamic-extent held))
                 (in-any-case
                   (call-interruptible open-p function)
                   (give-up-custody custody)))
               (call-interruptible open-p otherwise))))))
 
-(defun hand-over (custody thread)
+(defun hand-over-custody (custody thread)
   (setf (custody-thread custody) thread))
 
 ;;; Waiting.
 
-(defun wake-holder (custody)
+(defun wake-if-asleep (custody)
   "If the thread that has CUSTODY sleeps, wake it, because there may be work for it."
   (when (custody-asleep-p custody)
     (signal-semaphore (custody-wake-up custody))))
 
-(defun release-if-dead (custody)
+(defun release-custody-if-dead (custody)
   "Take CUSTODY from a thread that has ended without giving it up."
   (let ((thread (custody-thread custody)))
     (when (and thread (not (thread-alive-p thread)))
-      (swap-if (custody-thread custody) thread nil))))
+      (swap-if-eq (custody-thread custody) thread nil))))
 
 (defun answer-own-questions ()
   "Answer the questions about worlds that this thread owns. This prevents a deadlock between threads
 that wait for each other."
-  (dolist (custody *held*)
-    (when (mine-p custody) (answer-questions custody))))
+  (dolist (custody *held-custodies*)
+    (when (has-custody-p custody) (answer-questions custody))))
 
 (defun wait-while-answering (semaphore &optional (seconds 0.2))
   "Answer questions, then wait for SEMAPHORE for at most SECONDS. Return true if SEMAPHORE was
@@ -93,4 +93,4 @@ signalled."
   (answer-own-questions)
   (yield-foreground)
   ;; A thread that owns a world must check for questions often.
-  (wait-on-semaphore semaphore (if *held* (min seconds 0.002) seconds)))
+  (wait-on-semaphore semaphore (if *held-custodies* (min seconds 0.002) seconds)))

@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.time)
 
-(export '(timeline-thread pacer-p check-rate clock-trouble *waits-while-paused-p* let-pass pace
-          hog-seconds seconds-now stop-pacing claim-pacing claimed-p unclaim-pacing call-alone
-          users-code-under-way users-code-broken-p abort-hog))
+(export '(timeline-thread pacing-thread-p check-rate clock-trouble *waits-while-paused-p*
+          pass-then-pause pace hog-seconds seconds-now stop-pacing claim-pacing claimed-p
+          unclaim-pacing call-without-clock users-code-in-progress users-code-in-debugger-p
+          abort-hog))
 
 ;;; A thread passes ticks at the pace RATE, in ticks per second or :FREE, while there is anything to
 ;;; do (clock.lisp). Other threads control it: they set slots of the PACING structure and wake it.
@@ -67,7 +68,7 @@ NIL."
   (if-paced (pacing timeline)
     (and (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
-(defun pacer-p (timeline)
+(defun pacing-thread-p (timeline)
   "True if this thread paces TIMELINE, or was the last thread to pace it."
   (if-paced (pacing timeline) (eq (current-thread) (pacing-thread pacing))))
 
@@ -100,7 +101,7 @@ NIL."
 
 (defun check-rate (rate)
   "Signal WRONG-ARGUMENT unless RATE is a valid pace."
-  (check-of-type 'set-rate 'rate rate 'rate))
+  (check-argument-type 'set-rate 'rate rate 'rate))
 
 (defun set-paused (simulation paused-p steps)
   "If SIMULATION is live, pause it after STEPS more ticks if PAUSED-P is true, else resume it."
@@ -121,7 +122,7 @@ NIL."
   "Resume the live SIMULATION after PAUSE. Returns nothing."
   (set-paused simulation nil 0))
 
-(defun let-pass (count simulation)
+(defun pass-then-pause (count simulation)
   "Pass COUNT ticks of the live SIMULATION, at its pace, then pause it. Returns nothing."
   (set-paused simulation t count))
 
@@ -138,7 +139,7 @@ RATE. Signals WRONG-ARGUMENT."
 ;;; The thread ends after its tick. User code that does not return is aborted only when somebody
 ;;; stops the run.
 
-(defun ended-p (pacing seconds)
+(defun wait-for-end (pacing seconds)
   "Wait at most SECONDS for the thread of PACING to end. Return true if it has ended."
   (loop with due = (+ (seconds-now) seconds)
         ;; A thread that was woken may have been interrupted before it could wake the next one.
@@ -159,7 +160,7 @@ RATE. Signals WRONG-ARGUMENT."
   "Wait for the thread of PACING to end. Repeatedly interrupt users' code that does not return.
 Signals MISUSE if the thread does not end."
   (loop repeat 10
-        when (ended-p pacing (hog-seconds))
+        when (wait-for-end pacing (hog-seconds))
           return t
         do (interrupt-hog pacing)
         finally (let ((origin (user-calls-origin (pacing-calls pacing))))
@@ -170,7 +171,7 @@ Signals MISUSE if the thread does not end."
 (defun stop (pacing)
   "End the thread of PACING after its current tick. If that is another thread, wait until it has
 ended."
-  (swap-if (pacing-stopping-p pacing) nil t)
+  (swap-if-eq (pacing-stopping-p pacing) nil t)
   (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
     (await-end pacing)))
@@ -178,7 +179,7 @@ ended."
 (defun claim-pacing (timeline)
   "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
 replace the run. Return true if the run was live and no thread had stopped it."
-  (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) nil :replaced)))
+  (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) nil :replaced)))
 
 (defun claimed-p (timeline)
   "True if CLAIM-PACING has returned true for TIMELINE, and UNCLAIM-PACING was not called after
@@ -188,7 +189,7 @@ that."
 (defun unclaim-pacing (timeline)
   "Prevent a run that is about to replace the run of TIMELINE from becoming live, because the run of
 TIMELINE was stopped."
-  (if-paced (pacing timeline) (swap-if (pacing-stopping-p pacing) :replaced t)))
+  (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
   "End the thread that paces TIMELINE after its current tick. If that is another thread, wait until
@@ -197,7 +198,7 @@ interrupted."
   (if-paced (pacing timeline) (stop pacing))
   timeline)
 
-(defun call-alone (timeline function)
+(defun call-without-clock (timeline function)
   "Stop the thread that paces the world of TIMELINE. Then call FUNCTION with custody of the world,
 and return its value."
   (let ((custody (timeline-custody timeline)))
@@ -208,7 +209,7 @@ and return its value."
                                      (let ((pacing (custody-pacing custody)))
                                        (if pacing
                                            (stop pacing)
-                                           (ask-holder custody (constantly nil))))
+                                           (ask-owner custody (constantly nil))))
                                      (return-from busy))))))))
 
 ;;; Warnings about slow users' code. A second thread checks twice in *HOG-SECONDS* where the
@@ -217,7 +218,7 @@ and return its value."
 (defun watch-for-hogs (pacing)
   "Warn about users' code that does not return to the thread of PACING, until that thread ends."
   (loop with calls = (pacing-calls pacing) and seen = nil and looks = 0
-        until (ended-p pacing (/ (hog-seconds) 2))
+        until (wait-for-end pacing (/ (hog-seconds) 2))
         do (let ((origin (user-calls-origin calls)) (count (user-calls-count calls)))
              (cond ((or (null origin) (/= count (or seen -1)) (user-calls-waiting-p calls))
                     (setf seen (and origin count) looks 1))
@@ -227,7 +228,7 @@ and return its value."
                                                still running; (stop-simulator) interrupts it"
                                           (text-of-origin origin) (hog-seconds))))))))
 
-(defun users-code-under-way (simulation)
+(defun users-code-in-progress (simulation)
   "Return a text that names the users' code that the thread of the live SIMULATION is in, and the
 number of calls of users' code that the thread has begun. Return NIL if the thread is not in users'
 code, or waits in a debugger."
@@ -236,7 +237,7 @@ code, or waits in a debugger."
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
       (and origin (values (text-of-origin origin) (user-calls-count calls))))))
 
-(defun users-code-broken-p (simulation)
+(defun users-code-in-debugger-p (simulation)
   "True if the thread of the live SIMULATION is in users' code that waits in a debugger."
   (if-paced (pacing simulation)
     (let ((calls (pacing-calls pacing)))

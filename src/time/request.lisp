@@ -3,7 +3,7 @@
 (in-package :ars-magna.time)
 
 (export '(request request-entry perform resource count-request phase-number changing-phase-p
-          telling-phase-p))
+          notifying-phase-p))
 
 ;;; A request is the name of an operator and its arguments. It waits in a timeline (timeline.lisp)
 ;;; until the next tick begins. Requests are performed in the order in which they were made. Layers
@@ -14,7 +14,7 @@
   (:fixed
    (operator nil t "the requested operator: its name, or an object that has one" :export)
    (arguments '() list "the arguments of the operator" :export)
-   (forked-p (goes-on-in-forks-p) boolean
+   (forked-p (continues-in-forks-p) boolean
              "true if forks of the run contain a copy of the plan or code that made the request"
              :export)
    (phase 0 fixnum "the phase of the tick in which the request was made, 0 between ticks" :export))
@@ -67,6 +67,6 @@ sequence of commands can detect that others made requests in between" :export)))
   "True if the world changes in the phase with the number PHASE."
   (<= (phase-number :requests) phase (phase-number :settling)))
 
-(defun telling-phase-p (phase)
+(defun notifying-phase-p (phase)
   "True if the phase with the number PHASE comes after the world has changed."
   (<= (phase-number :continuations) phase))

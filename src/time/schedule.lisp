@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(call-scheduled abandon release-resource scheduled))
+(export '(call-scheduled interrupt-resources release-resource scheduled))
 
 ;;; Requests for a resource, by SCHEDULE, GRAB-RESOURCE or a command, are performed in the order in
 ;;; which they were made, at the start of the next tick. Of two events of SCHEDULE, the one with the
@@ -80,8 +80,8 @@ advance it for this call."
   "Request an event that calls FUNCTION. The arguments are those of SCHEDULE. Returns nothing.
 Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
-  (check-of-type 'schedule 'timer timer 'tick-span)
-  (when timeout (check-of-type 'schedule 'timeout timeout 'tick-span))
+  (check-argument-type 'schedule 'timer timer 'tick-span)
+  (when timeout (check-argument-type 'schedule 'timeout timeout 'tick-span))
   (post (make-scheduled function (copy-argument 'schedule "resource" resource) priority
                         interrupt when timeout timer)
         simulation))
@@ -97,14 +97,14 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
     (call-scheduled function resource :priority priority :interrupt interrupt :when when
                                       :timeout timeout :timer timer)))
 
-(defun doubtful-delay (head body)
+(defun intended-delay (head body)
   "Return the number in a form (schedule HEAD . BODY) that the user probably meant as a delay, or
 NIL."
   (find-if #'integerp (list* head (and (consp head) (ignore-errors (second head)))
                              (and (typep body '(cons t null)) body))))
 
 (defmethod advice-on-use ((operator (eql 'schedule)) form)
-  (let* ((head (second form)) (delay (doubtful-delay head (cddr form))))
+  (let* ((head (second form)) (delay (intended-delay head (cddr form))))
     (flet ((advice (resource)
              (format nil "write (schedule (~(~A~)~@[ :timer ~D~]) ...)"
                      (unqualified-text resource) delay)))
@@ -131,7 +131,7 @@ INTERRUPT and WHEN, like BODY, run inside ticks. Resources that are EQUAL are th
 Requests for a resource, including commands, are performed in the order in which they were made, at
 the start of the next tick. A command has the priority 0, and interrupts any event on the resource.
 Returns nothing (manual 3.8). See reading 7."
-  (when (test-advice when) (doubt-definition "schedule, :when: ~A" (test-advice when)))
+  (when (test-advice when) (warn-of-style "schedule, :when: ~A" (test-advice when)))
   `(call-scheduled (lambda () ,@body) ,resource
                    :priority ,(or priority 0)
                    :timer ,(or timer 1)
@@ -170,7 +170,7 @@ start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
 
 (define-operator 'grab '(datum) #'grab-resource)
 
-(defun abandon (timeline resources)
+(defun interrupt-resources (timeline resources)
   "Interrupt everything on RESOURCES, in order, and call the continuations. The thread that owns the
 world of TIMELINE calls this function between ticks."
   (dolist (resource resources) (release-resource resource timeline))

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.time)
 
-(export '(fill-agenda check-occupant check-request))
+(export '(fill-agenda check-pending-event check-request))
 
-(defun put-in-place (agenda event)
+(defun restore-event (agenda event)
   "Enter EVENT, whose slots say that it is pending, into AGENDA. Signals CONTRADICTION."
   (let ((resource (event-resource event)))
     (must-hold (and (event-pending-p event)
@@ -25,9 +25,9 @@ resources of EVENTS must already refer to them. Signals CONTRADICTION."
   (must-hold (typep tick `(integer 0 ,(expt 10 15))) "~A is not the number of a tick" tick)
   (must-hold (proper-list-of-p #'event-p events) "the agenda contains objects that are not events")
   (setf (agenda-tick agenda) tick)
-  (dolist (event events) (put-in-place agenda event)))
+  (dolist (event events) (restore-event agenda event)))
 
-(defun check-occupant (resource)
+(defun check-pending-event (resource)
   "Signal CONTRADICTION unless the pending event of RESOURCE, if any, is in the agenda."
   (let ((event (resource-event resource)))
     (must-hold (or (null event)

@@ -3,11 +3,11 @@
 (in-package :ars-magna.time)
 
 (export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-in-this-thread
-          begin-moment check-not-over check-own-run check-not-secluded with-seclusion
-          wake-owner post post-again
-          take-requests asked-inside-p owner-p *repeated* untold-p notify-later
-          deliver-notifications check-thinking thinking-modes-text thinking-mode-p
-          timeline-thinking set-timeline-thinking give-threads thinking-charged-p thinking-budget))
+          count-moment check-not-over check-own-run check-not-secluded with-seclusion wake-owner
+          post post-again take-requests requested-inside-tick-p owner-p *repeated-timeline*
+          continuation-suppressed-p notify-later deliver-notifications check-thinking
+          thinking-modes-text thinking-mode-p timeline-thinking set-timeline-thinking
+          choose-plan-threads thinking-charged-p thinking-budget))
 
 ;;; The thread that owns the timeline passes its ticks. Other threads use it in two ways. POST
 ;;; leaves a request, performed at the start of the next tick, and returns at once; all commands use
@@ -86,14 +86,14 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
   "The current simulation: that of WITH-SIMULATION, that of the simulator's thread, or the last one
 that SIMULATOR has started.")
 
-(setf *run-that-reports* (lambda () *simulation*))
+(setf *reporting-run* (lambda () *simulation*))
 
 (addition current-simulation)
 (defun current-simulation ()
   "Return the current simulation, the value of *SIMULATION*. Signals MISUSE if there is none."
   (or *simulation*
       (reject-use "There is no current simulation. ~A"
-                  (or (run-elsewhere-text)
+                  (or (other-thread-run-text)
                       "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
@@ -101,18 +101,18 @@ that SIMULATOR has started.")
 called."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
-      (reject-outlived "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. (simulator ROBOT) ~
-                        starts another."
-                       operator (timeline-name timeline) (timeline-tick timeline)
-                       (timeline-over timeline)))))
+      (reject-finished-run "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. ~
+                            (simulator ROBOT) starts another."
+                           operator (timeline-name timeline) (timeline-tick timeline)
+                           (timeline-over timeline)))))
 
 (defun wake-owner (timeline)
   "If the thread that paces TIMELINE sleeps, wake it, because there may be work for it."
-  (wake-holder (timeline-custody timeline)))
+  (wake-if-asleep (timeline-custody timeline)))
 
 (defun owner-p (object)
   "True if this thread owns the world of OBJECT."
-  (mine-p (timeline-custody (timeline-of object))))
+  (has-custody-p (timeline-custody (timeline-of object))))
 
 (defun phase-in-this-thread (timeline)
   "If this thread is inside a tick of TIMELINE, return the number of the phase of the tick; else 0."
@@ -121,7 +121,7 @@ called."
 ;;; Plans are copied to forks and act there by themselves; other askers do not. To repeat acts of
 ;;; others at the right moment, their order among the acts of plans must be known.
 
-(defun begin-moment (timeline)
+(defun count-moment (timeline)
   "Record that code which forks repeat is about to be called, or to act, in a tick of TIMELINE after
 the world has changed."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
@@ -131,15 +131,15 @@ the world has changed."
 ;;; continuations of commands that events and kickers issue inside ticks must not be called: their
 ;;; requests would be made twice.
 
-(defvar *repeated* nil "The timeline of the run that this thread is repeating, as in a replay; or
-NIL.")
+(defvar *repeated-timeline* nil
+  "The timeline of the run that this thread is repeating, as in a replay; or NIL.")
 
-(defun untold-p (timeline)
+(defun continuation-suppressed-p (timeline)
   "True if the continuation of a request that this thread now makes to TIMELINE must not be called,
 because the run is being repeated, and so are the requests of the continuation."
-  (and (eq timeline *repeated*)
+  (and (eq timeline *repeated-timeline*)
        (changing-phase-p (phase-in-this-thread timeline))
-       (not (goes-on-in-forks-p))))
+       (not (continues-in-forks-p))))
 
 ;;; Objects of a fork look like those of its original, and are easily confused with them.
 
@@ -192,10 +192,10 @@ that owns the world calls this function."
 removed REQUEST."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil
-        when (swap-if (timeline-inbox timeline) inbox (remove request inbox))
+        when (swap-if-eq (timeline-inbox timeline) inbox (remove request inbox))
           return t))
 
-(defun asked-inside-p (request)
+(defun requested-inside-tick-p (request)
   "True if REQUEST was made while a tick changed the world. If that tick is repeated, it makes the
 request again."
   (changing-phase-p (request-phase request)))
@@ -206,10 +206,10 @@ request again."
   "Empty the inbox of TIMELINE, and return a list of the requests. Requests made inside a tick come
 first; in each group, the oldest comes first."
   (loop for inbox = (timeline-inbox timeline)
-        when (swap-if (timeline-inbox timeline) inbox '())
+        when (swap-if-eq (timeline-inbox timeline) inbox '())
           return (let ((requests (reverse inbox)))
-                   (append (remove-if-not #'asked-inside-p requests)
-                           (remove-if #'asked-inside-p requests)))))
+                   (append (remove-if-not #'requested-inside-tick-p requests)
+                           (remove-if #'requested-inside-tick-p requests)))))
 
 ;;; Notifications.
 
@@ -286,7 +286,7 @@ MODE is valid."
   (setf (timeline-charge timeline) (thinking-charge mode)
         (timeline-real-p timeline) (eq mode :real)))
 
-(defun give-threads (timeline real)
+(defun choose-plan-threads (timeline real)
   "If REAL is true and thinking is not charged for, make the plans of TIMELINE run in a separate
 thread."
   (setf (timeline-real-p timeline) (and real (not (timeline-charge timeline)))))

@@ -140,7 +140,7 @@ robots with these names."
 
 (defun check-trajectory-arguments (file every until robots journal)
   (check-argument save-trajectory file
-                  (and (typep file '(or string pathname)) (not (many-files-p file))
+                  (and (typep file '(or string pathname)) (not (wildcard-name-p file))
                        (pathname-name file))
                   "the name of a file, such as \"run.csv\"; in the name, write \\\\ before each * ?
 and [")
@@ -169,9 +169,9 @@ WRONG-ARGUMENT, UNKNOWN-NAME, the errors of REPLAY, and MISUSE if there is no jo
 another file or cannot be written. After an error FILE is unchanged."
   (let ((journal (resolve-journal journal 'save-trajectory)) (robots (ensure-list robots)))
     (check-trajectory-arguments file every until robots journal)
-    (check-not-foreign file :trajectory "trajectory")
+    (check-kind-of-file file :trajectory "trajectory")
     (let ((text (with-output-to-string (out)
                   (replaying (anyway)
                     (write-trajectory journal out every until robots)))))
-      (write-file-anew (lambda (out) (write-string text out)) file "the trajectory"
-                       :kind :trajectory))))
+      (overwrite-file (lambda (out) (write-string text out)) file "the trajectory"
+                      :kind :trajectory))))

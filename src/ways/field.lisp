@@ -158,7 +158,7 @@ yet."
 (defmethod copy-plan-value ((field field) fork)
   (if (field-lock field)
       field
-      (note-copy field (copy-field field) fork)))
+      (record-copy field (copy-field field) fork)))
 
 ;;; Drafts.
 

@@ -65,8 +65,8 @@ never modified" :writable)
   "Signal MISUSE unless there is memory for OCTETS bytes for each of CELLS cells. Discard all fields
 if this frees enough memory."
   (let ((all (* cells octets)))
-    (unless (or (room-p all)
-                (progn (discard-all-fields) (room-p all)))
+    (unless (or (heap-room-p all)
+                (progn (discard-all-fields) (heap-room-p all)))
       (reject-use "Ways on a map of ~D cells need ~D MB, more memory than this Lisp has; start ~
                    SBCL with a larger --dynamic-space-size."
                   cells (ceiling all 1000000)))))

@@ -42,7 +42,7 @@
   "Return the declared name that NAME, an undeclared name, is probably a misspelling of; or NIL."
   (let ((key (attribute-key name)))
     (unless (or (declared-attribute key) (eq key :draw-function))
-      (find-if (lambda (other) (resembles-p key other))
+      (find-if (lambda (other) (misspelling-p key other))
                (cons :draw-function (defined-names *attributes*))))))
 
 ;;; Defining.
@@ -128,10 +128,10 @@ or discrete."
                        ;; Numeric attributes may have symbols as values, for which :success is.
                        (and (not (given-p :base)) (given-p :success) :success))))
       (when strange
-        (doubt-definition "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base ~
-                           numbers are read exactly~;numbers; the option for values in a list is ~
-                           :success~]."
-                          definition strange (consp domain))))))
+        (warn-of-style "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base ~
+                        numbers are read exactly~;numbers; the option for values in a list is ~
+                        :success~]."
+                       definition strange (consp domain))))))
 
 (defun attribute-forms (name domain options)
   "Return the forms that DEFATTRIBUTE expands to (reading 119)."
@@ -215,7 +215,7 @@ alternatives. ATTRIBUTE is NIL for an undeclared attribute."
 (define-facts (attribute attribute)
   "Values" (if (eq :numeric (attribute-kind attribute))
                "numbers"
-               (listed (attribute-domain attribute)))
+               (comma-separated (attribute-domain attribute)))
   "Chance of a right reading" (and (eq :discrete (attribute-kind attribute))
                                    (attribute-success attribute))
   "Standard deviation of readings" (and (eq :numeric (attribute-kind attribute))
@@ -223,4 +223,4 @@ alternatives. ATTRIBUTE is NIL for an undeclared attribute."
                                                 (attribute-base attribute)
                                                 (attribute-max-mult attribute)))
   "Chance of being sensed unasked" (attribute-noticed attribute)
-  "Sensed more often together with" (listed (attribute-supporters attribute)))
+  "Sensed more often together with" (comma-separated (attribute-supporters attribute)))

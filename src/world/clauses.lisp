@@ -45,7 +45,7 @@ MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
       (reject-clause definition clause
                      (format nil "~A (~A~@[; there is ~A~])" expected
                              (string-right-trim "." (text-of-condition condition))
-                             (exported-variable-named (missing-name condition)))))))
+                             (exported-variable-named (undefined-name-of condition)))))))
 
 (defun exported-variable-named (name)
   "Return the text PACKAGE:NAME of a variable named NAME that some package exports, or NIL."
@@ -69,15 +69,15 @@ the whole current definition."
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))
       nil)
     (read-again ()
-      :test in-file-p
+      :test definition-in-file-p
       :report "Read the clause again from its file."
       (call-with-clause function (reduce (lambda (form position) (nth position form)) path
-                                         :initial-value (definition-again *definition*))
+                                         :initial-value (reread-definition *definition*))
                         path))
     (use-value (other)
       :report "Use another clause."
-      :interactive (lambda () (read-value "A clause to use"))
-      (if (other-definition-p other)
+      :interactive (lambda () (ask-for-form "A clause to use"))
+      (if (replacing-form-p other)
           (use-value other)
           (call-with-clause function other path)))))
 

@@ -136,7 +136,7 @@ cache. Worlds of MAP see the change at once. Return the map."
 ;;; Warnings.
 
 (defun warn-of-clause (map clause control &rest arguments)
-  (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-place clause) control arguments))
+  (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-location clause) control arguments))
 
 (defun warn-of-walls (map clause walls)
   (when (loop for wall in walls
@@ -148,7 +148,7 @@ cache. Worlds of MAP see the change at once. Return the map."
                     clause (map-width map) (map-height map)))
   (dolist (name (substances-of map walls))
     (let ((like (unless (find-substance name nil)
-                  (find-if (lambda (other) (resembles-p name other))
+                  (find-if (lambda (other) (misspelling-p name other))
                            (defined-names *substances*)))))
       (when like
         (warn-of-clause map clause "the substance ~(~A~) is not defined; did you mean ~(~A~)?"
@@ -160,7 +160,7 @@ cache. Worlds of MAP see the change at once. Return the map."
       (when (wall-at-p map x y)
         (warn-of-clause map name "~(~A~) at ~A is inside a wall, where robots may not see or reach ~
                                   it."
-                        name (point-in-text x y))))))
+                        name (point-text x y))))))
 
 ;;; Making it.
 
@@ -202,7 +202,7 @@ writes in. Return the map."
 (defun check-frame (definition frame)
   (unless (and (proper-list-p frame)
                (= 4 (length frame))
-               (every #'within-reason-p frame)
+               (every #'sane-number-p frame)
                (< 1d-9 (first frame)))
     (reject-clause definition (list :frame frame)
                    "(:frame (size x y yaw)): four numbers from -1e9 to 1e9, the first positive")))
@@ -244,14 +244,14 @@ is a symbol of Common Lisp or of the simulator, such as ROOM, there is no variab
 redefinition applies to runs that start later; a live simulation of the old map stops. Signals
 MALFORMED-DEFINITION, with restarts for the clause. Return the name."
   (expand-definition form environment
-                     (lambda () (values (map-forms name size clauses) (variable-forms name)))))
+                     (lambda () (values (map-forms name size clauses) (defvar-forms name)))))
 
 (define-facts (map map)
   "Size" (format nil "~D x ~D metres" (map-width map) (map-height map))
-  "Walls of" (listed (coerce (remove nil (map-substance-types map)) 'list))
-  "Things to start with" (listed (mapcar #'recipe-name (map-things map)))
-  "Place types" (listed (remove-duplicates
-                             (loop for number across (map-places map)
-                                   unless (zerop number)
-                                     collect (place-type-name
-                                              (aref (map-place-types map) number))))))
+  "Walls of" (comma-separated (coerce (remove nil (map-substance-types map)) 'list))
+  "Things to start with" (comma-separated (mapcar #'recipe-name (map-things map)))
+  "Place types" (comma-separated (remove-duplicates
+                                      (loop for number across (map-places map)
+                                            unless (zerop number)
+                                              collect (place-type-name
+                                                       (aref (map-place-types map) number))))))

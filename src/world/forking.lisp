@@ -100,12 +100,12 @@ function that copies attachments."
 
 (defun copy-stock (stock things copier)
   (let ((copy (make-stock)))
-    (setf (stock-things copy) (note-finished things copier)
+    (setf (stock-things copy) (record-finished-copy things copier)
           (stock-count copy) (stock-count stock)
-          (stock-firsts copy) (note-finished (copy-seq (stock-firsts stock)) copier)
-          (stock-nexts copy) (note-finished (copy-seq (stock-nexts stock)) copier)
-          (stock-marks copy) (note-finished (copy-seq (stock-marks stock)) copier))
-    (note-finished copy copier)))
+          (stock-firsts copy) (record-finished-copy (copy-seq (stock-firsts stock)) copier)
+          (stock-nexts copy) (record-finished-copy (copy-seq (stock-nexts stock)) copier)
+          (stock-marks copy) (record-finished-copy (copy-seq (stock-marks stock)) copier))
+    (record-finished-copy copy copier)))
 
 (defun copy-each-thing (old new count world copier)
   (declare #.*hot* (type simple-vector old new) (type cell-index count))
@@ -140,6 +140,6 @@ function that copies attachments."
         ;; Their members are put into the rows later.
         (dolist (group (world-kicker-groups world))
           (setf (group-row (copy-slots group fork))
-                (note-finished (copy-seq (group-row group)) fork)))
+                (record-finished-copy (copy-seq (group-row group)) fork)))
         (copy-things world copy fork)
         copy)))

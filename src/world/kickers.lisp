@@ -59,7 +59,7 @@ attachment" :writable))
 (defmethod copy-plan-value ((kicker kicker) fork)
   (if (or (eq kicker (find-kicker (kicker-name kicker) nil))
           (notany #'closure-p (list (kicker-test kicker) (kicker-body kicker))))
-      (note-copy kicker kicker fork)
+      (record-copy kicker kicker fork)
       (copy-slots kicker fork)))
 
 (defvar *kicker-generation* 0 "How many times a kicker has been redefined.")
@@ -69,7 +69,7 @@ attachment" :writable))
   "The attached kicker whose test or body is running, for RUN-KICKER; otherwise NIL (manual
 5.3.1).")
 
-(defmethod reinstate ((kicker kicker))
+(defmethod redo-definition ((kicker kicker))
   (incf *kicker-generation*)
   kicker)
 
@@ -100,8 +100,8 @@ are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. 
                    "a list of options before the body, such as (:prob 1/10) or (:test form)"))
   (check-options definition options '(:prob :test))
   (let ((advice (test-advice (getf options :test))))
-    (when advice (doubt-definition "~A, :test: ~A" definition advice)))
-  (when (body-advice body) (doubt-definition "~A: ~A" definition (body-advice body)))
+    (when advice (warn-of-style "~A, :test: ~A" definition advice)))
+  (when (body-advice body) (warn-of-style "~A: ~A" definition (body-advice body)))
   (flet ((thing-function (forms)
            `(lambda (,variable) (declare (ignorable ,variable)) ,@forms)))
     `(:prob ,(getf options :prob 1)
@@ -139,7 +139,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
        (values `((define-kicker ',name
                    ,@(kicker-functions definition (first lambda-list) options body)
                    :test-attributes ',(attributes-read-in (getf options :test))))
-               (variable-forms name))))))
+               (defvar-forms name))))))
 
 ;;; Putting kickers on things and taking them off.
 

@@ -59,8 +59,8 @@ word of the header."
   "Write WORDS to the file PATH atomically. Signals an error if PATH is write-protected."
   (ensure-directories-exist path)
   (remove-abandoned-files (uiop:pathname-directory-pathname path))
-  (check-unprotected path)
-  (call-with-own-lisps-dice
+  (check-writable path)
+  (call-with-own-random-state
    (lambda ()
      (uiop:with-temporary-file (:stream out :pathname new :element-type '(unsigned-byte 64)
                                 :directory (uiop:pathname-directory-pathname path)
@@ -124,7 +124,7 @@ no file."
   "True if the file PATH exists and is not a map cache, not even a damaged one, or if this cannot be
 determined."
   (and (ignore-errors (probe-file path))
-       (not (ignore-errors (and (plain-file-p path) (begins-as-cache-p path))))))
+       (not (ignore-errors (and (regular-file-p path) (begins-as-cache-p path))))))
 
 (defun warn-of-cache (map path what)
   (warning-set "The cache " (native-name path) " of map " (map-name map) " " what
@@ -155,7 +155,7 @@ determined."
 directory."
   (let ((directory (base-directory))
         (file (source-file (current-source))))
-    (merge-pathnames (path-called name)
+    (merge-pathnames (path-of-name name)
                      (if file
                          (merge-pathnames (uiop:pathname-directory-pathname (native-path file))
                                       directory)

@@ -120,7 +120,7 @@ and, with a warning in a compiled file, for an invalid clause."
   "Return a form for the function of a kind of clause, with the LAMBDA-LIST of its clauses and its
 OPTIONS."
   (destructuring-bind (map . parameters) lambda-list
-    (multiple-value-bind (whole parameters) (variable-after '&whole parameters)
+    (multiple-value-bind (whole parameters) (variable-after-key '&whole parameters)
       (with-gensyms (option clause kind)
         `(lambda (,option ,map ,clause)
            (declare (ignorable ,map))

@@ -121,7 +121,7 @@ NAME, the name of a map."
         value
         name)))
 
-(defmethod take-back ((map map))
+(defmethod undo-definition ((map map))
   (map-replaced map nil))
 
 ;;; Cells.
@@ -186,8 +186,8 @@ WRONG-ARGUMENT."
   "Return the cell of MAP that holds the point (X, Y), in metres; the point may be outside the map.
 Signals WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
   (check-argument map-cell map (map-p map) "a map")
-  (check-of-type 'map-cell 'x x 'number)
-  (check-of-type 'map-cell 'y y 'number)
+  (check-argument-type 'map-cell 'x x 'number)
+  (check-argument-type 'map-cell 'y y 'number)
   (make-cell map (floor x) (floor y)))
 
 (defun cell-index-in-map (cell)

@@ -153,7 +153,7 @@ messages (reading 72)."
          (origin (list "the :directions of place type " (place-type-name type))))
     (multiple-value-bind (one other)
         (and function (call-user-code function origin (place-cell place)))
-      (cond ((and (within-reason-p one) (within-reason-p other))
+      (cond ((and (sane-number-p one) (sane-number-p other))
              (values (double one) (double other)))
             (t (when (and function (or one other))
                  (apply #'error-set (append origin (list " are not two angles at "
@@ -175,7 +175,7 @@ messages (reading 72)."
     (reject-clause definition options "either :check-matchers or :checker, but not both")))
 
 (defun checked-direction (definition matcher direction)
-  (unless (within-reason-p direction)
+  (unless (sane-number-p direction)
     (reject-clause definition matcher (argument-type-text 'angle)))
   (when (perhaps-degrees-p direction)
     (warn-notably definition ": " (degrees-advice direction)))

@@ -114,7 +114,7 @@ mistakes in the definition of TYPE."
 (defun check-checker-values (type cell values)
   (destructuring-bind (dx dy direction) values
     (unless (and (typep dx '(signed-byte 16)) (typep dy '(signed-byte 16))
-                 (within-reason-p direction))
+                 (sane-number-p direction))
       (reject-type-option type :checker
                           (format nil "four values at ~A: a boolean, two integers, a direction ~
                                        (the values after the first were~{ ~S~})"
@@ -152,7 +152,7 @@ of TYPE in MAP."
                (directions (call-place-type-code
                             (lambda () (multiple-value-list (funcall function cell)))
                             cell type :directions)))
-          (unless (and (= 2 (length directions)) (every #'within-reason-p directions))
+          (unless (and (= 2 (length directions)) (every #'sane-number-p directions))
             (reject-type-option type :directions
                                 (format nil "two values at ~A, both angles in radians, not~{ ~S~}"
                                         cell directions))))))))
@@ -296,7 +296,7 @@ cells; else NIL."
          (takers (and (place-type-table type)
                       (covering-types rules (ldiff types (member type types))))))
     (when takers
-      (doubt-definition "~A: all cells that fit are of the type ~{~(~A~)~^ or ~} already; the type ~
+      (warn-of-style "~A: all cells that fit are of the type ~{~(~A~)~^ or ~} already; the type ~
                          that was defined earlier wins; to let this type win, write :before ~(~A~)"
                         definition (mapcar #'place-type-name takers)
                         (place-type-name (find-if (lambda (other) (member other takers))

@@ -105,7 +105,7 @@ such warning about WHAT in a run is also printed if no program reads it."
                  :notable-p (first-time-p (list :in-wall what) world))))
 
 (defun check-inside (operator map x y)
-  (unless (and (within-reason-p x) (within-reason-p y) (map-index map x y))
+  (unless (and (sane-number-p x) (sane-number-p y) (map-index map x y))
     (reject-argument operator "position" (list x y)
                      (format nil "a point of ~A, which is ~D by ~D metres"
                              map (map-width map) (map-height map)))))
@@ -138,7 +138,7 @@ Return the world of HOLDER."
   (location-world holder))
 
 (defun check-movable (operator thing)
-  (check-of-type operator "thing" thing 'thing)
+  (check-argument-type operator "thing" thing 'thing)
   (unless (thing-world thing)
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))
@@ -276,8 +276,8 @@ to its start. Return NIL if no cell is empty."
 
 (defun kick-by-numbers (thing dx dy kick-if-wall)
   (check-argument kick-thing thing (thing-p thing) (argument-type-text 'thing thing))
-  (check-argument kick-thing dx (within-reason-p dx) (argument-type-text 'number dx))
-  (check-argument kick-thing dy (within-reason-p dy) (argument-type-text 'number dy))
+  (check-argument kick-thing dx (sane-number-p dx) (argument-type-text 'number dx))
+  (check-argument kick-thing dy (sane-number-p dy) (argument-type-text 'number dy))
   (changing ((thing-world thing) kick-thing thing dx dy kick-if-wall)
     (let ((kick (make-kick (double dx) (double dy))))
       (declare (dynamic-extent kick))
@@ -288,8 +288,8 @@ to its start. Return NIL if no cell is empty."
 thread may not change the world."
   (declare #.*hot* (type kick kick))
   (if (and (thing-p thing)
-           (within-reason-p (kick-dx kick))
-           (within-reason-p (kick-dy kick))
+           (sane-number-p (kick-dx kick))
+           (sane-number-p (kick-dy kick))
            (changing-thread-p (thing-world thing)))
       (%kick-thing thing kick kick-if-wall)
       :otherwise))

@@ -64,7 +64,7 @@ WRONG-ARGUMENT."
 (defun misspelling-p (name other)
   (flet ((without-digits (name)
            (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name))))
-    (and (resembles-p name other)
+    (and (misspelling-p name other)
          (not (string-equal (without-digits name) (without-digits other))))))
 
 (defun similar-thing-name (name world)

@@ -14,7 +14,7 @@
 NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
-          when (and (not (declared-attribute other)) (resembles-p key other))
+          when (and (not (declared-attribute other)) (misspelling-p key other))
             do (return-from undeclared-name-like other))))
 
 (defun similar-name (key world)
@@ -160,7 +160,7 @@ in a map and at run time.")
   "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
   (let ((key (attribute-key name)))
     (or (assoc key *options-of-things*)
-        (find-if (lambda (option) (resembles-p key (first option))) *options-of-things*))))
+        (find-if (lambda (option) (misspelling-p key (first option))) *options-of-things*))))
 
 (defun find-misspellings (descriptor)
   "Return a list of probable mistakes in DESCRIPTOR: (name like) for a name that resembles the
@@ -191,7 +191,7 @@ instead."
 thing's clause in a map, or NIL."
   (dolist (slip (find-misspellings descriptor))
     (warn-of-definition "~A~@[ (~A)~]: ~A" definition
-                        (clause-place (or clause (assoc (first slip) descriptor)))
+                        (clause-location (or clause (assoc (first slip) descriptor)))
                         (misspelling-text name slip clause))))
 
 (defun warn-once-of-misspellings (name descriptor world)
@@ -223,7 +223,7 @@ and a text that says what is wrong."
   (dolist (map (all-maps))
     (multiple-value-bind (recipe trouble)
         (unfit-recipe (map-things map) (attribute-name new))
-      (when (and recipe (not (from-this-file-p (map-name map) *maps*)))
+      (when (and recipe (not (defined-in-this-file-p (map-name map) *maps*)))
         (warn-of-definition "In map ~(~A~), ~(~A~) has a value that the new definition does not ~
                              allow: ~A"
                             (map-name map) (recipe-name recipe) trouble)))))
@@ -235,5 +235,5 @@ and a text that says what is wrong."
                    (format nil "(~,2F,~,2F)" (thing-x thing) (thing-y thing)))
                   (t (thing-holders-text thing))))
   "Attributes" (thing-attributes thing)
-  "Contents" (listed (thing-contents thing))
-  "Kickers" (listed (mapcar #'attachment-name (thing-kickers thing))))
+  "Contents" (comma-separated (thing-contents thing))
+  "Kickers" (comma-separated (mapcar #'attachment-name (thing-kickers thing))))

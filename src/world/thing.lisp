@@ -157,7 +157,7 @@ current definition, or else by a message."
                                DEFSUBSTANCE.~@[ Did you mean ~(~A~)?~]"
                           type (nearest-name type (defined-names *substances*)))))
         (if *definition*
-            (warn-of-definition "~@[~A: ~]~A" (clause-place type) text)
+            (warn-of-definition "~@[~A: ~]~A" (clause-location type) text)
             (warning-set text))))))
 
 ;;; Containment.

@@ -120,7 +120,7 @@ vain."
 (defun call-with-home (function name)
   "Call FUNCTION with the name of a new directory, called after NAME and removed afterwards."
   (let* ((home (format nil "~Aars-~A-~A/" (uiop:native-namestring (uiop:temporary-directory))
-                       name (base:process-number)))
+                       name (base:process-id)))
          (path (uiop:parse-native-namestring home)))
     (ensure-directories-exist path)
     (unwind-protect (funcall function home)

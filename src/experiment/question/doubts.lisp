@@ -14,23 +14,23 @@
     (unless (or (special-p name)
                 (loop for key in '(:run :until :success :measure :each-tick)
                       thereis (mentioned-p name (clause-arguments key clauses))))
-      (doubt-definition "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
-                         ~A?~]"
-                        name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
+      (warn-of-style "~A is varied, but no form mentions it.~@[ Did you mean the parameter ~
+                      ~A?~]"
+                     name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
 (defun warn-of-unnamed-measures (key clauses)
   "Warn if a part (name form) of the clause KEY of CLAUSES looks like a call with a robot."
   (loop with robots = (clause-arguments :robots clauses)
         for (name form) in (clause-arguments key clauses)
         when (and (fboundp name) (symbolp form) (member form robots))
-          do (doubt-definition "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
-                                it first: (~(~S~) (NAME (~A ~A)))."
-                               name form name form key name form)))
+          do (warn-of-style "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
+                             it first: (~(~S~) (NAME (~A ~A)))."
+                            name form name form key name form)))
 
 (defun warn-of-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
-    (doubt-definition "a trial is already a run. A with-simulation in it starts another run, with ~
+    (warn-of-style "a trial is already a run. A with-simulation in it starts another run, with ~
                        the same seed in each trial, and measures do not see it. Leave ~
                        with-simulation out: (run-plan ...) alone.")))
 
@@ -50,7 +50,7 @@
     (when (and name (find-procedure name nil))
       (reject-clause definition clause (run-plan-advice name))))
   (let ((advice (test-advice (first (last clause)))))
-    (when advice (doubt-definition "~A, :run: ~A" definition advice))))
+    (when advice (warn-of-style "~A, :run: ~A" definition advice))))
 
 ;;; Tests.
 
@@ -60,7 +60,7 @@
              (same-name-p 'if (first form))
              (same-name-p 'run-plan (first (second form))))
     (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
-      (doubt-definition ":run: a plan that fails has its failure as the value, which is true, so ~
+      (warn-of-style ":run: a plan that fails has its failure as the value, which is true, so ~
                          that ~S is T even then. Write only ~S, whose second value says how the ~
                          plan ended, or a clause (:success form)."
                         (abridged form) (abridged (second form))))))
@@ -101,12 +101,12 @@
 false."
   (unless (= 2 (length clause)) (reject-by-usage definition clause))
   (let* ((test (second clause))
-         (doubt (or (test-doubt test)
+         (doubt (or (doubtful-test-text test)
                     (test-advice test)
                     (number-as-test-advice test)
                     (state-as-test-advice test)
                     (plan-as-test-advice test))))
-    (when doubt (doubt-definition "~A: ~(~S~): ~A" definition (first clause) doubt))))
+    (when doubt (warn-of-style "~A: ~(~S~): ~A" definition (first clause) doubt))))
 
 (defun warn-of-quoted-measure (definition part)
   "Warn if the form in PART, (name form), is quoted: the measure would be the form itself."
@@ -114,6 +114,6 @@ false."
     (when (or (typep (second part) '(cons (eql quote) (cons cons null)))
               (and name (fboundp name)))
       (let ((*print-case* :downcase) (*print-pretty* nil))
-        (doubt-definition "~A: the measure ~(~A~) is quoted: its value would be the form. Write ~
+        (warn-of-style "~A: the measure ~(~A~) is quoted: its value would be the form. Write ~
                            the form alone: ~:[~S~;(~S ...)~]."
                           definition (first part) name (or name (second (second part))))))))

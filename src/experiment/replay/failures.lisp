@@ -143,7 +143,7 @@ Signals MISUSE if lines are missing."
     (call-with-line-reader
      (lambda (line-of)
        (loop for line in (block-lines block line-of)
-             for (tick . texts) = (nthcdr (+ seed 2) (csv-texts (line-text line)))
+             for (tick . texts) = (nthcdr (+ seed 2) (csv-fields (line-text line)))
              collect (cons (parse-integer tick)
                            (loop for text in texts collect (value-from-text text shared)))))
      (list (block-file block)))))

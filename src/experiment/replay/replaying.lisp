@@ -11,7 +11,7 @@
 ;;; the trial are called aside: with the reader, printer, dice and debugger from outside the trial.
 
 (defparameter *surroundings*
-  (list *lisps-dice*
+  (list *random-state-variable*
         '*package* '*readtable* '*read-default-float-format* '*read-base* '*print-base*
         '*print-radix* '*print-case* '*print-pretty* '*print-readably* '*print-escape*
         '*print-circle* '*print-length* '*print-level* '*print-array* '*print-gensym* '*asker*)
@@ -94,7 +94,7 @@ result."
         for left = (- due (seconds-now))
         do (answer-questions (timeline-custody (simulation-timeline simulation)))
         while (plusp left)
-        do (wait-a-while never (min left 0.02))))
+        do (wait-and-serve never (min left 0.02))))
 
 (defun paced-gate (rate)
   "Return a gate that lets RATE ticks a second pass. The gate opens a display first, if there is

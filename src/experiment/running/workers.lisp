@@ -159,7 +159,7 @@ unless the function STOPPING-P returns true."
       (unwind-protect (progn (funcall function)
                              (setf returned-p t)
                              nil)
-        (unless (or returned-p *leaving-p* (funcall stopping-p))
+        (unless (or returned-p *exiting-p* (funcall stopping-p))
           (return-from call t))))))
 
 (defun call-within-seconds (function seconds)
@@ -272,7 +272,7 @@ STOPPING-P returns true."
                    (run-and-store-trial experiment condition trial queue store progress worker)))))
     (call-without-output
      (lambda ()
-       (call-with-trial-syntax (lambda () (call-with-own-lisps-dice #'work)))))))
+       (call-with-trial-syntax (lambda () (call-with-own-random-state #'work)))))))
 
 (defun run-queue (experiment queue store progress workers)
   "Run the trials of QUEUE in WORKERS threads. After a non-local exit no more trials are started,

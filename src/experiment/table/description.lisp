@@ -142,7 +142,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
     (write-checked-text text (description-file directory))))
 
 (defun write-checked-text (text file)
-  (write-file-anew (lambda (stream)
+  (overwrite-file (lambda (stream)
                      (write-string text stream)
                      (write-string (checksum-line text) stream))
                    file "the description" :remedy "remove it, or give another directory"))

@@ -56,7 +56,7 @@
   (let ((path (loop for number from 0
                     for path = (directory-path (format nil "~Atrials-~D-~D/"
                                                        (native-name (uiop:temporary-directory))
-                                                       (process-number) number))
+                                                       (process-id) number))
                     when (make-new-directory path) return path)))
     (unwind-protect (funcall function path)
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
@@ -71,7 +71,7 @@ signal DAMAGED-TABLE."
     (check-file-header file columns)
     (let ((end (map-lines (constantly nil) file)))
       (unless (= end (file-size file))
-        (call-reporting-file-errors (lambda () (check-unprotected file) (truncate-file file end))
+        (call-reporting-file-errors (lambda () (check-writable file) (truncate-file file end))
                                     file))
       (plusp end))))
 
@@ -80,7 +80,7 @@ signal DAMAGED-TABLE."
   (let ((new (not (remove-incomplete-line file columns)))
         (stream (call-reporting-file-errors
                  (lambda ()
-                   (check-unprotected file)
+                   (check-writable file)
                    (open file :direction :output :if-exists :append :if-does-not-exist :create
                               :external-format :utf-8))
                  file)))
@@ -122,7 +122,7 @@ signal DAMAGED-TABLE."
       (reject-table (pathname stream) nil
                     "no row can be added to this table (~A). The rows in it are kept; continue ~
                      once there is room on the disk."
-                    (unwritten-reason condition)))))
+                    (write-failure-text condition)))))
 
 ;; The series is written first, so that a trial with a row has all of its series.
 (defun store-row (store result milliseconds worker)
@@ -150,7 +150,7 @@ in the worker numbered WORKER."
   (list (condition-name (result-condition result))
         (integer-text (result-seed result)) (integer-text (result-trial result))
         (float-text (/ (round milliseconds 1/1000) 1000d0))
-        (integer-text worker) (integer-text (process-number)) (machine-instance)))
+        (integer-text worker) (integer-text (process-id)) (machine-instance)))
 
 ;;; Existing rows. Their presence is a table from conditions to bits, one for each trial.
 

@@ -26,7 +26,7 @@ from 1. Return the position after the last complete line."
   (let ((line (first-line file)))
     (unless line (reject-table file nil "the file is empty. Delete this file."))
     (check-header-line line file)
-    (let ((columns (ignore-errors (csv-texts (line-text line)))))
+    (let ((columns (ignore-errors (csv-fields (line-text line)))))
       (unless (table-columns-p columns layout)
         (reject-table file 1 "this is no table of an experiment. Give another directory."))
       columns)))

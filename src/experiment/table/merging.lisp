@@ -9,7 +9,7 @@
   (let ((file (find-if #'existing-path (mapcar #'description-file directories)))
         (own (description-file target)))
     (when (and file (not (equal file own)))
-      (call-reporting-file-errors (lambda () (check-unprotected own) (uiop:copy-file file own))
+      (call-reporting-file-errors (lambda () (check-writable own) (uiop:copy-file file own))
                                   own))))
 
 (defun merge-series (directories target rows)

@@ -164,7 +164,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (let ((path (directory-path directory)))
     (check-files-plain path)
     (unless (existing-path (rows-file path))
-      (let ((advice (file-advice (path-called directory) nil)))
+      (let ((advice (advice-on-file (path-of-name directory) nil)))
         (when advice (reject-use "~A is no directory of an experiment: ~A." directory advice)))
       (reject-use "There is no rows.csv in ~A. Give the directory of an experiment."
                   (native-name path)))

@@ -72,7 +72,7 @@ SERIES, the trial's lines, at the end."
 with the text TROUBLE and the reason."
   (handler-case (funcall function)
     (ars-magna-error (condition) (error condition))
-    (error (condition) (reject-table file nil trouble (unwritten-reason condition)))))
+    (error (condition) (reject-table file nil trouble (write-failure-text condition)))))
 
 ;;; The header.
 
@@ -149,12 +149,12 @@ with the text TROUBLE and the reason."
   (declare #.*hot* (type (simple-array character (*)) line))
   (if (every (lambda (char) (< (char-code char) 128)) line)
       line
-      (decoded line)))
+      (utf-8-decoded line)))
 
 (defun cells-of-line (line columns file number)
   "Return the cells of LINE, the octets of line NUMBER of FILE. FILE is a table of rows or series
 with COLUMNS. Signals DAMAGED-TABLE."
-  (let ((texts (handler-case (csv-texts (line-text line))
+  (let ((texts (handler-case (csv-fields (line-text line))
                  (broken-line () '()))))
     (unless (= (length texts) (length columns))
       (reject-row file number "This is no row with ~D columns." (length columns)))
@@ -177,7 +177,7 @@ with COLUMNS. Signals DAMAGED-TABLE."
 (defun check-plain-file (file)
   "Signal DAMAGED-TABLE if FILE exists and is not a plain file."
   (let ((trouble (cond ((dangling-link-p file) "it is a link to a file that does not exist")
-                       ((and (probe-file file) (not (plain-file-p file)))
+                       ((and (probe-file file) (not (regular-file-p file)))
                         "it is a directory, pipe, socket or device"))))
     (when trouble
       (reject-table file nil "~A. Remove it, or give another directory." trouble))))
@@ -190,4 +190,4 @@ with COLUMNS. Signals DAMAGED-TABLE."
 (defun directory-path (name)
   "Return the absolute path of the directory NAME, a string or pathname."
   (uiop:ensure-directory-pathname
-   (merge-pathnames (path-called name :directory t) (base-directory))))
+   (merge-pathnames (path-of-name name :directory t) (base-directory))))

@@ -43,10 +43,10 @@ depths."
   (elements +most-elements+ :type fixnum))
 
 (defun digest-word-into (word walk)
-  (digest-word (walk-digest walk) (ldb (byte 64 0) word)))
+  (digest-add-word (walk-digest walk) (ldb (byte 64 0) word)))
 
 (defun digest-text-into (text walk)
-  (digest-word-into (text-word text) walk))
+  (digest-word-into (text-hash text) walk))
 
 (defun digest-atom-into (atom walk)
   (typecase atom

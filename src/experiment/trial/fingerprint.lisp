@@ -122,7 +122,7 @@ table first."
 ;; Experiments are skipped: their factors and numbers of trials do not affect a trial.
 (defun visit-definition (entry reach)
   (let ((object (entry-object entry)))
-    (when (and (not (experiment-p object)) (users-p entry) (first-visit-p entry reach))
+    (when (and (not (experiment-p object)) (users-entry-p entry) (first-visit-p entry reach))
       (note-part (type-of object) (qualified-symbol-name (entry-name entry))
                  (or (entry-digest entry) 0) reach)
       (let ((file (source-file (entry-source entry))))
@@ -152,7 +152,7 @@ table first."
           (symbol-name symbol)))
 
 (defun visit-name (symbol reach)
-  (let ((entries (entries-meant symbol)))
+  (let ((entries (users-entries-named symbol)))
     (dolist (entry entries) (visit-definition entry reach))
     (cond ((special-operator-p symbol))
           ((macro-function symbol) (visit-function (macro-function symbol) symbol reach))
@@ -160,7 +160,7 @@ table first."
            (note-function (fdefinition symbol) symbol reach)
            (visit-function (fdefinition symbol) symbol reach)))
     (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
-    (loop for (file written) in (files-besides-functions symbol)
+    (loop for (file written) in (files-of-other-definitions symbol)
           do (note-file file written reach))
     ;; Some variables are set and never declared.
     (when (and (null entries)

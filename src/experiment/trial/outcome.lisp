@@ -117,7 +117,7 @@ table cannot have that value."
   (let ((trouble (catch 'broken-off
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
-    (when (typep trouble 'condition) (regain-room trouble))
+    (when (typep trouble 'condition) (recover-memory trouble))
     (if (typep trouble 'condition)
         (call-with-trial-syntax (lambda () (text-of-condition trouble)))
         trouble)))
@@ -136,7 +136,7 @@ table cannot have that value."
   ;; Lists (tick text...), the newest first.
   (samples '() :type list)
   ;; The dice of CL:RANDOM while samples are taken.
-  (dice (seeded-lisps-dice 0) :read-only t)
+  (dice (seeded-random-state 0) :read-only t)
   ;; The text of the first error, or NIL.
   (trouble nil :type (or null string)))
 
@@ -159,9 +159,9 @@ table cannot have that value."
 (defun call-with-sampling-dice (function sampler tick world)
   "Call FUNCTION without changing the dice of WORLD or of the trial's programs."
   ;; Not the seed alone: the trial's programs have that.
-  (reseed-lisps-dice (+ (result-seed (sampler-result sampler)) (ash (1+ tick) 32))
-                     (sampler-dice sampler))
-  (rolling ((sampler-dice sampler))
+  (reseed-random-state (+ (result-seed (sampler-result sampler)) (ash (1+ tick) 32))
+                       (sampler-dice sampler))
+  (with-random-state ((sampler-dice sampler))
     (call-with-temporary-dice function tick world)))
 
 (defun sampled-text (sampler name function tick)
