@@ -112,13 +112,13 @@
     (with-open-file (out (ensure-directories-exist (cache-file)) :direction :output)
       (write-string "Chapter one of a thesis." out))
     (let ((built (grid-of (apply #'cached-map *cached-clauses*))))
-      (is (search "is no cache" (first (message-texts))))
+      (is (search " is no map cache" (first (message-texts))))
       (is (string= "Chapter one of a thesis." (base:read-file-into-string (cache-file))))
       (is (equalp built (grid-of (apply #'cached-map *cached-clauses*))))))
   (with-own-definitions
     (dolist (name '("/tmp/"))
       (eval `(world:defmap test-map (3 3 :cache ,name)))
-      (is (search "is no cache" (first (message-texts))) "~A" name))))
+      (is (search " is no map cache" (first (message-texts))) "~A" name))))
 
 (test cache.leaves-short-files-alone-too
   (with-fresh-cache
@@ -227,7 +227,7 @@
                (delete-file (cache-file))
                (link-cache thesis)
                (apply #'cached-map *cached-clauses*)
-               (is (search "is no cache" (first (message-texts))))
+               (is (search " is no map cache" (first (message-texts))))
                (is-true (unharmed-p) "by the name of the cache"))
           (sb-posix:unlink (uiop:native-namestring (cache-file)))
           (sb-posix:unlink (uiop:native-namestring new))
@@ -243,7 +243,7 @@
       (sb-posix:mkdir name #o700)
       (unwind-protect
            (let ((map (apply #'cached-map *cached-clauses*)))
-             (is (search "is no cache" (first (message-texts))))
+             (is (search " is no map cache" (first (message-texts))))
              (is (= 20 (world:map-width map)))
              (is-true (uiop:directory-exists-p (cache-file))))
         (sb-posix:rmdir name)))))

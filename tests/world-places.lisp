@@ -222,7 +222,7 @@ faces the end of the wall."
                ((:checker) . "pairs")
                ((:check-matchers 3) . "a list")
                ((:check-matchers ((((- -)) 0))) . "odd")
-               ((:check-matchers ((((-) (- - -) (-)) 0))) . "one length")
+               ((:check-matchers ((((-) (- - -) (-)) 0))) . "odd length")
                ((:check-matchers ((((? - -)) 0))) . "entries")
                ((:check-matchers (((- - -) 0))) . "a match form")
                ((:check-matchers ((((-))))) . "(match-form direction)")

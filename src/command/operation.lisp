@@ -200,7 +200,7 @@ queue a message and end OPERATION with :FAILED."
                       origin)
       (unless (or (operation-finished-p operation)
                   (and returned (event-pending-p operation)))
-        (when returned (apply #'error-set (append origin '("neither ended nor continued"))))
+        (when returned (apply #'error-set (append origin '(" neither ended nor continued"))))
         (finish operation :failed)))))
 
 (declaim (inline call-step))

@@ -169,7 +169,7 @@ directory."
     (cond ((null path) nil)
           ((foreign-cache-p path)
            (warning-set "The file " (native-name path)
-                        "is no map cache and is left as it is;" (map-name map)
+                        " is no map cache and is left as it is; " (map-name map)
                         " is not kept. Give :cache another name.")
            nil)
           (t (or (ignore-errors (probe-file path)) path)))))

@@ -52,7 +52,7 @@ WRONG-ARGUMENT."
   (let ((found (find-kicker kicker nil)))
     (if found
         (attach-kicker thing found)
-        (warning-set thing "is made without the kicker" kicker ", which is no longer defined."))))
+        (warning-set thing " is made without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
   "Make a thing from RECIPE and return it. The thing has no location yet; if WORLD is NIL, the thing
