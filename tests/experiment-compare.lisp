@@ -227,7 +227,8 @@
       (is (mentions-p (first-verdict 'b) "a succeeds more often than b"))
       (is (mentions-p (first-verdict :all) "No significant difference in success between a and b"))
       (is (mentions-p (first-verdict :all) "b: p = .062 as one of 2 tests (.031 alone), 100 %"))
-      (is (mentions-p (first-verdict :all) "if 2 differences are tested, an interval that leaves out 0"))
+      (is (mentions-p (first-verdict :all)
+                      "if 2 differences are tested, an interval that leaves out 0"))
       (is (mentions-p (first-verdict 'b) "than b: p = .031, 100 % against")))))
 
 ;;; Many tests, few seeds.

@@ -258,7 +258,9 @@ the line, or :EOF."
 (defun edit-line (stream)
   "Return a line from the user, with newlines if several were pasted; :EOF at the end of the input."
   (flet ((edit () (call-with-line-editing (lambda () (handle-keys stream)) stream)))
-    (prog1 (if *before-program-reads* (call-reading-program-input (edited-console stream) #'edit) (edit))
+    (prog1 (if *before-program-reads*
+               (call-reading-program-input (edited-console stream) #'edit)
+               (edit))
       ;; A Control-C typed after the line is for that line.
       (let ((ahead (edited-ahead stream)))
         (add-octets ahead (read-available-octets stream))

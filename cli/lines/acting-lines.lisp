@@ -68,7 +68,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
                    "MANIPULATE lists all.")))
 
 (defun method-arguments (method data robot)
-  "Return the arguments for METHOD from DATA, the typed values, for ROBOT. Return NIL if the number of
+  "Return the arguments for METHOD from DATA, the typed values, for ROBOT; NIL if the number of
 values is wrong."
   (multiple-value-bind (objects by others) (method-signature method)
     (let* ((count (length objects))

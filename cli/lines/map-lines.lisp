@@ -18,7 +18,8 @@ terminal."
 
 (defun words-for-map-line ()
   "Return the words that MAP accepts: names of layers, as for MAP and as for PICTURE, and LEGEND."
-  (mapcar #'symbol-name (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
+  (mapcar #'symbol-name
+          (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
 (defun complete-word (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
@@ -58,7 +59,8 @@ is WORDS."
         for word in (split-words (or text ""))
         for number = (parse-typed-number word)
         if number collect number into numbers
-        else collect (text-layer-name (complete-word word (words-for-map-line) "MAP" takes)) into words
+        else collect (text-layer-name (complete-word word (words-for-map-line) "MAP" takes))
+               into words
         finally (return (append (map-region-options numbers)
                                 (list :layers (remove :legend words)
                                       :only-legend (and (member :legend words) t))))))

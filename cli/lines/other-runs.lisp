@@ -209,8 +209,8 @@ at the next tick. A second Control-C before that tick leaves the trial."
 
 (defun open-trial-in-session (session trial)
   (flet ((enter ()
-           (write-fitted-line session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let ~ time
-                              pass, TRIAL OFF leaves it."
+           (write-fitted-line session "~@(~A~): seed ~D, at most ~D ticks. STEP and RESUME let ~
+                                       time pass, TRIAL OFF leaves it."
                      (open-trial-name trial)
                      (trial-seed (open-trial-experiment trial) (open-trial-number trial))
                      (experiment-limit (open-trial-experiment trial)))

@@ -81,7 +81,7 @@ headless simulation, return NIL after *WAIT-LIMIT* ticks."
       (reject-line "The command has not completed within ~D ticks; it continues." *wait-limit*))))
 
 (defun issue-job (session command resource arguments)
-  "Issue COMMAND on RESOURCE with ARGUMENTS. Add a job to SESSION that is done when COMMAND completes."
+  "Issue COMMAND on RESOURCE with ARGUMENTS. Add a job to SESSION that ends when COMMAND completes."
   (let ((job (make-job :resource resource)) (*caller-passes-ticks-p* t))
     (apply (command-name command) resource
            (append arguments (list (lambda (&optional error-code &rest results)

@@ -104,7 +104,8 @@ time stands still, report that the line waits."
 
 (defun report-unfinished (session)
   "Report an error if requests of SESSION, which has no user, wait because time stands still."
-  (when (and (unfinished-p session) (or (not (live-p *simulation*)) (paused-without-steps-p *simulation*)))
+  (when (and (unfinished-p session)
+             (or (not (live-p *simulation*)) (paused-without-steps-p *simulation*)))
     (report-session-error
      session (format nil "Time stands still, so not all requests have ended. RESUME continues."))
     (when (session-account session) (give-up-waiting-lines (session-account session)))))

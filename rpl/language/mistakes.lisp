@@ -70,7 +70,8 @@ FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
     (let* ((fluent (compared-fluent subject))
            (doubts (remove nil (cond ((operator-in-p fluent '("TASK-STATUS"))
                                       (mapcar #'status-advice words))
-                                     ((error-fluent-p fluent) (mapcar #'wrong-error-code-text words))))))
+                                     ((error-fluent-p fluent)
+                                      (mapcar #'wrong-error-code-text words))))))
       (and doubts (format nil "~{~A~^ ~}" doubts)))))
 
 ;;; Pulses take no time: no test between two waits finds them true.

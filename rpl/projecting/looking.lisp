@@ -52,7 +52,8 @@ WRONG-ARGUMENT; and MISUSE if the program that PNG needs is missing."
                   (and (projection-p projection) (projection-rollouts projection) t)
                   "a projection with rollouts, as PROJECT returns")
   (picture-kind 'save-projection-picture file)
-  (apply #'save-picture-of-ways 'save-projection-picture "rollout" file (snapshot-of-start projection)
+  (apply #'save-picture-of-ways 'save-projection-picture "rollout" file
+         (snapshot-of-start projection)
          (lambda ()
            (mapcan (lambda (rollout) (copy-list (rollout-ways rollout)))
                    (projection-rollouts projection)))

@@ -67,7 +67,8 @@
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
                 #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:entity-here
-                #:all-tasks #:task-numbered #:task-holding-value #:blocked-p #:failure-of #:end-with-value
+                #:all-tasks #:task-numbered #:task-holding-value #:blocked-p #:failure-of
+                #:end-with-value
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:end-with-signal #:withdraw #:task-frame
                 #:entity-realm #:twin-here

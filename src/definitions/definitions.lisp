@@ -4,8 +4,8 @@
 
 (export '(current-source *definition* reread-definition make-defining reject-clause
           call-with-definition expand-definition forms-or-rejection title check-function-name
-          replacing-form-p definition-in-file-p undefined-name-of ask-for-form clause-location current-form-digest
-          endless-p has-quote-p))
+          replacing-form-p definition-in-file-p undefined-name-of ask-for-form clause-location
+          current-form-digest endless-p has-quote-p))
 
 ;;; A defining form is checked when it is expanded, and performed when its expansion is evaluated.
 ;;; During both, *DEFINITION* holds it, so that an error names file and line, and restarts can leave

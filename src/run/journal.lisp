@@ -225,9 +225,9 @@ if SIMULATION keeps no journal."
 works in another run."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
-      (reject-finished-run "~(~A~): this object belongs to another run in ~(~A~), which is over: ~A. ~
-                        FIND-THING and robots' names return the objects of the current run."
-                       operator (timeline-name timeline) (timeline-over timeline)))))
+      (reject-finished-run "~(~A~): this object belongs to another run in ~(~A~), which is over: ~
+                            ~A. FIND-THING and robots' names return the objects of the current run."
+                           operator (timeline-name timeline) (timeline-over timeline)))))
 
 (defun warn-of-change-elsewhere (world operator)
   "Warn once for WORLD if OPERATOR changes WORLD although its run is over, or although WORLD is

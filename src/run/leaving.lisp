@@ -74,7 +74,8 @@ NIL."
 (defun cut-off-work-texts (simulation)
   "Return a list of texts about work that the end of SIMULATION cuts off. Return NIL if the program
 has checked itself which work was in progress; checks made by a prompt do not count."
-  (when (or (belongs-to-prompt-p simulation) (not (progress-checked-p (simulation-world simulation))))
+  (when (or (belongs-to-prompt-p simulation)
+            (not (progress-checked-p (simulation-world simulation))))
     (loop for participant in (simulation-participants simulation)
           append (participant-cut-off participant))))
 

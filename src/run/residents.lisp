@@ -51,8 +51,8 @@ returned."
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)
-  "Call ENSURE-RESIDENT-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return the
-result."
+  "Call ENSURE-RESIDENT-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return
+the result."
   (loop
     (let ((robot (ensure-resident-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.

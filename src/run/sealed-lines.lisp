@@ -23,7 +23,8 @@ simulator."))
   "Write to STREAM that the file of CONDITION is not a usable file of KIND, and that OPERATOR saves
 such a file."
   (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
-          (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition) operator))
+          (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition)
+          operator))
 
 (addition damaged-journal)
 (define-condition damaged-journal (damaged-file)

@@ -227,7 +227,8 @@ needs or if there is no journal."
          (own (check-run-picture-arguments journal moments until
                                            :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
-    (multiple-value-bind (snapshot ways seen own) (replaying (anyway) (replay-for-picture journal until own))
+    (multiple-value-bind (snapshot ways seen own)
+        (replaying (anyway) (replay-for-picture journal until own))
       (save-svg (with-broken-graphics-reported
                   (run-picture-svg (snapshot-of-part snapshot part 'save-run-picture) ways
                                     (sort-moments (append (moments-of-kinds kinds seen) own))

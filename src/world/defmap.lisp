@@ -136,7 +136,8 @@ cache. Worlds of MAP see the change at once. Return the map."
 ;;; Warnings.
 
 (defun warn-of-clause (map clause control &rest arguments)
-  (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-location clause) control arguments))
+  (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-location clause)
+                      control arguments))
 
 (defun warn-of-walls (map clause walls)
   (when (loop for wall in walls
