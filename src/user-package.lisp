@@ -16,8 +16,7 @@ MALFORMED-DEFINITION if one does not exist."
   (let ((missing (remove-if #'find-package names)))
     (when missing
       (reject-clause definition (cons :use names)
-                     (format nil "packages that exist; first load the system that defines ~{~A~^,
-~}"
+                     (format nil "packages that exist; first load what defines ~{~A~^, ~}"
                              missing))))
   (mapcar #'find-package names))
 

@@ -54,7 +54,7 @@
     (flet ((complaint (name) (complaint-about `(robot:defrobot ,name (room (2 2) 0)))))
       (is (search "is a constant" (complaint '+ars-test-limit+)))
       (is (search "is a symbol macro" (complaint 'ars-test-alias)))
-      (is (search "an interned symbol" (complaint (make-symbol "NOBODY")))))))
+      (is (search "a symbol of a package" (complaint (make-symbol "NOBODY")))))))
 
 (test simulator.takes-the-name-of-a-map
   (with-own-definitions
@@ -277,7 +277,7 @@
 
 (test names.of-constants-are-no-variables-of-maps
   (with-own-definitions
-    (is (search "is a constant, a symbol macro or a global variable, and keeps its value: refer"
+    (is (search "is a constant, symbol macro or global variable and keeps its value: refer"
                 (first (warnings-of (lambda ()
                                       (eval '(world:defmap +ars-test-limit+ (5 5))))))))
     (is (= 5 +ars-test-limit+))

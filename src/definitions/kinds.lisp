@@ -183,8 +183,8 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
     (reject-clause-of-kind name slot
                            "(name default type \"what it is\" [:part] [:shared] [:near])"))
   (when (member (first slot) known :test #'same-name-p)
-    (reject-clause-of-kind name slot "a name that no other slot of this kind and of the included
-kind has")))
+    (reject-clause-of-kind name slot
+                           "a name that no other slot has, here or in the included kind")))
 
 (defun check-kind-form (name include documentation groups)
   (check-kind-name name include documentation)

@@ -37,8 +37,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
   (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
                                  (current-thread))))
     (unless (member other (list nil (current-thread)))
-      (reject-use "Another thread is inside with-own-definitions. Only one thread at a time may be
-inside."))
+      (reject-use "Another thread is inside with-own-definitions. Only one may be at a time."))
     other))
 
 (defvar *variables-to-restore* '()

@@ -171,8 +171,7 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
      (braking* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long the robot coasts before it comes to a stop.")
      (motion-noise* 0.1d0 "fraction of the speed" :noise (real 0 1)
-      "The largest difference, in a tick, between the distance driven and the speed. It also sets
-the width of odometer intervals.")
+      "The largest error of the distance driven in a tick. It also sets odometer intervals.")
      (robot-turn-max-error* 0.01d0 "fraction of the angle" :noise (real 0 1)
       "How far the angle turned in a tick may be from the turn angle.")
      (robot-align-error-prob* 0.1d0 "probability" :noise (real 0 1)
@@ -215,8 +214,7 @@ beyond 30 m, even straight ahead, because an even number of rays has none in the
      (type-false-neg* 0.05d0 "probability" :noise (real 0 1)
       "The chance of not sensing the place type of a place.")
      (prob-stop* 0.07d0 "probability per cell" :limit (real 0 1)
-      "The chance, in each cell of the walk along a ray, that the walk stops and places a false
-designator there.")
+      "The chance, for each cell along a ray, that a false designator is placed there.")
      ;; As reading 8 says.
      (miss-thing-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that a search overlooks a thing.")
@@ -227,8 +225,7 @@ designator there.")
       "The chance that a search for things finds a thing that does not exist. The manual has false
 designators of things, but no parameter for them." :addition :digested)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0 #.+largest+)
-      "The largest usual error of a pixel's value: errors are uniform between minus and plus this
-number.")
+      "The largest usual error of a pixel's value. Errors are uniform between minus and plus that.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a pixel has a random value in the map's range.")
      (no-sensor-error* nil "" :noise boolean
@@ -243,8 +240,7 @@ number.")
      (prob-miss-grasp* 0.04d0 "probability" :noise (real 0 1)
       "The chance that a grasp misses its object.")
      (prob-grasp-lose-desig* 0.1d0 "probability" :noise (real 0 1)
-      "The chance, for each designator of an object, that grasping the object loses the
-designator.")
+      "The chance, for each designator of an object, that a grasp loses the designator.")
      (hand-insert-miss-prob* 0.05d0 "probability" :noise (real 0 1)
       "The chance that inserting a hand misses.")
      (hand-insert-lose-desig-prob* 0.1d0 "probability" :noise (real 0 1)

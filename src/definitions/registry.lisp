@@ -181,8 +181,7 @@ NAME is a symbol of Common Lisp or of the simulator."
                                control name kind name)))
     (cond ((not (variable-name-p name))
            (when (users-symbol-p name)
-             (refuse "~(~A~) is a constant, a symbol macro or a global variable, and keeps its
-value")))
+             (refuse "~(~A~) is a constant, symbol macro or global variable and keeps its value")))
           ((variable-in-use-p name) (refuse "The variable ~(~A~) already has a value"))
           (t name))))
 

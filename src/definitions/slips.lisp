@@ -273,12 +273,14 @@ Lisp or of the simulator."
   (let ((code (find word *error-codes* :test #'string-equal)))
     (cond ((not (keywordp word))
            (and code
-                (format nil "~(~S~) is no error code, because error codes are keywords. Write
-~(~S~)." word code)))
+                (format nil "~(~S~) is no error code, because error codes are ~
+                              keywords. Write ~(~S~)."
+                        word code)))
           (code nil)
           ((member word +words-of-success+)
-           (format nil "no command ends with ~(~S~): the error code of a command that succeeds is
-NIL." word))
+           (format nil "no command ends with ~(~S~): the error code of a command that ~
+                        succeeds is NIL."
+                   word))
           (t (let ((like (similar-error-code word)))
                (and like
                     (format nil "no command ends with ~(~S~). Did you mean ~(~S~)?" word like)))))))

@@ -106,8 +106,8 @@ the error; NIL if there was none."
           do (format stream "~A~:[~; (~D times)~]~%" (string-right-trim '(#\Newline) text)
                      (< 1 (gethash text counts)) (gethash text counts)))
     (when (< *shown-unread-messages* (length texts))
-      (format stream "... and ~D other messages. To show all, call (error-display) within the
-simulation.~%"
+      (format stream "... and ~D other messages. To show all, call (error-display) within ~
+                      the simulation.~%"
               (- (length texts) *shown-unread-messages*)))))
 
 (defun shown-at-end-p (message policy)
