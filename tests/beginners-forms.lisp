@@ -132,7 +132,7 @@
              (rover-writes () (driver:begin-plan plan) (run:run-ticks 1)))))
     (is-true (has-words-p (told (let ((f (rpl:create-fluent 'f t)))
                                   (plan-of (loop (rpl:wait-for f)))))
-                          "(wait-for f) does not wait while that is true already"))
+                          "(wait-for f) does not wait if its condition is true already"))
     (is-true (has-words-p (told (plan-of (rpl:handle-failure ((:a () (rpl:retry)))
                                            (rpl:fail :class :a))))
                           "fails again at once" "(do-retry tries (retry))"))

@@ -190,7 +190,7 @@
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:handle-failure ((error () (return 1)))
                                                       (rpl:fail :class :lost)))))
-                        "a clause is for error, which is for errors of Lisp" "write :lost or T")))
+                        "a clause is for error, which matches errors of Lisp" "write :lost or T")))
 
 (test plans.that-fail-live-are-told-to-programs
   (live (simulation)

@@ -180,7 +180,8 @@
                                  "NISP has one. Write (in-package :ars-user)")))
       (delete-package *package*)))
   (is-true (has-words-p (warnings-of-procedure '(sb-ext:wait-for robot))
-                        "wait-for is not that of plans; NISP has one" "nisp:wait-for")))
+                        "wait-for is not the construct of plans, which belongs to NISP"
+                        "nisp:wait-for")))
 
 (test with-valve.warns-of-a-function-without-its-parentheses
   (is-true (has-words-p (warnings-of-plan (rpl:with-valve (driver:rpl-robot-valve) 1))

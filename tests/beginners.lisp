@@ -94,7 +94,7 @@
                           "(run-plan 'take-two 1 2)"))
     (is-true (complains-p (in-run '#'turn-once) "Give the plan's name instead: 'turn-once"))
     (is-true (complains-p (in-run '#'car) "A function is not a plan"))
-    (is-true (complains-p (in-run ''car) "car is a function, no plan" "(car ...)"))
+    (is-true (complains-p (in-run ''car) "car is a function, not a plan" "(car ...)"))
     (is-true (complains-p (in-run ''command:robot-turn)
                           "(rpl-robot-turn angle) (wait-for robot-stopped*)"))
     (is-true (complains-p (in-run ''take-two ''(1 2)) "one by one"))
@@ -128,7 +128,7 @@
 
 (test plans.warn-of-commands-that-do-not-tell-them
   (is-true (has-words-p (warnings-of-procedure '(command:robot-turn robot 1 nil))
-                        "robot-turn does not tell plans of its end"
+                        "robot-turn does not notify plans of its end"
                         "write (rpl-robot-turn angle) (wait-for robot-stopped*)"))
   (is-true (has-words-p (warnings-of-procedure
                          '(when robot (command:camera-view (robot:robot-camera robot 0) nil)))

@@ -167,7 +167,7 @@
     (is (rpl:fluent-p (rpl:fl-value-changed fluent :test 'equal :key #'list)))))
 
 (test hostile.task-variables-and-orders
-  (refused-each "where documentation is a string" (rpl:define-task-variable *hostile-tv* 1 :x))
+  (refused-each "name value [string]" (rpl:define-task-variable *hostile-tv* 1 :x))
   (refused-each "tags in :order that are in scope"
     (rpl:interp-lambda ()
       (rpl:partial-order ((:tag a (rpl:wait-time 1)) (:tag b (rpl:wait-time 1))) (:order a "b")))

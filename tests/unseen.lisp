@@ -167,7 +167,7 @@ output."
                   (idle)
                   (idle)))))
     (is (= 1 (length (lines-of text))) "once for each form: ~A" text)
-    (is-true (has-words-p text "(wait-for given :timeout 2) waits for a value that is no fluent"
+    (is-true (has-words-p text "(wait-for given :timeout 2) waits for a value that is not a fluent"
                           "wait-until"))))
 
 ;;; Options of things among their attributes.
@@ -309,7 +309,7 @@ output."
 
 (test fail.warns-of-what-may-be-the-word-class
   (is-true (has-words-p (warnings-of-plan (rpl:fail :clas :lost :why 1))
-                        "takes :clas for the class" "Did you mean :class?"))
+                        "takes :clas as the class" "Did you mean :class?"))
   (is (string= "" (warnings-of-plan (rpl:fail :clash) (rpl:fail :clash 'door) (rpl:fail :glass 1 2)
                                     (rpl:fail :class :clas) (rpl:fail :clas)))))
 

@@ -120,9 +120,8 @@ otherwise NIL."
                            (and first (symbolp first) (same-name-p name first))))
                        (all-goals))))
     (and goal
-         (format nil "it is the first word of a goal. Quote the goal: (~(~A~) '(~(~A~) ...)); with
-values ~
-                      of variables write (~2:*~(~A~) `(~(~A~) ,x ...))."
+         (format nil "it is the first word of a goal. Quote the goal: (~(~A~) '(~(~A~) ...)); ~
+                      with values of variables write (~2:*~(~A~) `(~(~A~) ,x ...))."
                  (goal-operator goal) (plain-name name)))))
 
 ;;; Defining. A pattern that matches the same as one defined before redefines that one.

@@ -21,8 +21,7 @@ variable in a task.)"
   (check-task-variable name)
   (unless (typep documentation '(or null string))
     (reject-clause (title "define-task-variable" name) documentation
-                   "(define-task-variable name value [documentation]), where documentation is a
-string"))
+                   "(define-task-variable name value [string])"))
   `(progn
      (eval-when (:compile-toplevel :load-toplevel :execute)
        (define-symbol-macro ,name (task-variable ',name)))

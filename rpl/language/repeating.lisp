@@ -106,8 +106,7 @@ source of the block. The code has a node for the block only if some form leaves 
 (defun repetition-count (count)
   (let ((count (fluent-value count)))
     (check-argument n-times count (quantity-p count)
-                    "a number of turns, from -1e15 to 1e15, as the first argument: (n-times count
-form...)")
+                    "a number of turns, from -1e15 to 1e15, as in (n-times count form...)")
     count))
 
 (define-expression turns

@@ -95,8 +95,8 @@ MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
 
 (defun check-local-functions (form environment)
   (unless (proper-list-p (second form))
-    (reject-clause (text-title) form "(name parameters form...) for each local function, in a proper
-list"))
+    (reject-clause (text-title) form
+                   "(name parameters form...) for each function, in a proper list"))
   (dolist (definition (second form))
     (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
       (reject-clause (text-title) (if (consp definition) definition form)
@@ -165,8 +165,7 @@ copy also has ADDITIONS, for macros."
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
       (reject-clause (text-title) variable
-                     "the name of a lexical variable; bind task variables by
-with-task-variables"))))
+                     "a lexical variable's name; bind task variables by with-task-variables"))))
 
 (defun variable-scope (scope variables)
   "Return a copy of SCOPE in which VARIABLES are bound in a new environment."
@@ -177,8 +176,8 @@ with-task-variables"))))
                             (special-variable-p variable (scope-environment scope)))
                           variables)))
     (when special
-      (reject-clause (text-title) special "the name of a lexical variable; this variable is
-special"))
+      (reject-clause (text-title) special
+                     "the name of a lexical variable; this variable is special"))
     (inner-scope (layered-scope scope (list :variables level variables) level
                                 :variable (remove-duplicates variables))
                  :fluents (set-difference (scope-fluents scope) variables))))

@@ -57,8 +57,8 @@ started."
   (when (null (task-gate task))
     (unless (eq (task-state task) :created)
       (unless (at-start-p task)
-        (reject-use "~A has started already, so nothing can be ordered before
-it." (task-label task)))
+        (reject-use "~A has started already, so nothing can be ordered ~
+                     before it." (task-label task)))
       (put-gate task))
     (setf (task-gate task) (make-gate)))
   (push hold (gate-holds (task-gate task))))

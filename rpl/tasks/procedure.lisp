@@ -72,8 +72,8 @@ first."
              (or (live-namesake name) (not (fboundp name))))
         (format nil "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
                 name (abridged (rest list)))
-        (format nil "A form is not a plan. Make a plan of it: (run-plan (interp-lambda () ~{~A~^
-~}))."
+        (format nil "A form is not a plan. Make a plan of it: (run-plan (interp-lambda () ~
+                     ~{~A~^ ~}))."
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)

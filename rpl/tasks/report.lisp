@@ -93,8 +93,8 @@ from a Lisp error; otherwise NIL."
 NIL."
   (multiple-value-bind (type class) (similar-clause failure)
     (let ((error-type (clause-for-errors failure)))
-      (cond (type (format nil "a clause is for ~(~S~), but the class of the failure is
-~(~S~)" type class))
+      (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
+                          is ~(~S~)" type class))
             (error-type
              (format nil "a clause is for ~(~S~), which matches errors of Lisp but not failures of ~
                           FAIL; write ~(~S~) or T" error-type (or (failure-class failure) t)))))))

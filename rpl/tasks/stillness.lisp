@@ -261,8 +261,7 @@ condition."
       (typecase value
         (number (values "number" (format nil "(wait-time ~A) waits for that many ticks" value)))
         (task (values "task" "(join-task task) waits for the end of a task"))
-        (function (values "function" "(wait-until (funcall function)) calls the function in each
-tick")))
+        (function (values "function" "(wait-until (funcall function)) calls it in each tick")))
     (when kind
       (warn-of-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which counts as ~
                                       true. ~A."
