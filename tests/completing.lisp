@@ -158,7 +158,7 @@
                   (get-output-stream-string out))))
     (multiple-value-bind (console out) (terminal-console 40 6)
       (typed-with-tab console "c" :tab :tab :enter)
-      (is (search "There are more." (get-output-stream-string out))))))
+      (is (search "There are more completions." (get-output-stream-string out))))))
 
 (test completing.knows-the-words-of-lines
   (completes ("echo o" "echo off" "echo on") ("fork " "fork off")
