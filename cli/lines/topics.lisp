@@ -101,11 +101,11 @@
 
 ;;; Names in a separate system.
 
-(defun fiveam-names ()
+(defun names-in-optional-system ()
   "Return the names that the system ars-magna/fiveam defines; NIL if that system is loaded."
   (unless (find-package :ars-fiveam) '("IS-SUCCESS-RATE" "PASS-PROBABILITY" "REPEAT-TRIAL")))
 
-(defun fiveam-name-description (name)
+(defun optional-name-description (name)
   (format nil "ARS-FIVEAM:~A comes with (asdf:load-system \"ars-magna/fiveam\"), for tests." name))
 
 ;;; Names of Lisp.
@@ -191,7 +191,7 @@ filled."
     ("error code" common-error-codes identity common-error-code-description)
     ("restart" all-restarts identity restart-description)
     ("subject" all-subjects first subject-description)
-    ("name of a library" fiveam-names identity fiveam-name-description)
+    ("name of a library" names-in-optional-system identity optional-name-description)
     (lisp-name-kind documented-names identity lisp-name-description write-lisp-topic))
   "Lists (title lister name description [writer]), one for each kind of topic. LISTER is a function
 that returns all objects of the kind. NAME, DESCRIPTION and WRITER are functions of an object; the
