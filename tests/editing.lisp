@@ -178,7 +178,7 @@ name in *KEY-CODES*."
     (read-line (typed-text-for (keyboard-for (list :paste (format nil "Robot> 1~%1~%2") :pasted
                                                    :enter))
                                console))
-    (is-true (search "2 lines after the last prompt" (get-output-stream-string out)))))
+    (is-true (search "2 lines after the last pasted prompt" (get-output-stream-string out)))))
 
 (test editing.keeps-all-lines-of-a-form-that-is-pasted-with-prompts
   "Pages show a form of several lines below one prompt."
