@@ -101,7 +101,7 @@
                (cli::map-options "legend 1 2 30 4.5"))))
   (is-true (has-words-p (complaint "map frob") "frob" "CONES" "LEGEND"))
   (is-true (has-words-p (complaint "map 1 2 3") "LEFT TOP RIGHT BOTTOM"))
-  (is-true (has-words-p (complaint "map 9 9 1 1") "no region"))
+  (is-true (has-words-p (complaint "map 9 9 1 1") "not a region"))
   (is-true (has-words-p (complaint "map -3") "radius" "-3"))
   (is-true (has-words-p (joined (type-batch "go-forward 5" "map way")) "+ way of BUTLER")))
 
