@@ -216,7 +216,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
                      (experiment-limit (open-trial-experiment trial)))
            (unless (can-poll-input-p session) (setf (open-trial-rate trial) :free))
            (funcall (call-with-run-paused (lambda () (enter-trial session trial))))))
-    (call-outside-trial session #'enter)))
+    (call-after-leaving-trial session #'enter)))
 
 (defun leave-trial (session)
   (unless (session-trial session) (reject-line "The prompt is not in a trial."))

@@ -4,7 +4,7 @@
 
 (defun start-world-of-robot (session robot-name)
   (cond ((session-trial session)
-         (call-outside-trial session (lambda () (start-world-of-robot session robot-name))))
+         (call-after-leaving-trial session (lambda () (start-world-of-robot session robot-name))))
         ((not (and *simulation* (headless-p *simulation*))) (start-live-run session robot-name))
         ((session-batch-p session) (setf (session-next-robot session) robot-name))
         ((plusp (session-forks session))

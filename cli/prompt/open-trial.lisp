@@ -82,7 +82,7 @@
   (stop-listening session)
   (throw 'left-trial next))
 
-(defun call-outside-trial (session function)
+(defun call-after-leaving-trial (session function)
   "Call FUNCTION outside of trials: if SESSION is in a trial, leave the trial first."
   (if (session-trial session)
       (leave-open-trial session function)

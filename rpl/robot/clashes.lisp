@@ -96,7 +96,7 @@ short."
         (format nil "(vref ~A)" name)
         name)))
 
-(defun wait-for-end-text (outcome resource)
+(defun wait-for-action-text (outcome resource)
   "Return the text of a form that waits for the end of a command on RESOURCE. The function OUTCOME
 returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
   (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
@@ -112,7 +112,7 @@ returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
                                  a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
                                  parts of a plan take the robot from one another, let each own it: ~
                                  (with-valve ((rpl-robot-valve)) ...)"
-                            (command-name command) (wait-for-end-text outcome resource))))))
+                            (command-name command) (wait-for-action-text outcome resource))))))
 
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
@@ -218,4 +218,4 @@ after."
         at a time.~@[ Wait for the end of the first command before the second: ~A.~]"
        (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
        (action-name newer) (action-resource older)
-       (wait-for-end-text (action-outcome older) (action-resource older))))))
+       (wait-for-action-text (action-outcome older) (action-resource older))))))

@@ -137,7 +137,7 @@ supersedes that of an earlier end of the same command."
   (if (eq :evaporated (task-state (action-task action)))
       (format nil "The task that issued it was ended before, as by a deadline. If the command ~
                    should end as well, stop the robot: (rpl-robot-stop).")
-      (let ((wait (wait-for-end-text (action-outcome action) (action-resource action))))
+      (let ((wait (wait-for-action-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan should end with the command, let the plan ~A." wait)))))
 
 (defun warn-of-unawaited (interface task)

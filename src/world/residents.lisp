@@ -61,7 +61,7 @@ WRONG-ARGUMENT."
 ;;; An unknown name may be a misspelling. Names that differ only in their digits, or in the number
 ;;; of a thing, such as "PEN#2", are names of several things.
 
-(defun misspelling-p (name other)
+(defun misspelt-thing-name-p (name other)
   (flet ((without-digits (name)
            (remove-if (lambda (char) (or (digit-char-p char) (char= char #\#))) (string name))))
     (and (misspelling-p name other)
@@ -73,7 +73,7 @@ thing of the map had at first is no misspelling."
   (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
                        (map-things (world-map world)))
     (do-things (thing world)
-      (when (misspelling-p name (thing-name thing))
+      (when (misspelt-thing-name-p name (thing-name thing))
         (return-from similar-thing-name (thing-name thing))))))
 
 ;; Looking through all things takes time, so it is done only for the first request of each name.
