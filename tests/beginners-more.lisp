@@ -228,7 +228,7 @@
                  "~A" told)
         (is (string= "no error" again) "told once"))
       (is-true (has-words-p (told-in-thread (lambda () (run:run-ticks 1)))
-                            "no simulation here" "(with-simulation (rover) ...)"
+                            "no current simulation" "(with-simulation (rover) ...)"
                             "(current-simulation)")))
     (with-rover ()
       (is-true (has-words-p (told-in-thread #'turn) "In this thread") "again in each run"))))

@@ -96,7 +96,7 @@
   (is-true (complains-p '(nisp:continuation (print "turned" t))
                         "parameters before the body"
                         "(continuation (err &rest results) (print \"turned\" t))"))
-  (is-true (has-words-p (warning-about '(nisp:continuation (print err))) "nothing is done"
+  (is-true (has-words-p (warning-about '(nisp:continuation (print err))) "the body is empty"
                         "(continuation (err &rest results) (print"))
   (dolist (form '((nisp:continuation (err) err) (nisp:continuation (err &optional (a 1)))
                   (nisp:continuation ()) (nisp:continuation (err - t robot) err)))
