@@ -49,7 +49,7 @@
     (is-true (has-words-p (error-output (run:with-simulation (barge)
                                           (command:robot-turn tug 1)
                                           (run:run-ticks 1)))
-                          "none of TUG is under way"
+                          "no run of TUG is in progress"
                           "(with-simulation ((ROBOT tug)) ...)"))))
 
 (test changes.of-forks-are-quiet

@@ -366,7 +366,7 @@ of lines, and the number of errors."
 (test help.knows-restarts-and-what-codes-mean
   (loop for (name . words) in '(("skip-definition" "SKIP-DEFINITION, restart" "invoke-restart")
                                 ("save-without" "SAVE-WITHOUT, restart")
-                                ("interrupt" "INTERRUPT, error code" "Something newer")
+                                ("interrupt" "INTERRUPT, error code" "A newer request")
                                 (":bin-jammed" "BIN-JAMMED, error code" "Close it again"))
         do (multiple-value-bind (lines errors) (type-batch (format nil "help ~A" name))
              (is (= 0 errors))

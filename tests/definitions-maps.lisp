@@ -347,7 +347,7 @@ DESCRIPTOR-OF returns of its number, as text."
     (eval '(world:define-map-clause loop (map) "(loop)" :clauses '((loop))))
     (handler-case (progn (define-shed 9 '(loop)) (fail "accepted"))
       (base:malformed-definition (condition)
-        (is (search "expand to itself" (princ-to-string condition)))))))
+        (is (search "whose expansion ends" (princ-to-string condition)))))))
 
 (test map-clauses.are-defined-or-refused
   (loop for (expected . form)

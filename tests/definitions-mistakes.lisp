@@ -16,13 +16,13 @@
 
 (test mistakes.are-refused
   (loop for (form . expected)
-          in '(((world:defattribute :temp '(a b c)) . "not quoted")
+          in '(((world:defattribute :temp '(a b c)) . "an unquoted list")
                ((world:defattribute :temp (numeric)) . "without parentheses")
                ((world:defattribute :size (small large)) . "a numeric attribute")
                ((world:defattribute :closed numeric) . "a discrete attribute")
                ((world:defmap m (9 9) (obj box (1 1) ((:color puce)))) . "one of red")
                ((world:defmap m (9 9) (obj box (1 1) ((:color gren)))) . "did you mean green?")
-               ((world:defmap m (9 9) (obj box (1 1) ((:mood 'good)))) . "not quoted")
+               ((world:defmap m (9 9) (obj box (1 1) ((:mood 'good)))) . "an unquoted value")
                ((world:defmap m (9 9) (wal (1 1) (3 1) bricks 2)) . "did you mean wall?")
                ((world:defmap m (9 9) '(wall (1 1) (3 1) bricks 2)) . "a clause without a quote")
                ((world:defmap m (9 9) (wall '(1 1) (3 1) bricks 2)) . "Write it without quotes")

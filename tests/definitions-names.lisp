@@ -54,7 +54,7 @@
     (flet ((complaint (name) (complaint-about `(robot:defrobot ,name (room (2 2) 0)))))
       (is (search "is a constant" (complaint '+ars-test-limit+)))
       (is (search "is a symbol macro" (complaint 'ars-test-alias)))
-      (is (search "a symbol of a package" (complaint (make-symbol "NOBODY")))))))
+      (is (search "a symbol with a home package" (complaint (make-symbol "NOBODY")))))))
 
 (test simulator.takes-the-name-of-a-map
   (with-own-definitions

@@ -150,7 +150,7 @@ have been."
                    ("::DRIVE-A-WHILE|" "::DRIVE-TICK|" "no step")
                    ("|ARS-MAGNA.COMMAND::DRIVE-A-WHILE|" "|COMMON-LISP::ABORT|" "no step")
                    ("|ARS-MAGNA.COMMAND::DRIVE-A-WHILE|" "|ARS-MAGNA.COMMAND::WATCH-GRIP|"
-                    "has not")
+                    "does not fit")
                    ("function |ARS-MAGNA.COMMAND::RUN-OPERATION|" "function |COMMON-LISP::ABORT|"
                     "may refer to")
                    ("found map " "found file " "not a kind of object")

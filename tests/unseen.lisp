@@ -370,7 +370,8 @@ output."
                   (robot:robot-camera rover 0) :non-local '((:kickers t)) nil)
                  (run:run-ticks 5))))
     (is-true (some (lambda (text)
-                     (has-words-p text ":kickers, nor is it declared" "what a thing is made with"))
+                     (has-words-p text ":kickers, nor is it declared"
+                                  "an option for making things"))
                    texts))))
 
 (test find-thing.says-once-what-is-like-the-name

@@ -33,8 +33,8 @@
     (when (operation-step operation)
       (must-hold (step-p (operation-step operation))
                  "~(~A~) would continue with a function that is no step of a command" name)
-      (must-hold (step-fits-p operation) "~(~A~) would continue with a step of another ~
-                                          command" name))
+      (must-hold (step-fits-p operation)
+                 "~(~A~) would continue with a step that does not fit it" name))
     (must-hold (eq (operation-timeline operation)
                    (timeline-of (named-resource operation)))
                "~(~A~) is in progress in another run" name)))

@@ -70,8 +70,8 @@ MODE."
   (let ((value (entry-value entry)))
     (cond ((member value '("0" "false") :test #'equalp) nil)
           ((member value '("1" "true") :test #'equalp) t)
-          (t (reject-entry file entry "0 if black pixels are occupied, or 1 if white pixels
-are")))))
+          (t (reject-entry file entry
+                           "0 if black pixels are occupied, or 1 if white pixels are")))))
 
 (defun mode-in (file entry)
   "Return the mode in ENTRY, or :TRINARY if ENTRY is NIL."

@@ -88,8 +88,7 @@ written."
                      "a name that ends in .yaml; the image is written beside the file"))
   (unless (every #'graphic-char-p (name-in-directory path))
     (reject-argument 'export-map 'file file
-                     "a name of printable characters only, because the .yaml file must contain the
-name")))
+                     "a name of printable characters only, because the .yaml file contains it")))
 
 (defun resolve-link (path)
   "Return the truename of the file PATH, which may be a link; PATH if there is no such file."

@@ -140,8 +140,8 @@ there are more than LIMIT pixels."
 
 (defun check-transparency (png content)
   (when (= 3 (png-channels png))
-    (reject-png (png-input png) "a colour of the image stands for transparent (tRNS), which is
-supported only for grey images and palettes"))
+    (reject-png (png-input png) "a colour of the image stands for transparent (tRNS), which is ~
+                                 supported only for grey images and palettes"))
   (unless (or (png-palette-p png) (= 2 (length content)))
     (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 

@@ -87,8 +87,8 @@ such filter."
   "Fill BUFFER with the next SIZE octets that INFLATER decompresses from PNG."
   (let ((made (inflate-into buffer size inflater)))
     (cond ((null made)
-           (reject-png (png-input png) "the image is damaged, or its compression is unknown: its
-pixels cannot be decompressed"))
+           (reject-png (png-input png) "the image is damaged, or its compression is unknown: its ~
+                                        pixels cannot be decompressed"))
           ((< made size)
            (reject-damaged (png-input png) "the pixels end before the last row")))))
 

@@ -31,7 +31,7 @@ says what is wrong and names the remedy."
   "Return the pathname for NAME, a string or pathname, which may begin with ~/. Signals
 UNUSABLE-FLOOR for ~user."
   (when (and (stringp name) (starts-with-subseq "~" name) (not (starts-with-subseq "~/" name)))
-    (reject-floor name nil "~~ is supported only in ~~/, your home directory; write the whole name
+    (reject-floor name nil "~~ is supported only in ~~/, your home directory; write the whole name ~
 of the file"))
   (path-of-name name))
 
@@ -152,8 +152,9 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                          (and (char= #\" quote) (char= #\\ char)))
                  (setf char (char text (incf i)))
                  (unless (find char "'\"\\")
-                   (reject-floor file line "\\~C in quotes is not supported; write the text in
-'single quotes', where a backslash stands for itself" char)))
+                   (reject-floor file line "\\~C in quotes is not supported; write the text in ~
+                                            'single quotes', where a backslash stands for itself"
+                                 char)))
                (write-char char out)
                (incf i)))))
 
@@ -166,8 +167,8 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
 (defun read-list (file line text)
   (let ((text (without-comment text)))
     (unless (eql (position #\] text) (1- (length text)))
-      (reject-floor file line "a list must be complete on one line, with nothing after it, as in
-[0.0, 0.0, 0.0]"))
+      (reject-floor file line "a list must be complete on one line, with nothing after it, as in ~
+                               [0.0, 0.0, 0.0]"))
     (mapcar #'trim (uiop:split-string (subseq text 1 (1- (length text))) :separator ","))))
 
 (defun value-at (file line text)
@@ -176,8 +177,8 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
     ((#\" #\') (read-quoted file line text))
     (#\[ (read-list file line text))
     ((#\& #\* #\! #\| #\> #\{ #\% #\@ #\`)
-     (reject-floor file line "a value that begins with ~C is not supported; write a number, a name
-of a file, or a list [a, b, c]"
+     (reject-floor file line "a value that begins with ~C is not supported; write a number, a name ~
+                              of a file, or a list [a, b, c]"
                    (char text 0)))
     (t (without-comment text))))
 

@@ -47,8 +47,8 @@ radians")
       "Return a new designator, which has no number of a robot yet.")
 
 (define-argument-type 'designator #'designator-p "a designator"
-  (constantly (format nil "cameras' searches pass designators to their continuations, as in
-(camera-get-object-designator CAMERA :non-local '((:color red)) ~
+  (constantly (format nil "cameras' searches pass designators to their continuations, as in ~
+                           (camera-get-object-designator CAMERA :non-local '((:color red)) ~
                            (continuation (err camera designator) ...)); in plans, (vref ~
                            camera-designators* 0) has a list of them")))
 

@@ -98,8 +98,9 @@ NAME (reading 120)."
     (check-attribute-clauses definition domain base max-mult supported-by)
     (when (eq (attribute-key name) :draw-function)
       (reject-clause definition name
-                     (format nil "another name, because the simulator itself defines :draw-function;
-give this attribute to things: (set-attribute thing :draw-function 'name)")))
+                     (format nil "another name, because the simulator itself defines ~
+                                  :draw-function; give this attribute to things: ~
+                                  (set-attribute thing :draw-function 'name)")))
     (check-kind-of-built-in definition name domain)
     (dolist (supporter supported-by)
       (let ((like (declared-name-like supporter)))
