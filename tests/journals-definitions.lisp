@@ -102,18 +102,21 @@
 (test fingerprint.names-what-has-changed
   (let ((journal (mown *lawn*)))
     (loop for (old new words)
-            in '((".5" ".6" "kicker prod has changed since")
-                 ("(crate :kickers" "(tin :kickers" "map lawn has changed since")
-                 ("(2 2) 0)" "(2 3) 0)" "robot mower has changed since")
-                 ("(,length 0)" "(,(1+ length) 0)" "map clause hedge has changed since")
-                 ("push-length () .1" "push-length () .2" "file lawn.lisp has changed since")
+            in '((".5" ".6" "kicker prod has changed since the recording")
+                 ("(crate :kickers" "(tin :kickers" "map lawn has changed since the recording")
+                 ("(2 2) 0)" "(2 3) 0)" "robot mower has changed since the recording")
+                 ("(,length 0)" "(,(1+ length) 0)"
+                  "map clause hedge has changed since the recording")
+                 ("push-length () .1" "push-length () .2"
+                  "file lawn.lisp has changed since the recording")
                  ("(world:defkicker spare (thing) () thing)" "" "kicker spare is not loaded")
-                 ("jelly 44" "jelly 45" "substance jelly has changed since")
-                 ("(values nil it)" "(values nil nil)" "manipulation polish has changed since")
-                 (":noticed 1" ":noticed .5" "attribute shape has changed since"))
+                 ("jelly 44" "jelly 45" "substance jelly has changed since the recording")
+                 ("(values nil it)" "(values nil nil)"
+                  "manipulation polish has changed since the recording")
+                 (":noticed 1" ":noticed .5" "attribute shape has changed since the recording"))
           for differences = (differences-with journal (lawn-with old new))
           do (is (member words differences :test #'string=) "~A: ~A" words differences)
-             (is (subsetp differences (list words "file lawn.lisp has changed since")
+             (is (subsetp differences (list words "file lawn.lisp has changed since the recording")
                           :test #'string=)))
     (with-world-loaded ((lawn-with ".5" ".6"))
       (is (integerp (replay-outcome journal :anyway t)))
@@ -163,7 +166,7 @@
         (eval '(world:defkicker nobody-has-it (thing) () thing))
         (is (integerp (replay-outcome journal)))
         (eval '(world:defkicker nudge (thing) (:prob .5) (world:kick-thing thing .2 0 nil)))
-        (is (says-p "kicker nudge has changed since" (replay-outcome journal)))))))
+        (is (says-p "kicker nudge has changed since the recording" (replay-outcome journal)))))))
 
 (defparameter *two-files*
   '("(world:defsubstance jelly 44)
@@ -193,9 +196,9 @@
       (flet ((outcome (kickers)
                (mow-two-files kickers (lambda () (replay-outcome journal)))))
         (is (integerp (outcome (first *two-files*))))
-        (is (says-p "kickers.lisp has changed since"
+        (is (says-p "kickers.lisp has changed since the recording"
                     (outcome (substitute #\3 #\1 (first *two-files*)))))
-        (is (says-p "kicker prod has changed since"
+        (is (says-p "kicker prod has changed since the recording"
                     (outcome (substitute #\6 #\5 (first *two-files*)))))))))
 
 (test form-digests.tell-forms-apart

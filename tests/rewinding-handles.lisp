@@ -174,7 +174,7 @@ that look at the stack may leave some."
                                         (declare (ignore ignored))
                                         (setf text (trouble-of (lambda () (run:rewind 1))))))
         (awaiting text)
-        (is-true (has-words-p text "thread of its clock" "REPL") "~A" text)))))
+        (is-true (has-words-p text "thread of the clock" "REPL") "~A" text)))))
 
 (test rewind.is-misuse-in-the-thread-of-any-clock
   "Else two clocks may wait for one another."
@@ -187,7 +187,7 @@ that look at the stack may leave some."
                                  (declare (ignore ignored))
                                  (setf text (trouble-of (lambda () (run:rewind 1 other))))))
            (awaiting text)
-           (is-true (has-words-p text "ticks of arena are passing here"
+           (is-true (has-words-p text "the clock of arena"
                                  "Rewind workbench at the prompt")
                     "~A" text))
       (run:stop-clock other))))

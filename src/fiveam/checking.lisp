@@ -76,8 +76,8 @@ only condition of EXPERIMENT."
 AT-LEAST or more. SUBJECT is the subject for which EXPERIMENT was made, or NIL. Report the result to
 FiveAM; return true if the check passes."
   (check-rate-arguments 'is-success-rate at-least trials level)
-  (check-argument is-success-rate workers (whole-p workers 1 1000) "a number of threads, from 1 to ~
-                                                                    1000")
+  (check-argument is-success-rate workers (whole-p workers 1 1000)
+                  "a number of threads, from 1 to 1000")
   (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
                                       (as-written level) workers))))
     (cond ((eq :passed (check-verdict check))

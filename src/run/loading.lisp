@@ -27,8 +27,8 @@
         ((not (or (null (getf head :dice)) (random-state-numbers-p (getf head :dice))))
          "the dice in the head make no sense")
         ((not (typep (getf head :tick) 'tick-count)) "the tick in the head is not a tick")
-        ((not (typep (getf head :digest) '(unsigned-byte 64))) "the digest in the head is not a ~
-                                                                digest")))
+        ((not (typep (getf head :digest) '(unsigned-byte 64)))
+         "the digest in the head is not a digest")))
 
 ;;; Lines. Their order is fixed, so the meaning of each is known.
 

@@ -172,8 +172,8 @@ its global value."
 WRONG-ARGUMENT, which names OPERATOR, for other objects."
   (cond ((simulation-p designator) designator)
         ((robot-p designator) (robot-simulation designator))
-        (t (reject-argument operator 'simulation designator "a simulation, or a robot in a ~
-                                                             simulation"))))
+        (t (reject-argument operator 'simulation designator
+                            "a simulation, or a robot in a simulation"))))
 
 (addition robot-simulation)
 (defun robot-simulation (robot)

@@ -106,8 +106,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   "The names of the columns of a trajectory, as SAVE-TRAJECTORY writes it.")
 
 (note-kind-of-file :trajectory (format nil "~{~A,~}" (subseq *trajectory-columns* 0 5))
-                   "the file is a table of the positions of robots; any program that reads CSV can ~
-                    read it")
+                   "the file is a table of the positions of robots, which any CSV reader can read")
 
 (defun full-number-text (number)
   "Return the text of NUMBER in full precision, so that other programs can read it."
