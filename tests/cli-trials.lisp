@@ -70,7 +70,7 @@
   (let ((lines (trial-lines "(error \"no\")" "nonsense" "(+ 2 3)" "(break \"oh\")" "(run-ticks 1)"
                             "repeat 2 turn" "step -1" "step" "resume")))
     (is-true (has-words-p (joined lines) "*ERROR* -> no" "*ERROR* -> There is no command" "5"
-                          "*ERROR* -> Break: oh" "time cannot pass" "Tick 1."
+                          "*ERROR* -> Break: oh" "no time can pass" "Tick 1."
                           "The trial is over" "success"))))
 
 (test trial.lists-what-there-is

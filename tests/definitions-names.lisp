@@ -269,7 +269,7 @@
                         (eval `(rpl:def-interp-proc users-function (,x) ,x)))))
       (unwind-protect
            (progn
-             (is (search "users-function was a function of Lisp's"
+             (is (search "users-function was a Lisp function"
                          (first (warnings-of #'define))))
              (is (null (warnings-of #'define)) "it is a plan's by now"))
         (base:undefine 'plan 'users-function)

@@ -81,7 +81,7 @@
   (on-court ()
     (refused ("fork-simulation: simulation is 7") (fork-simulation 7))
     (refused ("with-fork: seed is") (with-fork (:seed "one") 1))
-    (refused ("set-thinking: simulation is nil" "a robot in one") (set-thinking :free nil))
+    (refused ("set-thinking: simulation is nil" "a robot in a simulation") (set-thinking :free nil))
     (is (eq :free (set-thinking :free runner)))
     (refused ("rewind: simulation is 7") (rewind 1 7))
     (is (search "with-fork: a plan is at work"

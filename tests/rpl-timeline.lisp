@@ -171,7 +171,7 @@ one points at it, it says in words what came of it."
       (is (equal (fill-of nil) (fill-of :interrupt)))
       (is (equal (fill-of nil) (fill-of :designator-not-found)))
       (is (not (equal (fill-of nil) (fill-of :robot-blocked)))))
-    (is-true (has-words-p (drawn :interrupt) ": interrupt. Something newer took"))))
+    (is-true (has-words-p (drawn :interrupt) ": interrupt. A newer request took over"))))
 
 (test timeline.has-a-title-and-a-scale
   (let ((runner (seen-until 30)))

@@ -176,7 +176,7 @@
                             (driver:run-plan (rpl:make-plan '(rpl:fail :class :lost)))
                             (driver:run-plan (rpl:make-plan '(rpl:fail :class :lost))))
                           '(rover) :errors (or (first options) :report)))))
-    (is-true (has-words-p (says) "failed: Plan failure :LOST" "which is true" ":FAILED"))
+    (is-true (has-words-p (says) "failed: Plan failure :LOST" "which counts as true" ":FAILED"))
     (is (= 1 (count "failed: Plan failure" (lines-of (says)) :test #'search)) "once for a plan")
     (is (string= "" (says :collect)))))
 

@@ -281,7 +281,7 @@ output."
                                   (driver:rpl-camera-view 0)
                                   (rpl:fluent-value (svref driver:camera-views* 0))))
                           "succeeded while its command rpl-camera-view was under way"
-                          "let it (wait-for (vref camera-input* 0))"))
+                          "let the plan (wait-for (vref camera-input* 0))"))
     (is (string= "" (said (rpl:interp-lambda ()
                             (driver:rpl-camera-view 0)
                             (rpl:wait-for (svref driver:camera-input* 0))

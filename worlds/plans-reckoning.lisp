@@ -54,8 +54,8 @@ longer valid."
     (unless (eq odometer (robot-odometer (ars-magna.robot:odometer-robot odometer)
                                          (odometer-name odometer)))
       (ars-magna.base:reject-use
-       "This reckoning is no longer valid: the robot has begun ~D others since. Begin a new
-reckoning."
+       "This reckoning is no longer valid: the robot has begun ~D others since. Begin ~
+        a new reckoning."
        (length *reckoning-names*)))))
 
 (defun reckon (me)

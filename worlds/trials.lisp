@@ -32,8 +32,8 @@ the cell; all such cells are equally likely."
           for y = (+ .5 (roll-index (map-height map) dice))
           when (in-the-open-p map x y)
             return (list x y)
-          finally (error "~A has hardly any cell without walls or obstacles around. Use a wider
-          map." map))))
+          finally (error "~A has hardly any cell without walls or obstacles around. Use a ~
+                          wider map." map))))
 
 (defun hide-thing (name descriptor)
   "Put a new thing NAME with the attributes of DESCRIPTOR on the floor of the current world,

@@ -93,9 +93,8 @@ is the text of the error."
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
     (call-or-reject #'ars-magna.clx:load-by-quicklisp
-                 "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then ~
-                     type
-                  WINDOW again."))
+                     "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then ~
+                      type WINDOW again."))
   (call-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
                "No window: McCLIM was found, but cannot be loaded: ~A"))
 

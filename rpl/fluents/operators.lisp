@@ -148,8 +148,7 @@ functions."
      ,@(loop for operator in operators
              for name = (find-symbol (symbol-name operator) :ars-magna.rpl.lifted)
              collect `(defun ,name (&rest arguments)
-                        ,(format nil "Return ~A of ARGUMENTS; a network if any argument is a
-fluent."
+                        ,(format nil "Return ~A of ARGUMENTS; a network if one is a fluent."
                                  operator)
                         (apply #'lift ',operator #',operator arguments))
              collect `(define-compiler-macro ,name (&rest arguments)

@@ -54,7 +54,7 @@ return a value for it.")
       (funcall (leaf-function leaf) environment)))
 
 (defun read-leaf-value ()
-  (format *query-io* "~&A form for the value to return:")
+  (format *query-io* "~&A form for the value to return: ")
   (finish-output *query-io*)
   (list (evaluate-form (read *query-io*))))
 

@@ -78,7 +78,7 @@ true."
   (let ((form (current-form (frame-node frame) frame)))
     (when (first-warning-p form (task-runner task))
       (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
-                   " s without a pause:" (form-text form) " in " (task-label task)))))
+                   " s without a pause: " (form-text form) " in " (task-label task)))))
 
 (defun time-now (runner)
   "Return the seconds by the clock of RUNNER, or NIL if RUNNER has no clock."

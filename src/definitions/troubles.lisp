@@ -236,7 +236,7 @@ Lisp's own."
   "Choose a restart of CONDITION without the user, because no debugger is left: ABORT for errors,
 else CONTINUE. Queue a warning."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
-    (warning-set "The debugger that asked for a restart has disconnected;" (string-downcase name)
+    (warning-set "The debugger that asked for a restart has disconnected; " (string-downcase name)
                  " was chosen: " (one-line-text condition))
     (when (eq name 'continue) (continue condition))
     (abort condition)))

@@ -126,8 +126,8 @@ between 0 and 1."
 NAME of OPERATOR."
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
-                     (format nil "a sequence of as many numbers as the first,
-~D" (length firsts)))))
+                     (format nil "a sequence of as many numbers as the first, ~D"
+                             (length firsts)))))
 
 (addition mean-difference-interval)
 (defun mean-difference-interval (firsts seconds &key (confidence .95d0))
