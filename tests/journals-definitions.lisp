@@ -92,6 +92,13 @@
                (run:write-journal journal file)
                (with-world-loaded (*lawn*) (integerp (replay-outcome file)))))))
 
+(test fingerprint.names-the-substances-of-its-map
+  (with-world-loaded (*lawn*)
+    (run:with-simulation ('mower)
+      (is (equal '("JELLY")
+                 (mapcar #'string
+                         (run::definition-names-in-use :substance time:*simulation*)))))))
+
 (defun differences-with (journal text)
   "Return what a replay of JOURNAL says is different in the world TEXT, a list of strings."
   (with-world-loaded (text)
