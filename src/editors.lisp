@@ -9,15 +9,13 @@
   "The packages of SLIME and SLY that may contain the inspector's generic function.")
 
 (defun inspectors ()
-  "Return a list of the names of the generic functions that the inspectors of the loaded editor
-servers call."
+  "Return the names of the generic functions that inspectors of loaded editor servers call."
   (remove-duplicates
    (loop for server in *servers*
          for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
          when (and symbol (fboundp symbol)) collect symbol)))
 
 (defun inspector-extended-p (inspector)
-  "True if the generic function INSPECTOR already has the simulator's method."
   (find-method (fdefinition inspector) '(:around) (list (find-class 'structure-object)) nil))
 
 (defun fact-line (label text)
@@ -28,8 +26,7 @@ servers call."
         '(:newline)))
 
 (defun inspector-contents (object)
-  "Return the contents of the inspector's window for OBJECT: its properties, as of FACTS, then its
-slots."
+  "Return the contents of the inspector's window for OBJECT: properties (FACTS), then slots."
   (append (list (prin1-to-string object) '(:newline))
           (loop for (label text) in (facts object) append (fact-line label text))
           (loop for (title . slots) in (slots-to-show object)
@@ -37,15 +34,13 @@ slots."
                               (loop for slot in slots append (apply #'slot-line slot))))))
 
 (defun describable-p (object)
-  "True if the simulator can describe OBJECT: it is of a kind, or has FACTS."
   (and (or (kind-of object) (facts object)) t))
 
 (addition join-editors)
 (defun join-editors ()
   "Make the inspectors of SLIME and SLY show robots, things, maps and the like as DESCRIBE does,
 with descriptions of their slots. Loading the simulator calls this function. Call it again if a
-server, SWANK or SLYNK, was loaded later. Return a list of the names of the servers' packages that
-were found."
+server, SWANK or SLYNK, was loaded later. Return the names of the servers' packages found."
   (loop for inspector in (inspectors)
         collect (package-name (symbol-package inspector))
         unless (inspector-extended-p inspector)
@@ -70,8 +65,7 @@ were found."
   (find-if #'serves-editor-p '("SWANK" "SLYNK")))
 
 (defun call-as-in-buffer (server function)
-  "Call FUNCTION with the current package and readtable, as if from a buffer of the editor that is
-connected to SERVER."
+  "Call FUNCTION with the package and readtable as in a buffer of the editor connected to SERVER."
   (progv (list (find-symbol "*BUFFER-PACKAGE*" server) (find-symbol "*BUFFER-READTABLE*" server))
       (list *package* *readtable*)
     (funcall function)))
@@ -92,8 +86,7 @@ function. Return nothing. Signals MISUSE if no editor is connected."
 ;;; INSPECT, Lisp's own, shows slots as they print. Those of a map would fill many screens.
 
 (defun inspect-briefly (inspect object)
-  "Call INSPECT, the function of Common Lisp, with OBJECT, and make it abridge long arrays and
-lists."
+  "Call INSPECT, the function of Common Lisp, with OBJECT, and abridge long arrays and lists."
   (let ((*print-length* (or *print-length* 10))
         (*print-level* (or *print-level* 2))
         (*print-lines* (or *print-lines* 2)))
@@ -108,7 +101,6 @@ lists."
 ;;; An editor may go while its debugger asks how something of ours goes on.
 
 (defun own-connection-p (connection)
-  "True if this thread works for CONNECTION, a connection of an editor."
   (loop for server in '("SWANK" "SLYNK")
         for own = (and (find-package server) (find-symbol "*EMACS-CONNECTION*" server))
         thereis (and own (boundp own) (eq connection (symbol-value own)))))

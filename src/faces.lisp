@@ -9,8 +9,7 @@ all layers.")
 (in-package :ars-magna.faces)
 
 (defun document-addition (symbol)
-  "Append the remark that SYMBOL is an addition to the manual to all documentation strings of
-SYMBOL."
+  "Append the remark that SYMBOL is an addition to the manual to all documentation of SYMBOL."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (when text
@@ -24,8 +23,7 @@ SYMBOL."
   (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
 
 (defun reject-setting (symbol)
-  "Return a function that signals MISUSE, because SYMBOL cannot be set. It becomes the SETF
-function."
+  "Return the SETF function of SYMBOL, which cannot be set: a function that signals MISUSE."
   (lambda (value object)
     (declare (ignore value object))
     (reject-use "~(~A~) cannot be set. To change a run, use commands, or functions such as ~
@@ -33,15 +31,13 @@ function."
                 symbol)))
 
 (defun ensure-own-symbol (face name)
-  "Return the symbol named NAME whose home is the package FACE."
   (let ((present (find-symbol name face)))
     (unless (or (null present) (eq (find-package face) (symbol-package present)))
       (unintern present face))
     (intern name face)))
 
 (defun read-only-symbol (symbol face)
-  "Return a symbol, whose home is the package FACE, that names the same function as SYMBOL. Users
-cannot SETF it."
+  "Return a symbol of the package FACE for the same function as SYMBOL, which users cannot SETF."
   (let ((reader (ensure-own-symbol face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)
@@ -67,8 +63,7 @@ of FACE that names the same function."
 versions.")
     (:nisp . "The Nisp dialect and the plan language. It replaces CL:LET, CL:LOOP and CL:IF by
 extended versions."))
-  "The packages for users, with their documentation. Each exports the symbols that are marked for
-it.")
+  "The packages for users, with their documentation. Each exports the symbols marked for it.")
 
 (defun export-all-marked-names ()
   "Make the packages ARS and NISP export the symbols that are marked for them."

@@ -7,7 +7,6 @@
 ;;; the originals do where those make sense.
 
 (defun option-values (key options)
-  "Return a list of all arguments of the options KEY in OPTIONS, options of DEFPACKAGE."
   (loop for (name . values) in options when (eq name key) append values))
 
 (defun used-packages (definition names)
@@ -21,7 +20,6 @@ MALFORMED-DEFINITION if one does not exist."
   (mapcar #'find-package names))
 
 (defun standard-symbol (name)
-  "Return the symbol of Common Lisp named NAME, or NIL."
   (multiple-value-bind (symbol status) (find-symbol name :cl)
     (and (eq status :external) symbol)))
 
@@ -48,8 +46,7 @@ symbols. If several packages extend a name, the last one is used. The names SETT
                 when (eq key :shadowing-import-from) append names)))
 
 (defun conflicting-names (packages settled)
-  "Return a list of the names under which PACKAGES export different symbols, without the names
-SETTLED."
+  "Return a list of the names, without SETTLED, under which PACKAGES export different symbols."
   (let ((symbols (make-hash-table :test #'equal)))
     (dolist (package packages)
       (do-external-symbols (symbol package)
@@ -60,12 +57,10 @@ SETTLED."
           #'string<)))
 
 (defun package-exporting (name packages)
-  "Return the first of PACKAGES that exports a symbol named NAME."
   (find-if (lambda (package) (eq :external (nth-value 1 (find-symbol name package)))) packages))
 
 (defun check-clashes (definition packages settled)
-  "Signal MALFORMED-DEFINITION if PACKAGES export different symbols under a name that is not in
-SETTLED."
+  "Signal MALFORMED-DEFINITION if PACKAGES export different symbols of a name not in SETTLED."
   (let ((names (conflicting-names packages settled)))
     (when names
       (let ((package (package-exporting (first names) packages)))
@@ -75,8 +70,7 @@ SETTLED."
                                names (package-name package) (first names)))))))
 
 (defun clash-options (definition options)
-  "Return options of DEFPACKAGE that resolve the conflicts between Common Lisp and the packages that
-OPTIONS use."
+  "Return options of DEFPACKAGE to resolve conflicts between Lisp and the packages of OPTIONS."
   (let* ((packages (used-packages definition (option-values :use options)))
          (settled (settled-names options))
          (added (when (member (find-package :cl) packages)
@@ -101,8 +95,7 @@ OPTIONS use."
     (reject-clause "define-user-package" name "a name, such as :my-house, for the package")))
 
 (defun package-form (name options environment)
-  "Return the macroexpanded form that defines the package NAME with OPTIONS, options of
-DEFINE-USER-PACKAGE."
+  "Return the macroexpansion that defines the package NAME with OPTIONS of DEFINE-USER-PACKAGE."
   (macroexpand-1 `(defpackage ,name
                     ,@(user-package-options (title "define-user-package" name) options))
                  environment))

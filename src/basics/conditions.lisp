@@ -21,8 +21,7 @@
   (:documentation "The root of all errors that ARS MAGNA signals."))
 
 (defmethod print-object :around ((condition ars-magna-error) stream)
-  "Print CONDITION to STREAM without terminal control characters. If the report fails, print the
-part written so far."
+  "Print CONDITION to STREAM without control characters, as far as the report can be written."
   (if *print-escape*
       (call-next-method)
       (let ((out (make-string-output-stream)))
@@ -72,8 +71,7 @@ part written so far."
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has an invalid clause."))
 
 (setf (documentation 'malformed-definition-definition 'function)
-      "Return the definition that has the invalid clause: a text such as \"defmap yard\", or a
-form."
+      "Return the definition with the invalid clause: a text such as \"defmap yard\", or a form."
       (documentation 'malformed-definition-place 'function)
       "Return the file and line of the invalid clause, as a string; NIL if the clause was typed."
       (documentation 'malformed-definition-clause 'function)
@@ -215,7 +213,6 @@ If TEXT is NIL, let EXIT exit again."
 
 (declaim (inline within-p sane-number-p quantity-p))
 (defun within-p (value limit)
-  "True if VALUE is a number from -LIMIT to LIMIT. LIMIT is an integer."
   (if (typep value 'double-float)
       (and (finite-double-p value)
            (<= (double (- limit)) value (double limit)))
@@ -250,8 +247,7 @@ If TEXT is NIL, let EXIT exit again."
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn if the OPTIONS in a call of OPERATOR have an unknown keyword, or a number in place of a
-keyword."
+  "Warn of an unknown keyword, or a number in place of a keyword, in OPTIONS for OPERATOR."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."

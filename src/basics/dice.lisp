@@ -65,8 +65,7 @@
   (characters-hash (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
-  "Return dice for PURPOSE, a string designator. Their state depends only on PURPOSE and on the
-integer SEED."
+  "Return dice for PURPOSE, a string designator, that depend only on PURPOSE and the integer SEED."
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-bits (logxor (mix-bits (ldb (byte 64 0) seed)) (text-hash purpose)))))
 
@@ -116,8 +115,7 @@ to 2^53, the range in which every integer is a double-float."
 
 (addition roll-element)
 (defun roll-element (sequence dice)
-  "Return a random element of SEQUENCE; all elements are equally likely. Signals WRONG-ARGUMENT if
-SEQUENCE is empty."
+  "Return an element of SEQUENCE, each equally likely. Signals WRONG-ARGUMENT if SEQUENCE is empty."
   (check-argument roll-element sequence (and (typep sequence 'sequence) (plusp (length sequence)))
                   "a sequence that is not empty")
   (elt sequence (roll-index (length sequence) dice)))
@@ -183,6 +181,5 @@ elements. All functions count as equal. Other objects are added by DIGEST-IDENTI
   digest)
 
 (defun text-checksum (text &optional (before 0))
-  "Return a 32-bit checksum of the characters of TEXT, combined with BEFORE, the checksum of the
-text before TEXT."
+  "Return a 32-bit checksum of TEXT, combined with BEFORE, the checksum of the text before TEXT."
   (ldb (byte 32 0) (mix-bits (logxor before (text-hash text)))))

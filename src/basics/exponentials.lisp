@@ -85,8 +85,7 @@ first with 42 binary places.")
 
 (declaim (inline %logarithm))
 (defun %logarithm (number)
-  "Return the logarithm of NUMBER, computed inline. It takes 10 ns less than LOGARITHM, but 500
-bytes of code."
+  "Return the logarithm of NUMBER, computed inline: 10 ns faster than LOGARITHM, 500 bytes of code."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
     (with-sum-parts (high low) ((+ base r))
@@ -147,8 +146,7 @@ bytes of code."
 (addition exponential)
 (defun exponential (number)
   "Return e to the power NUMBER, with the same bits on every machine; CL:EXP differs between
-machines. Signals WRONG-ARGUMENT unless NUMBER is a real number, and FLOATING-POINT-OVERFLOW if
-NUMBER is above 709.78."
+machines. Signals WRONG-ARGUMENT unless NUMBER is real, and FLOATING-POINT-OVERFLOW above 709.78."
   (check-number exponential number)
   (result-in-last-cell put-exponential (double number)))
 

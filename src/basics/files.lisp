@@ -66,8 +66,7 @@ file is and which function reads it; else return NIL."
          (third entry))))
 
 (defun other-kind-of-file-p (file kind)
-  "True if FILE exists, is not empty and does not begin like a file of KIND, or if FILE cannot be
-read."
+  "True if FILE exists, is not empty and does not begin like a file of KIND, or cannot be read."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
@@ -76,8 +75,7 @@ read."
                         (eq kind (first (find-kind-of-file path))))))))))
 
 (defun check-kind-of-file (file kind what)
-  "Signal MISUSE if FILE exists, is not empty and is not of KIND. The text WHAT names KIND in the
-message."
+  "Signal MISUSE if FILE exists, is not empty and is not of KIND, which the message calls WHAT."
   (when (other-kind-of-file-p file kind)
     (reject-use "~A is no ~A, and remains unchanged. Give another name."
                 (file-name-text file) what)))

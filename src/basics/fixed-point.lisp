@@ -37,8 +37,7 @@ significant bits, and then the remainder."
         (cons head (apply #'double-parts (- fixed (to-fixed (rational head))) (rest bits))))))
 
 (defun doubles-table (count row)
-  "Call the function ROW with 0, 1, 2 ... below COUNT. Return a vector of the double-floats in the
-lists that ROW returns."
+  "Return a vector of the double-floats in the lists that ROW returns for 0, 1, 2 ... below COUNT."
   (coerce (loop for k below count append (funcall row k)) '(simple-array double-float (*))))
 
 ;;; Power series. Each is summed until its terms are less than one unit.
@@ -100,7 +99,6 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 is 0 for numbers near 1.")
 
 (defun mantissa-row-center (row)
-  "Return the middle of the range of mantissas that ROW of the table +LOGARITHMS+ covers."
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
     (/ (+ (bound row) (bound (1+ row))) 2)))
 
@@ -134,8 +132,7 @@ is 0 for numbers near 1.")
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
 (defmacro result-in-last-cell (function &rest numbers)
-  "Call FUNCTION with a vector of NUMBERS and one more cell. Return the double-float that FUNCTION
-stores in that last cell."
+  "Call FUNCTION with a vector of NUMBERS and a cell for the result. Return the result."
   (with-gensyms (cells)
     (let ((count (length numbers)))
       `(let ((,cells (make-array ,(1+ count) :element-type 'double-float)))
@@ -145,8 +142,7 @@ stores in that last cell."
          (aref ,cells ,count)))))
 
 (defmacro define-cell-function (name (&rest arguments) &body body)
-  "Define the function NAME of a vector whose cells hold ARGUMENTS. It stores the value of BODY in
-the last cell."
+  "Define NAME, a function of a vector of ARGUMENTS that stores the value of BODY in the last cell."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))
@@ -166,16 +162,14 @@ check would box the double-float."
                    +number-text+))
 
 (defmacro polynomial (x &rest coefficients)
-  "Return the value at X of the polynomial with the numbers COEFFICIENTS, the constant term first
-(Horner's method)."
+  "Return the polynomial with COEFFICIENTS, the constant term first, at X (Horner's method)."
   (let ((first (coerce (first coefficients) 'double-float)))
     (if (rest coefficients)
         `(+ ,first (* ,x (polynomial ,x ,@(rest coefficients))))
         first)))
 
 (defmacro with-sum-parts ((high low) ((operator a b)) &body body)
-  "Run BODY with HIGH bound to (OPERATOR A B), rounded, and LOW bound to the rounding error. A must
-be larger than B."
+  "Run BODY with HIGH bound to (OPERATOR A B), rounded, and LOW to the error. A must be above B."
   (once-only (a b)
     `(let* ((,high (,operator ,a ,b)) (,low (,operator (- ,a ,high) ,b)))
        (declare (type double-float ,high ,low))
@@ -209,8 +203,7 @@ be larger than B."
              (- (* a-head b-head) product))))))
 
 (defconstant +rounding-shift+ 6755399441055744d0
-  "1.5 times 2^52. Adding and then subtracting this constant rounds a double-float up to 2^51 to a
-whole number.")
+  "1.5 times 2^52: added, then subtracted, it rounds a double-float up to 2^51 to a whole number.")
 
 (declaim (inline round-to-whole))
 (defun round-to-whole (number)
@@ -219,7 +212,6 @@ whole number.")
   (- (+ number +rounding-shift+) +rounding-shift+))
 
 (defmacro define-constant-parts (names fixed &rest bits)
-  "Define the constants NAMES as double-floats whose sum is FIXED; BITS are their numbers of
-significant bits."
+  "Define the constants NAMES, double-floats of BITS significant bits whose sum is FIXED."
   `(progn ,@(loop for name in names for k from 0
                   collect `(define-constant ,name (nth ,k (double-parts ,fixed ,@bits))))))

@@ -54,7 +54,6 @@
       text))
 
 (defun unmark-formula (text)
-  "Return TEXT without the quote that MARK-FORMULA has put before it."
   (declare (type simple-string text))
   (if (and (plusp (length text)) (char= #\' (char text 0)) (formula-p text))
       (subseq text 1)
@@ -63,7 +62,6 @@
 ;;; Writing.
 
 (defun quote-csv-field (text)
-  "Return TEXT as a CSV field, quoted if necessary."
   (declare (type simple-string text))
   (if (find-if (lambda (char) (member char '(#\, #\" #\Newline #\Return))) text)
       (with-output-to-string (out)
@@ -107,7 +105,6 @@
           return (1+ quote)))
 
 (defun undouble-quotes (text)
-  "Return TEXT with each pair of double quotes replaced by one double quote."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length text))

@@ -21,8 +21,7 @@
 ;;; roll makes SBCL renew the words. A copy of such words means the same.
 
 (defconstant +position-index+ 2
-  "The index of the word, in the words of a random state, that holds the position of the next word
-to read.")
+  "The index of the word of a random state that holds the position of the next word to read.")
 (defconstant +first-word-index+ (1+ +position-index+))
 (defconstant +end-of-words+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
@@ -30,8 +29,7 @@ to read.")
 filled.")
 
 (defun mark-seeded (words seed)
-  "Store SEED and the mark in WORDS, the words of a random state. They are filled from SEED when
-SBCL renews them."
+  "Store SEED and the mark in WORDS of a random state, filled from SEED when SBCL renews them."
   (declare (type random-words words))
   (setf (aref words +position-index+) +end-of-words+
         (aref words +first-word-index+) seed)
@@ -61,8 +59,7 @@ SBCL renews them."
              (when filled-p (fill-if-marked words))
              state)))
     (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
-  "True if a random state can be filled at its first roll, because of the way this SBCL renews its
-words.")
+  "True if a random state can be filled at its first roll, as this SBCL renews its words.")
 
 (defun seed-state (state short)
   "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."
@@ -72,7 +69,6 @@ words.")
     state))
 
 (defun reseed (state seed)
-  "Seed the random state STATE with SEED, an integer, as SEEDED-RANDOM-STATE does; return STATE."
   (seed-state state (ldb (byte 32 0) (mix-bits (ldb (byte 64 0) seed)))))
 
 (defun seeded-random-state (seed)
@@ -125,15 +121,13 @@ is seeded with the integers SEED and TICK."
 
 (declaim (inline users-random-state))
 (defun users-random-state ()
-  "Return the random state for users' code that this thread calls now."
   (let ((dice *tick-dice*))
     (cond (dice (unless (tick-dice-seeded-p dice) (seed-tick-dice dice))
                 (tick-dice-state dice))
           (t *random-state*))))
 
 (defmacro with-users-random-state (&body body)
-  "Run BODY, which calls users' code, with *RANDOM-STATE* bound to the random state for users'
-code."
+  "Run BODY, which calls users' code, with *RANDOM-STATE* bound to users' random state."
   `(let ((*random-state* (users-random-state))) ,@body))
 
 ;; The state itself is changed, because calls of users' code bind the variable again.

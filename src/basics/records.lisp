@@ -26,7 +26,6 @@ SYMBOL is an addition to the manual."
   "The packages whose public names NISP exports by default. ARS exports all other public names.")
 
 (defun default-face (symbol)
-  "Return the default face, :ARS or :NISP, of SYMBOL."
   (let ((layer (package-name (symbol-package symbol))))
     (if (member layer *packages-of-nisp* :test #'string=) :nisp :ars)))
 
@@ -43,8 +42,7 @@ SYMBOL is an addition to the manual."
   "True while the simulator is being loaded. Later definitions belong to users and get no marks.")
 
 (defun mark-names (names addition-p)
-  "Mark and export NAMES, symbols or lists (symbol face...). A name marked as an addition remains an
-addition."
+  "Mark and export NAMES, symbols or lists (symbol face...). An addition remains an addition."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
@@ -74,8 +72,7 @@ the state of a run must be changed by functions that the journal records."
   (and (member symbol *settable* :test #'eq) t))
 
 (defun public-symbols (face)
-  "Return a list of the symbols that the package FACE, :ARS or :NISP, exports, in order of
-definition."
+  "Return the symbols that the package FACE, :ARS or :NISP, exports, in order of definition."
   (loop for mark in *marks*
         when (member face (mark-faces mark))
           collect (mark-symbol mark)))
@@ -98,8 +95,7 @@ is an addition. A reference to a chapter of the manual is removed."
 (defvar *restarts* '() "Lists (name text): the restarts that are documented.")
 
 (defun document-restarts (&rest names-and-texts)
-  "Document restarts. NAMES-AND-TEXTS has each name of a restart, followed by a text that says what
-the restart does."
+  "Document restarts. NAMES-AND-TEXTS alternates names and texts that say what the restarts do."
   (loop for (name text) on names-and-texts by #'cddr
         do (setf *restarts* (append (remove name *restarts* :key #'first)
                                     (list (list name (one-line text)))))))
@@ -122,15 +118,13 @@ the restart does."
         do (setf (documentation function 'function) text)))
 
 (defun reader-text (slot text)
-  "Return the documentation of the reader of SLOT, a symbol, made from TEXT, the description of the
-slot."
+  "Return the documentation of the reader of SLOT, a symbol, made from TEXT, which describes SLOT."
   (if (ends-with-subseq "-P" (symbol-name slot))
       (format nil "True if ~A." text)
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "Return an alist of the documentation of PREDICATE and CONSTRUCTORS, lists (symbol [arguments]
-[text])."
+  "Return an alist of the texts of PREDICATE and CONSTRUCTORS, lists (symbol [arguments] [text])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -152,8 +146,7 @@ of the slot's name, returns the reader's name."
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return a list of the arguments of each DEFSTRUCT option in OPTIONS that begins with KEY; if there
-is none, a list of DEFAULT."
+  "Return a list of the arguments of each option KEY in OPTIONS; if none, a list of DEFAULT."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 

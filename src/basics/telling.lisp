@@ -7,10 +7,9 @@
           zero-if-tiny editor-output-stream cause-of-reading-trouble))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
-;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two
-;;; rows of one trial must be equal. So a type error names the value and the widest common type
-;;; that the value is not of. Conditions that users define, and texts that they give, stay as they
-;;; are.
+;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two rows
+;;; of one trial must be equal. So a type error names the value and the widest common type that the
+;;; value is not of. Users' conditions and texts stay as they are.
 
 (defparameter *common-types*
   '((number "a number") (real "a real number") (integer "an integer") ((integer 0) "0 or more")
@@ -91,7 +90,6 @@ DATUM; or NIL if TYPE is no such range."
 ;;; All of Lisp's own errors.
 
 (defun remove-standard-reference (text)
-  "Return TEXT without the references to the Lisp standard that SBCL appends."
   (let ((end (search (format nil "~%See also:") text)))
     (if end (subseq text 0 end) text)))
 
@@ -107,8 +105,7 @@ DATUM; or NIL if TYPE is no such range."
     (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
 
 (defun conflict-text (condition)
-  "Return the simulator's text for the name conflict CONDITION if the simulator owns one of the
-symbols; else NIL."
+  "Return a text for the name conflict CONDITION if the simulator owns one of the symbols, or NIL."
   (let* ((symbols (sb-ext:name-conflict-symbols condition))
          (ours (find-if #'simulator-symbol-p symbols)))
     (when ours
@@ -125,8 +122,7 @@ symbols; else NIL."
 
 ;; Lisp's own text shows the stream.
 (defun access-refused-text (condition)
-  "Return the simulator's text for CONDITION, a stream error, if the system has refused access; else
-NIL."
+  "Return the simulator's text for the stream error CONDITION if the system refused access; or NIL."
   (let* ((text (one-line (princ-to-string condition))) (place (search ": " text :from-end t))
          (file (ignore-errors (pathname (stream-error-stream condition))))
          (input-p (starts-with-subseq "couldn't read from" text)))
@@ -136,8 +132,7 @@ NIL."
               (string-downcase (string-right-trim "." (subseq text (+ 2 place))))))))
 
 (defun lisp-error-text (condition)
-  "Return the simulator's text for CONDITION, an error defined by Common Lisp or SBCL; NIL if there
-is none."
+  "Return the simulator's text for CONDITION, an error of Lisp or SBCL; NIL if there is none."
   (ignore-errors
    (when (lisp-symbol-p (type-of condition))
      (typecase condition
@@ -155,8 +150,7 @@ is none."
 ;;; A condition may report a circular list, or an object that cannot be printed.
 
 (defmacro printing-briefly (() &body body)
-  "Run BODY, which makes text for people, with printer variables that abridge deep, long and
-circular data."
+  "Run BODY, which makes text for people, with deep, long and circular data abridged."
   `(printing-text ()
      (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
        ,@body)))
@@ -191,16 +185,14 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
     (if cause (cause-of-reading-trouble cause) condition)))
 
 (defun unreadable-name-remedy (text)
-  "Return a sentence with a remedy if the error text TEXT says that a name cannot be read; else
-NIL."
+  "Return a sentence with a remedy if the error text TEXT is about an unreadable name; else NIL."
   (cond ((or (search "not found in the" text) (search "Package" text))
          "Perhaps the name is misspelt, or the file that defines it is not loaded")
         ((search "is not external" text)
          "To use an internal symbol of that package, write two colons")))
 
 (defun encoding-trouble (condition)
-  "If CONDITION says that a file has another encoding than expected, return a text that says so;
-else NIL."
+  "If CONDITION says that a file has an unexpected encoding, return a text that says so; else NIL."
   (let ((encoding (undecodable-format condition)))
     (and encoding
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
@@ -213,8 +205,7 @@ else NIL."
                  trouble))))
 
 (defun reading-trouble (condition)
-  "Return a text that says why Lisp text cannot be read, from CONDITION, without the names of
-streams."
+  "Return a text, from CONDITION, that says why Lisp text cannot be read, without names of streams."
   (let* ((cause (cause-of-reading-trouble condition))
          (text (cond ((encoding-trouble cause))
                      ((typep cause 'simple-condition)
@@ -251,8 +242,7 @@ printed form, or an empty text if it cannot be printed."
         finally (return text)))
 
 (defun failing-report-text (condition trouble beginning)
-  "Return a text that says that the report of CONDITION wrote BEGINNING and then failed with the
-error TROUBLE."
+  "Return a text: the report of CONDITION wrote BEGINNING and then failed with the error TROUBLE."
   (let ((why (or (simulator-error-text trouble)
                  (ignore-errors (format-briefly nil "~A" trouble))
                  ;; Its text may contain CONDITION, which cannot be printed.
@@ -264,15 +254,13 @@ error TROUBLE."
             (without-addresses (one-line (princ-to-string why))))))
 
 (defun write-report (condition stream)
-  "Write the report of CONDITION to STREAM, with a text in place of each object that cannot be
-printed."
+  "Write the report of CONDITION to STREAM, with a text in place of each unprintable object."
   (printing-briefly ()
     (let ((sb-ext:*suppress-print-errors* 'error) (*print-escape* nil) (*print-circle* nil))
       (print-object condition stream))))
 
 (defun partial-report (condition)
-  "Return the part of the report of CONDITION that can be printed, and a text that says that the
-report fails."
+  "Return the printable part of CONDITION's report, and a text that says that the report fails."
   (let ((out (make-string-output-stream)))
     (handler-case (progn (write-report condition out)
                          (format nil "~A (~(~A~), whose report fails)"
@@ -282,8 +270,7 @@ report fails."
         (failing-report-text condition trouble (get-output-stream-string out))))))
 
 (defun simulator-error-text (condition)
-  "Return the simulator's text for CONDITION, an error of Lisp's own; the text is the same in every
-version of SBCL. NIL if there is none."
+  "Return the simulator's text for CONDITION, a Lisp error, the same in each SBCL version; or NIL."
   (cond ((typep condition 'storage-condition) (storage-error-text condition))
         ((and (typep condition 'end-of-file) (typed-input-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
@@ -322,7 +309,6 @@ is 23.2, not 23.200000762939453. Numbers closer to 0 than half of that have an e
 ;;; The output of editors.
 
 (defun resolve-synonym-stream (stream)
-  "Return STREAM, or, if STREAM is a synonym stream, the stream that it refers to."
   (if (typep stream 'synonym-stream)
       (resolve-synonym-stream (symbol-value (synonym-stream-symbol stream)))
       stream))

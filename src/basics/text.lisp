@@ -38,8 +38,7 @@
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
 (defun visible (text)
-  "Return TEXT with each control character, except newlines and tabs, replaced by ^ and a letter, or
-by a question mark."
+  "Return TEXT with control characters, but not newlines and tabs, as ^ and a letter, or as ?."
   (if (some #'control-character-p text)
       (with-output-to-string (stream)
         (loop for char across text
@@ -77,8 +76,7 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
 ;;; tables, pictures and JSON, must not depend on them.
 
 (defun call-printing-plainly (function)
-  "Call FUNCTION with the default values of the printer's variables, but without pretty printing.
-Return the values of FUNCTION."
+  "Return the values of FUNCTION, called with the printer's defaults, but without pretty printing."
   (let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-pretty* nil)
         (*print-readably* nil) (*print-escape* t) (*print-circle* nil) (*print-length* nil)
         (*print-level* nil) (*print-lines* nil) (*print-right-margin* nil) (*print-array* t)
@@ -90,8 +88,7 @@ Return the values of FUNCTION."
   (form-calling 'call-printing-plainly body))
 
 (defun print-named (object stream name &optional (whole name))
-  "Print OBJECT to STREAM: for PRINC, as NAME, a symbol or string; for other functions, as
-#<WHOLE>."
+  "Print OBJECT to STREAM: for PRINC as NAME, a symbol or string; otherwise as #<WHOLE>."
   (if (or *print-escape* *print-readably*)
       (print-unreadable-object (object stream) (princ whole stream))
       (princ name stream)))
@@ -99,8 +96,7 @@ Return the values of FUNCTION."
 ;;; Texts for people need decimal numbers and complete lists, too.
 
 (defmacro printing-text (() &body body)
-  "Run BODY, which makes text for people, with the default values of the printer's variables for
-numbers, names and lists."
+  "Run BODY, which makes text for people, with the printer's defaults for numbers, names and lists."
   `(let ((*print-base* 10) (*print-radix* nil) (*print-case* :upcase) (*print-length* nil)
          (*print-level* nil) (*print-lines* nil) (*print-readably* nil) (*print-array* t))
      ,@body))
@@ -169,8 +165,7 @@ shows.")
       (visit datum))))
 
 (defun without-packages (datum)
-  "Return DATUM, a value of ABRIDGED, with its symbols replaced by uninterned symbols of the same
-names."
+  "Return DATUM, a value of ABRIDGED, with each symbol replaced by an uninterned namesake."
   (typecase datum
     (cons (cons (without-packages (car datum))
                 (and (cdr datum) (without-packages (cdr datum)))))
@@ -184,8 +179,7 @@ names."
     (prin1-to-string (without-packages (abridged datum)))))
 
 (defun text-as-typed (datum)
-  "Return DATUM, such as a symbol, as a user would type it in lower case, with bars (|) if
-necessary."
+  "Return DATUM, such as a symbol, as users type it in lower case, with bars (|) if necessary."
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
@@ -258,8 +252,7 @@ both (reading 38)."
        (char-equal (char a (- i 2)) (char b (- j 1)))))
 
 (defun nearest-name (name names)
-  "Return the name in NAMES that is most similar to NAME; NIL if none is similar, or if NAME has
-more than 100 characters."
+  "Return the name in NAMES most like NAME; NIL if none is similar or NAME has over 100 characters."
   (let ((names (and (<= (length (string name)) 100) names))
         (best nil)
         (least (max 2 (floor (length (string name)) 2))))
@@ -289,8 +282,7 @@ alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
 
 (defun misspelling-p (a b)
   "True if the name A may be a misspelling of the different name B. They differ by one letter, or by
-two if both are long. In short names and at the beginning of names, a different letter must sound
-alike."
+two if both are long. In short names, and at the beginning, a different letter must sound alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
          (or (similar-letters-p (char a 0) (char b 0))
@@ -301,8 +293,7 @@ alike."
 ;;; Natural order of names: box 2 before box 10.
 
 (defun first-name-part (text start)
-  "Return the number that begins in TEXT at START, or else the character at START, and the position
-after the number or character."
+  "Return the number or else the character at START in TEXT, and the position after it."
   (let ((end (or (position-if-not #'digit-char-p text :start start) (length text))))
     (if (> end start)
         (values (parse-integer text :start start :end end) end)

@@ -7,13 +7,11 @@
 ;;; CL:SIN, COS, ATAN, EXP, LOG and EXPT call the C library. Its last bits depend on its version and
 ;;; on the processor. These functions only add, subtract, multiply, divide and read tables. IEEE
 ;;; arithmetic defines each of these operations to the bit, and SBCL never fuses two of them. The
-;;; error is below 0.6 units in the last place. 99.9 % of the results are those of Debian's C
-;;; library.
+;;; error is below 0.6 units in the last place. 99.9 % of results match Debian's C library.
 
 ;;; Methods: for sine, cosine and arctangent those of IBM's Accurate Mathematical Library (Ziv
 ;;; 1991); for exponential and logarithm Tang 1989 and 1990; for large angles Payne and Hanek 1983.
-;;; A table has the value at a point nearby, in two parts. A short series leads from there to the
-;;; argument.
+;;; A table has the value at a nearby point, in two parts; a short series leads to the argument.
 
 ;;; Sine and cosine.
 
@@ -100,8 +98,7 @@ whose sum is the rest. OPERATOR rejects infinities."
 
 (declaim (inline reduce-near-right-angle reduce-angle))
 (defun reduce-near-right-angle (angle count)
-  "Return two numbers whose sum is ANGLE minus COUNT right angles. ANGLE is nearly equal to COUNT
-right angles."
+  "Return two numbers whose sum is ANGLE minus COUNT right angles, which nearly equal ANGLE."
   (declare (type double-float angle count))
   (with-difference-parts (high low) ((- angle (* count +right-a+)) (* count +right-b+))
     (with-difference-parts (higher lower) (high (* count +right-c+))
@@ -228,6 +225,5 @@ differs between machines.) Signals WRONG-ARGUMENT unless ANGLE is a real number.
   (result-in-last-cell put-cosine (double angle)))
 
 (defun arctangent (y x)
-  "Return the angle of the direction (X, Y), real numbers, in radians from -pi to pi. If X or Y is
-0, its sign matters, as for CL:ATAN."
+  "Return the angle of (X, Y) from -pi to pi radians. The sign of a 0 matters, as for CL:ATAN."
   (result-in-last-cell put-arctangent (double y) (double x)))

@@ -43,8 +43,7 @@ for the copy and true, or NIL and false" :writable)
   (record-copy copy copy copier))
 
 (defun queue-references (copy indices copier)
-  "Queue COPY in COPIER, so that REPLACE-REFERENCES will replace its slots with the numbers INDICES.
-Return COPY."
+  "Queue COPY in COPIER: REPLACE-REFERENCES will replace its slots number INDICES. Return COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))
@@ -128,13 +127,11 @@ the object that refers to VALUE."
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
 (defun find-decision (value copier)
-  "If the caller of COPIER has chosen a replacement for VALUE in the fork, return a cons of VALUE
-and the replacement; else NIL."
+  "If COPIER's caller has chosen a replacement for VALUE, return (VALUE . replacement); else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
 (defun copy-by-decision (value copier)
-  "Return the replacement for VALUE that the caller of COPIER has chosen. Signals CANNOT-FORK if
-there is none."
+  "Return the replacement for VALUE chosen by the caller of COPIER. Signals CANNOT-FORK if none."
   (let ((decision (find-decision value copier)))
     (if decision
         (cdr decision)
@@ -173,8 +170,7 @@ method for a class of your own to change this: return VALUE itself to share it, 
   `(pushnew '(,type ,@slots) *shared-slots* :test #'equal))
 
 (defun shared-slot-p (name object kind)
-  "True if a run shares the contents of the slot NAME of OBJECT with its forks. KIND is the kind of
-OBJECT, or NIL."
+  "True if forks share the contents of the slot NAME of OBJECT. KIND is the kind of OBJECT, or NIL."
   (let ((slot (and kind (find name (kind-slots kind) :key #'kind-slot-name :test #'eq))))
     (if slot
         (kind-slot-shared-p slot)

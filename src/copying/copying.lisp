@@ -30,8 +30,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return the replacement for VALUE that the screen of COPIER returns; if there is none, a copy of
-VALUE."
+  "Return the replacement for VALUE by the screen of COPIER; if there is none, a copy of VALUE."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (record-copy value instead copier)
@@ -128,8 +127,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return the copy of FUNCTION, which is not a closure: FUNCTION itself, unless its class is a
-user's and may have slots."
+  "Return the copy of FUNCTION, no closure: FUNCTION itself, unless its class is a user's."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (copy-by-decision function copier))
         (t function)))
@@ -137,8 +135,7 @@ user's and may have slots."
 ;;; Replacing references in copies.
 
 (defun replace-list-references (list copier)
-  "Replace the references in LIST, a copy of a list, by copies, up to a tail that was copied
-before."
+  "Replace the references in LIST, a copied list, by copies, up to a tail that was copied before."
   (declare #.*hot* (type copier copier))
   (loop
     (setf (car list) (forked (car list) copier))
@@ -150,8 +147,7 @@ before."
                                 (record-copy tail (cons (car tail) (cdr tail)) copier))))))))
 
 (defun replace-references (copy indices copier)
-  "Replace the references in COPY by copies. INDICES are numbers of slots, or NIL for objects
-without numbered slots."
+  "Replace the references in COPY by copies. INDICES are slot numbers, or NIL if slots have none."
   (declare #.*hot* (type copier copier))
   (cond (indices
          (loop for index of-type (unsigned-byte 20) across (the simple-vector indices)

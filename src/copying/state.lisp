@@ -6,8 +6,7 @@
           note-savable-function savable-function-name find-savable-function contradiction
           contradict must-hold proper-list-of-p))
 
-;;; An object is digested with its state and its parts. Other objects that it refers to are digested
-;;; by their REFERENCE.
+;;; An object is digested with its state and parts; other objects it refers to, by their REFERENCE.
 
 (defgeneric reference (object)
   (:documentation

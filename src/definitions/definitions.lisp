@@ -23,8 +23,7 @@ its file; NIL until it is looked up" :writable)
   "The definition that is being expanded or evaluated, or NIL.")
 
 (defun current-source ()
-  "Return the source of the current definition; if there is none, of the form being loaded. NIL if
-the definition or form was typed."
+  "Return the source of the current definition, or else of the form being loaded; NIL if typed."
   (if *definition*
       (defining-source *definition*)
       (source-of-current-form)))
@@ -44,8 +43,7 @@ string after the name; or NIL."
     (and (stringp text) text)))
 
 (defun title (operator name)
-  "Return the text by which messages name the definition of NAME by OPERATOR, such as \"defmap
-yard\"."
+  "Return the name in messages of the definition of NAME by OPERATOR, such as \"defmap yard\"."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
@@ -102,8 +100,7 @@ there."
   (list (read *query-io*)))
 
 (defun definition-in-file-p (condition)
-  "True if the current definition, with the error CONDITION, was read from a file and can be read
-again."
+  "True if the current definition, with the error CONDITION, can be read again from its file."
   (declare (ignore condition))
   (and (current-source) t))
 
@@ -172,8 +169,7 @@ another clause. The restarts remain available for that form."
                            name (string-right-trim "." (text-of-condition condition))))))
 
 (defun call-reporting-mistakes (function blame)
-  "Call FUNCTION. For each error that is not an ARS-MAGNA-ERROR, and so is a mistake in a user's
-form, call BLAME with the error."
+  "Call FUNCTION. For each error of a user's form (no ARS-MAGNA-ERROR), call BLAME with the error."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition 'ars-magna-error)
                             (funcall blame condition)))))
@@ -216,8 +212,7 @@ form, call BLAME with the error."
 (defun forms-or-rejection (function nested)
   "Call FUNCTION, which expands a form, and return its value. If FUNCTION signals
 MALFORMED-DEFINITION, and the form is NESTED in another form or is in a file that is compiled,
-return a list of a form that signals the error later. (The compiler would change an error signalled
-now.)"
+return a list of a form that signals the error later. (The compiler would change an error now.)"
   (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
         (malformed-definition (condition) (list (rejected-form condition))))

@@ -19,14 +19,12 @@ are not strings are converted by FACT-TEXT."
         when fact collect (list label (if (stringp fact) fact (fact-text fact)))))
 
 (defun fact-text (fact)
-  "Return the text that shows the object FACT to users: on one line, in lower case, without package
-prefixes."
+  "Return the text that shows the object FACT: one line in lower case, without package prefixes."
   (let ((*print-case* :downcase) (*read-default-float-format* 'double-float))
     (one-line (safe-text fact :length 400))))
 
 (defun comma-separated (objects)
-  "Return a text with OBJECTS, such as names, separated by commas; NIL if there are none. Show at
-most 12 of them."
+  "Return a text with at most 12 of OBJECTS, such as names, separated by commas; NIL if none."
   (and objects
        (format nil "~{~A~^, ~}"
                (names-to-show (loop for object in objects
@@ -86,7 +84,6 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
 (defun show-entry-p (entry registry symbol)
-  "True if DESCRIBE should show ENTRY, the definition of SYMBOL in REGISTRY."
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))

@@ -51,8 +51,7 @@
 
 (declaim (inline kind-named))
 (defun kind-named (name)
-  "Return the kind with the name NAME, or NIL. NAME must be the same symbol, not only the same
-string."
+  "Return the kind named NAME, or NIL. NAME must be the same symbol, not only the same string."
   (get name 'object-kind))
 
 (declaim (inline kind-of))
@@ -98,8 +97,7 @@ is the kind BASE or includes BASE; NIL if there is none."
   (funcall (kind-slot-reader slot) object))
 
 (defun object-slots (object &rest roles)
-  "Return a list (name value text) for each slot of OBJECT, an object of a kind, whose role is among
-ROLES. Without ROLES, list all slots."
+  "Return a list (name value text) for each slot of OBJECT whose role is among ROLES (none: all)."
   (loop for slot in (kind-slots (kind-of object))
         when (or (null roles) (member (kind-slot-role slot) roles))
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
@@ -119,7 +117,6 @@ OBJECT is of a kind, there is a list for each role; else there is one list, and 
 
 (declaim (inline map-parts))
 (defun map-parts (function value)
-  "Call FUNCTION with the object VALUE, or with each element of the list or vector VALUE."
   (typecase value
     (list (mapc function value))
     (vector (map nil function value))
@@ -213,8 +210,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
                        (lambda (value object) (setf (,reader (the ,name object)) value))))))
 
 (defun kind-options (form)
-  "Return three values from FORM, the first argument of DEFINE-KIND: the name, the included kind or
-NIL, and the constructor."
+  "Return three values from FORM, as in DEFINE-KIND: name, included kind or NIL, and constructor."
   (destructuring-bind (name &rest options) (ensure-list form)
     (unless (and (proper-list-p options) (evenp (length options))
                  (loop for key in options by #'cddr always (member key '(:include :constructor))))

@@ -22,8 +22,7 @@ an addition.")
   '(member :report :signal :collect))
 
 (defvar *request-origin* nil
-  "The origin, a value of NOTE-OF-ASKER, of the request that messages queued in this thread report
-about; or NIL.")
+  "The origin, as of NOTE-OF-ASKER, of the request that this thread's messages are about; or NIL.")
 
 (defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread report about, or NIL.")
@@ -57,8 +56,7 @@ troubles.lisp" :export)
 (define-record (message-queue (:constructor make-message-queue
                                   (&key (error-policy :report) echoed)
                                 "Return a new, empty queue of messages."))
-  "A queue of unread messages. A thread must hold LOCK to use the lists, counts and tables, except
-to test whether UNSIGNALLED is NIL."
+  "A queue of unread messages. The lists, counts and tables need LOCK, except to test UNSIGNALLED."
   (lock (make-lock "messages") t)
   (newest-first '() list :writable)
   (count 0 fixnum :writable)
@@ -97,7 +95,6 @@ listener, errors are shown at once"))
     copy))
 
 (defun record-user-error (message queue)
-  "Record MESSAGE, about an error in users' code, as the latest error in QUEUE."
   (push message (message-queue-troubles queue))
   (let ((last (nthcdr (1- *message-limit*) (message-queue-troubles queue))))
     (when last (setf (rest last) '())))
@@ -106,8 +103,7 @@ listener, errors are shown at once"))
     (setf (message-queue-unsignalled queue) message)))
 
 (defun unreported-error-p (message)
-  "True if MESSAGE is about an error or a mistake in users' code that was not reported in another
-way."
+  "True if MESSAGE is about an error or mistake in users' code not reported in another way."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
@@ -140,30 +136,25 @@ way."
 
 (public error-set)
 (defun error-set (&rest stuff)
-  "Queue an error message made of the items STUFF, which are printed as by OUT. Return nothing
-(manual 3.7)."
+  "Queue an error message of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
   (queue-items :error stuff))
 
 (public warning-set)
 (defun warning-set (&rest stuff)
-  "Queue a warning made of the items STUFF, which are printed as by OUT. Return nothing (manual
-3.7)."
+  "Queue a warning of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
   (queue-items :warning stuff))
 
 (defun warn-notably (&rest stuff)
-  "Queue a warning made of the items STUFF. If nobody reads the warning, it is shown at the end like
-an error. Return nothing."
+  "Queue a warning of the items STUFF, shown at the end like an error if unread. Return nothing."
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
-  "Queue a warning made of the items STUFF. If the queue has no listener, the warning is shown at
-once. Return nothing."
+  "Queue a warning of the items STUFF, shown at once if the queue has no listener. Return nothing."
   (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)
 (defun message-set (&rest stuff)
-  "Queue a message made of the items STUFF, which are printed as by OUT. Return nothing (manual
-3.7)."
+  "Queue a message of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
   (queue-items :message stuff))
 
 (defun take-messages (&optional (queue *message-queue*))
@@ -196,8 +187,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
 ;;; Printing.
 
 (defun write-item (item stream)
-  "Write ITEM to STREAM without quotes. Floats have no exponent marker; T is a newline (reading
-36)."
+  "Write ITEM to STREAM without quotes or exponent markers of floats; T is a newline (reading 36)."
   (cond ((eq item t) (terpri stream))
         ((floatp item)
          (let ((*read-default-float-format* (type-of item)))
@@ -209,8 +199,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
 
 (public (out :nisp))
 (defun out (&rest items)
-  "Print each of ITEMS, without quotes, to standard output; the item T is a newline. Return nothing
-(manual 3.1.3)."
+  "Print ITEMS without quotes to standard output; T is a newline. Return nothing (manual 3.1.3)."
   (write-items items *standard-output*)
   (finish-output)
   (values))
@@ -226,8 +215,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return the text of MESSAGE, preceded by the name of the command it is about, if the text does not
-begin with that name."
+  "Return the text of MESSAGE, made to begin with the name of the command it is about."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)

@@ -8,8 +8,7 @@
 
 (defstruct (argument-type (:constructor make-argument-type (name predicate words trouble))
                           (:copier nil))
-  "A type of arguments: a predicate and the WORDS that describe the type. TROUBLE is as in
-DEFINE-ARGUMENT-TYPE."
+  "A type of arguments: a predicate, descriptive WORDS, and TROUBLE as in DEFINE-ARGUMENT-TYPE."
   (name nil :type symbol :read-only t)
   (predicate nil :type function :read-only t)
   (words "" :type string :read-only t)
@@ -19,8 +18,7 @@ DEFINE-ARGUMENT-TYPE."
 
 (defun define-argument-type (name predicate text &optional trouble)
   "Define the argument type NAME, of values for which PREDICATE is true. TEXT describes such a
-value. TROUBLE is a function that returns a text that says what is wrong with a value; or NIL if
-TEXT says enough."
+value. TROUBLE is NIL if TEXT says enough, or a function that returns a text about a wrong value."
   (register *argument-types* name (make-argument-type name predicate text trouble))
   name)
 
@@ -79,8 +77,7 @@ is not a whole number of degrees, as an angle computed with a unit or pi would b
          (< 1d-6 (abs (- degrees (fround degrees)))))))
 
 (defun degrees-advice (angle)
-  "Return a text that says how many turns ANGLE, in radians, is, and what to write if degrees are
-meant."
+  "Return a text that says how many turns ANGLE, in radians, is, and what to write for degrees."
   (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
     (format nil "~A radians are ~,1F full turns. If ~A degrees are meant, write (* ~A (/ pi 180)), ~
                  or at the prompt ~A deg."

@@ -11,8 +11,7 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun snapshot-entry (entry)
-  "Return a list of ENTRY, a copy of its object, and a list of the value of its variable, or NIL if
-it has no value."
+  "Return a list of ENTRY, a copy of its object, and a list of its variable's value (NIL: unbound)."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
@@ -41,8 +40,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
     other))
 
 (defvar *variables-to-restore* '()
-  "Variables, such as that of the current simulation, whose values WITH-OWN-DEFINITIONS restores.
-Layers add variables.")
+  "Variables of layers, such as that of the current simulation, restored by WITH-OWN-DEFINITIONS.")
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION, then undo its definitions; see WITH-OWN-DEFINITIONS."

@@ -7,8 +7,7 @@
 
 ;; Much faster than PROGV for parameters defined before this is compiled, as all of ours are.
 (defmacro with-parameters-bound ((values) &body body)
-  "Run BODY with all parameters bound, in order, to the elements of the list in the variable
-VALUES."
+  "Run BODY with all parameters bound, in order, to the elements of the list VALUES."
   (let ((symbols (mapcar #'parameter-symbol (registry-objects *parameters*))))
     `(let* ,(loop for symbol in symbols collect `(,symbol (pop ,values)))
        (progv (mapcar #'parameter-symbol (nthcdr ,(length symbols) (registry-objects *parameters*)))
@@ -52,8 +51,7 @@ end, store the parameters' values in VALUES. Return the values of FUNCTION."
 
 (defun digest-parameters (known digest)
   "Add KNOWN, a vector as PARAMETER-VALUES returns, to DIGEST. Parameters without the mark :DIGESTED
-are added by name, and only if they differ from their defaults. So digests of earlier versions
-remain valid."
+are added by name, and only if they differ from their defaults. So earlier digests remain valid."
   (loop for parameter in (registry-objects *parameters*)
         for value across known
         if (parameter-digested-p parameter)
@@ -64,8 +62,7 @@ remain valid."
                 (when others (digest-add digest others))))
 
 (defun changed-parameters (known)
-  "Return an alist (symbol . value) of the parameters that differ from KNOWN, a vector as
-PARAMETER-VALUES returns."
+  "Return an alist (symbol . value) of the parameters that differ from the PARAMETER-VALUES KNOWN."
   (declare (type simple-vector known))
   (loop for parameter in (registry-objects *parameters*)
         for old across known

@@ -24,8 +24,7 @@
   (group "" string "the heading that chapter 4 lists it under" :addition)
   (sentence "" string "what the parameter means" :addition)
   (digested-p t boolean
-              "digests include the parameter even if it has its default value; see
-DIGEST-PARAMETERS"))
+              "digests include even the default of the parameter; see DIGEST-PARAMETERS"))
 
 (addition parameter-name)
 (defun parameter-name (parameter)

@@ -9,8 +9,7 @@
 ;;; is then searched for in what has been reached.
 
 (defun skip-blanks (text i)
-  "Return the position of the first character in TEXT, from I on, that is neither blank nor part of
-a comment."
+  "Return the position of the first character in TEXT, from I on, outside blanks and comments."
   (loop while (< i (length text))
         do (cond ((blank-p (char text i)) (incf i))
                  ((skip-comment text i) (setf i (skip-comment text i)))
@@ -22,8 +21,7 @@ a comment."
 ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modified.")
 
 (defun element-bounds (text start number)
-  "Return the start and end in TEXT of element NUMBER of the list at START; NIL if the element
-cannot be read."
+  "Return the start and end in TEXT of element NUMBER of the list at START; NIL if unreadable."
   (with-form-reader (text)
     (destructuring-bind (last-text last-start last-number last-begin) *last-element*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)

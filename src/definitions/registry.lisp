@@ -11,8 +11,7 @@
 ;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
 ;;; very symbol, then for the same name.
 ;;;
-;;; The lists are replaced, never modified, so any thread may read them at any time. All writes are
-;;; under one lock.
+;;; The lists are replaced, never modified, so any thread may read them. One lock guards writes.
 
 (define-record (entry (:constructor make-entry (name object source variable
                                                 &optional (digest (current-form-digest))
@@ -79,8 +78,7 @@ case; NIL if there is none."
              (or (find-symbol name package) (find-symbol (string-upcase name) package)))))))
 
 (defun lookup-entry (name registry)
-  "Return the entry of REGISTRY for NAME, a symbol or a string, which may have the form
-PACKAGE:NAME; or NIL."
+  "Return the entry of REGISTRY for NAME, a symbol or a string, perhaps PACKAGE:NAME; or NIL."
   (when (typep name '(or symbol string))
     (let ((entries (registry-entries registry))
           (name (or (qualified-symbol name) name)))
@@ -111,15 +109,13 @@ users have defined, the newest first, then the simulator's."
                                  (remove-if #'users-entry-p entries)))))
 
 (defun find-definition (name registry errorp)
-  "Return the object in REGISTRY with the name NAME. If there is none, return NIL, or signal
-UNKNOWN-NAME if ERRORP is true."
+  "Return the object in REGISTRY named NAME, or NIL, or signal UNKNOWN-NAME if ERRORP is true."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-suggest registry))))))
 
 (defun defined-in-this-file-p (name registry)
-  "True if NAME in REGISTRY is defined in the file that is being loaded. (Later forms of the file
-may redefine NAME.)"
+  "True if NAME in REGISTRY is defined in the file being loaded. (Later forms may redefine NAME.)"
   (let ((entry (lookup-entry name registry))
         (file (source-file (current-source))))
     (and entry file (equal file (source-file (entry-source entry))))))
@@ -169,8 +165,7 @@ Else NEW is the last."
           (t (append others (list new))))))
 
 (defun variable-in-use-p (name)
-  "True if the variable NAME has a global value other than NIL, so that a definition must not set
-it."
+  "True if the variable NAME has a global value other than NIL, so that no definition may set it."
   (ignore-errors (global-value name)))
 
 (defun usable-variable (name kind)
@@ -193,8 +188,7 @@ NAME is a symbol of Common Lisp or of the simulator."
                           (registry-text registry) (entry-name new) other file))))
 
 (defun choose-variable (name old registry)
-  "Return the variable for a definition of NAME: the variable of the entry OLD; or NAME, if that
-variable is unused; or NIL."
+  "Return the variable for a definition of NAME: that of the entry OLD; or NAME, if unused; or NIL."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (usable-variable name (registry-text registry)))))
 
@@ -241,8 +235,7 @@ If several threads define NAME at a time, each replaces a different object."
 
 (defun all-definitions (kind)
   "Return a list of lists (name object source) for all definitions of KIND, a kind as in UNDEFINE,
-in order. SOURCE is the file of a definition, :OWN for definitions of the simulator, or NIL for
-typed definitions."
+in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for typed definitions."
   (loop for entry in (registry-entries (find-registry kind))
         collect (list (entry-name entry) (entry-object entry)
                       (if (users-entry-p entry) (source-file (entry-source entry)) :own))))

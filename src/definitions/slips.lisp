@@ -19,8 +19,7 @@ exports, and the name of that package; or NIL."
 ;;; Names in other packages.
 
 (defun user-packages ()
-  "Return a list of users' packages: those that use ARS, with ARS-USER first, without the
-simulator's own packages."
+  "Return a list of users' packages (that use ARS, but not the simulator's), with ARS-USER first."
   (let ((ours (find-package "ARS-USER")))
     (cons ours
           (remove-if (lambda (package)
@@ -41,8 +40,7 @@ a sentence that says how to use that symbol; else NIL."
                       (package-name package))))))))
 
 (defun accessible-symbols (package test)
-  "Return a list, sorted by name, of the symbols accessible in PACKAGE for which TEST is true,
-without those of Common Lisp."
+  "Return the symbols accessible in PACKAGE, without Common Lisp's, with TEST true, sorted by name."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
       (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
@@ -81,8 +79,7 @@ method.")
 ;;; Variables.
 
 (defun definition-name-text (name)
-  "If the unbound symbol NAME is the name of a definition, such as a map, return a sentence that
-says so; else NIL."
+  "If the unbound symbol NAME names a definition, return a sentence that says so; else NIL."
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
@@ -91,8 +88,7 @@ says so; else NIL."
                           (registry-usual-name registry) (unqualified-text name))))
 
 (defun similar-variable (name)
-  "Return the name, in lower case, of the variable of which the unbound symbol NAME may be a
-misspelling; or NIL."
+  "Return the name, in lower case, of a variable that the unbound symbol NAME may misspell; or NIL."
   (let ((meant (and (symbol-package name)
                     (first (accessible-symbols (symbol-package name)
                                                (lambda (symbol)
@@ -127,8 +123,7 @@ readtables only.")
   (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
 
 (defun unreadable-syntax-text (condition)
-  "If CONDITION says that Lisp cannot read some syntax, return a sentence that says how to make it
-readable; or NIL."
+  "If CONDITION is about unreadable syntax, return a sentence on how to make it readable; or NIL."
   (let ((character (and (typep condition 'simple-condition)
                         (starts-with-subseq "no dispatch function"
                                             (simple-condition-format-control condition))
@@ -150,15 +145,13 @@ value to pass in its place; or NIL.")
        (search " returns" (argument-type-words type))))
 
 (defun type-remedy (datum type)
-  "Return a sentence that says what is wrong with DATUM as an argument of TYPE, or which value to
-give; or NIL."
+  "Return a sentence that says why DATUM is no argument of TYPE, or which value to give; or NIL."
   (let ((type (and (symbolp type) (find-argument-type type nil))))
     (when (and type (or (argument-trouble-text datum type) (returning-function-known-p type)))
       (sentence (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defun error-hint (condition)
-  "Return a sentence that says what the user perhaps meant, or what to do, after CONDITION, an error
-of Lisp's own; or NIL."
+  "Return a sentence on what the user perhaps meant, or what to do, after a Lisp CONDITION; or NIL."
   (typecase condition
     (undefined-function (undefined-function-text (cell-error-name condition)))
     (unbound-variable (unbound-variable-text (cell-error-name condition)))
@@ -192,8 +185,7 @@ or NIL. The layer that defines fluents has methods.")
         ((or (keywordp form) (stringp form)) form)))
 
 (defun compared-words (form)
-  "If FORM compares the value of a form with constant words, return a list of the words, and that
-form; else NIL."
+  "If FORM compares a form with constant words, return a list of the words, and the form; else NIL."
   (let ((arguments (rest form)))
     (flet ((is (count &rest names)
              (and (member (first form) names)
@@ -228,8 +220,7 @@ compared form, the word, and the form that compares them."
 ;;; Where values are used.
 
 (defun lisp-call-p (form &rest names)
-  "True if FORM is a proper list that calls an operator named by one of the strings NAMES, of Common
-Lisp or of the simulator."
+  "True if FORM, a proper list, calls an operator of Lisp or the simulator named by one of NAMES."
   (and (typep form '(cons symbol))
        (proper-list-p form)
        (not (users-symbol-p (first form)))

@@ -36,15 +36,13 @@ belongs to the last call; it is replaced, never modified."
         (first (setf (first cell) (cons (funcall function) keys))))))
 
 (defmacro caching ((&rest keys) &body body)
-  "Return the value of BODY. If the values of KEYS, strings and other objects, are those of the last
-call, return the value of that call."
+  "Return the value of BODY, or of the last call if KEYS, strings and other objects, are the same."
   (apply #'form-calling 'call-caching body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
 
 (defmacro with-form-reader ((text) &body body)
-  "Run BODY. In BODY, (READ-WORDS position) returns the form in TEXT that begins at the position,
-and the end of the form."
+  "Run BODY, in which (READ-WORDS position) returns the form in TEXT at the position, and its end."
   (with-gensyms (words)
     ;; Other packages are found by the local nicknames of the current one.
     `(let ((,words (make-package (gensym "WORDS") :use '())))
@@ -76,8 +74,7 @@ and the end of the form."
         finally (return (length text))))
 
 (defun skip-block-comment (text start)
-  "Return the end position of the block comment that begins in TEXT at START. Comments may be
-nested."
+  "Return the end of the block comment, perhaps nested, that begins in TEXT at START."
   (loop with depth = 0
         for i from start below (1- (length text))
         do (cond ((string= "#|" text :start2 i :end2 (+ i 2)) (incf depth) (incf i))
@@ -97,8 +94,7 @@ nested."
         ((starts-at-p "#|" text i) (skip-block-comment text i))))
 
 (defun skip-text (text i)
-  "Return the end position of the comment, string or escaped character that begins in TEXT at I; NIL
-if none begins there."
+  "Return the end of the comment, string or escaped character that begins in TEXT at I; else NIL."
   (cond ((skip-comment text i))
         ((find (char text i) "\"|") (skip-quoted text i))
         ((starts-at-p "#\\" text i) (+ i 3))
@@ -182,8 +178,7 @@ element; or NIL."
   (1+ (count #\Newline text :end position)))
 
 (defun text-of-file (file)
-  "Return the text of FILE, a native name, as FILE-TEXT does. The text is cached until the file or
-the write date changes."
+  "Return the FILE-TEXT of FILE, a native name, cached until the file or the write date changes."
   (let ((path (native-path file)))
     (caching (file (file-write-date path)) (file-text path))))
 
@@ -204,8 +199,7 @@ return the line of the definition, or NIL."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
-  "Return how many times WORD occurs in FILE, including comments, in upper or lower case; NIL if
-FILE cannot be read."
+  "Return how often WORD occurs in FILE, with comments, ignoring case; NIL if FILE is unreadable."
   (ignore-errors
     (loop with text = (text-of-file file)
           for start = (search word text :test #'char-equal)
@@ -213,8 +207,7 @@ FILE cannot be read."
           while start count t)))
 
 (defun part-in-file-p (file form part)
-  "True if FILE now contains a form that has the operator and name of FORM and contains PART, a
-list."
+  "True if FILE now contains a form with the operator and name of FORM that contains PART, a list."
   (ignore-errors
     (let ((text (read-file-into-string (native-path file))))
       (loop for (start end) in (definition-positions text form)
@@ -295,8 +288,7 @@ leave out the top-level forms with that operator."
         until (<= -1 rest 0)))
 
 (defun atom-type-name (atom)
-  "Return the name of the type of ATOM. Atoms that Lisp reads from the same text have the same
-name."
+  "Return the name of the type of ATOM, the same for all atoms that Lisp reads from the same text."
   (typecase atom
     (symbol 'symbol)
     (string 'string)

@@ -43,8 +43,7 @@ of a plan. TEXT is the message on one line. Return nothing."
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
 (defun user-code-errors-in (queue run-p)
-  "Return a list of USER-CODE-ERRORs, the oldest first, for the errors in QUEUE that belong to runs
-for which RUN-P is true."
+  "Return USER-CODE-ERRORs, the oldest first, for errors in QUEUE of runs for which RUN-P is true."
   (let ((messages (with-queue (queue)
                     (reverse (message-queue-troubles queue)))))
     (loop for message in messages
@@ -111,15 +110,13 @@ the error; NIL if there was none."
               (- (length texts) *shown-unread-messages*)))))
 
 (defun shown-at-end-p (message policy)
-  "True if MESSAGE, which is unread, must be shown at the end of its run, under the error policy
-POLICY."
+  "True if MESSAGE, which is unread, must be shown at the end of its run under POLICY."
   (let ((notable (message-notable-p message)))
     (or (if (functionp notable) (funcall notable) (eq t notable))
         (and (not (eq :collect policy)) (unreported-error-p message)))))
 
 (defun show-unread-messages (queue &optional (wanted (constantly t)))
-  "Write to the error output the unread messages in QUEUE that must be shown and for which WANTED is
-true."
+  "Write to the error output the unread messages in QUEUE to be shown for which WANTED is true."
   (unless flush-all-errors*
     (let ((messages (remove-if-not (lambda (message)
                                      (and (shown-at-end-p message
@@ -142,8 +139,7 @@ true."
   "The queue that counts the messages shown for queues that have no table ECHOED.")
 
 (defun count-echo (text queue)
-  "Return how many times TEXT was reported, including times when it was not shown, since the counts
-were cleared."
+  "Return how many times TEXT was reported, even if not shown, since the counts were cleared."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
     (with-queue (counter)
@@ -156,8 +152,7 @@ were cleared."
         finally (return (= power count))))
 
 (defun echo-message (message queue)
-  "Show MESSAGE to the user of this Lisp. Show a repeated message only at its 1st, 10th, 100th ...
-time."
+  "Show MESSAGE to the user of this Lisp; if repeated, only at the 1st, 10th, 100th ... time."
   (unless flush-all-errors*
     (let* ((text (string-right-trim '(#\Newline)
                                     (write-message message nil (text-with-command message))))
@@ -177,8 +172,7 @@ time."
 ;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "A pending question: the debugger of HOOK, or Lisp's own debugger if HOOK is NIL, asks the user to
-choose a restart for THREAD."
+  "A pending question of the debugger of HOOK, or Lisp's own if NIL, for a restart of THREAD."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
@@ -196,8 +190,7 @@ are called before the debugger asks for a restart, in the thread of the error.")
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
 (defun debugger-asking (thread)
-  "If a debugger asks the user to choose a restart for THREAD, return a text that names the
-debugger; else NIL."
+  "If a debugger asks for a restart of THREAD, return a text that names the debugger; else NIL."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (debugger-name (inquiry-hook inquiry)))))
 
@@ -211,8 +204,7 @@ debugger has disconnected, and the question ends."
                           (throw inquiry nil))))))
 
 (defun call-as-debugger (function)
-  "Call FUNCTION, which enters a debugger. The debugger also handles errors in code that the user
-types in it."
+  "Call FUNCTION, which enters a debugger that also handles errors in code typed in it."
   (handler-bind (((or error storage-condition) #'debug-nested-error))
     (funcall function)))
 
@@ -223,8 +215,7 @@ types in it."
 
 ;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
 (defun enter-outer-debugger (condition hook)
-  "Let a debugger ask the user about CONDITION: that of HOOK, else that of *DEBUGGER-HOOK*, else
-Lisp's own."
+  "Let the debugger of HOOK, else of *DEBUGGER-HOOK*, else Lisp's, ask the user about CONDITION."
   (call-as-debugger (lambda ()
                       (when hook (funcall hook condition hook))
                       (cond (*debugger-hook*
@@ -242,8 +233,7 @@ else CONTINUE. Queue a warning."
     (abort condition)))
 
 (defun ask-for-restart (condition hook)
-  "Let the debugger of HOOK ask the user for a restart of CONDITION. If it disconnects, let another
-debugger ask."
+  "Let the debugger of HOOK, or another if it disconnects, ask the user for a restart of CONDITION."
   (let ((inquiry (make-inquiry (current-thread) hook)))
     (catch inquiry
       (with-lock (*inquiries-lock*) (push inquiry *inquiries*))

@@ -64,8 +64,7 @@ an error message that names its origin, and the run goes on.")
 ;;; The users' code that a thread is in.
 
 (define-record (user-calls (:constructor make-user-calls (&optional stop)))
-  "The calls of users' code by a thread, for a watcher. STOP is a function that ends the thread's
-work."
+  "The calls of users' code by a thread, for a watcher. STOP, a function, ends the thread's work."
   (origin nil t "the origin of the users' code that the thread is in, an item or a list of items; or
 NIL" :writable :export)
   (count 0 fixnum "the number of calls of users' code that the thread has begun" :writable :export)
@@ -78,8 +77,7 @@ thread is loading, or NIL. Can be set" :writable :export)
   "The USER-CALLS of this thread, or NIL if the thread is not watched.")
 
 (defun call-as-users-code (function origin)
-  "Call FUNCTION, users' code that ORIGIN names, and record the call for the watcher. FUNCTION can
-be interrupted."
+  "Call FUNCTION, interruptible users' code that ORIGIN names, and record the call for the watcher."
   (declare (type function function))
   (let ((calls *user-calls*))
     (if calls
@@ -195,7 +193,6 @@ possible, calls AGAIN; STOP-SIMULATOR, if possible, stops the work of this threa
       (funcall function))))
 
 (defmacro with-user-code-restarts ((origin go-on again) &body body)
-  "Run BODY, users' code that ORIGIN names, with the restarts of CALL-WITH-USER-CODE-RESTARTS."
   (form-calling 'call-with-user-code-restarts body origin go-on again))
 
 (defun simulator-abort-p (restart)

@@ -99,8 +99,7 @@ CALL-PARSING-FORM signals MALFORMED-DEFINITION, return a form that signals this 
                              (nested-form-p environment))))
 
 (defun variable-after-key (key lambda-list)
-  "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without KEY and the
-variable."
+  "Return the variable after KEY in LAMBDA-LIST, or NIL; and LAMBDA-LIST without KEY and variable."
   (let ((rest (member key lambda-list)))
     (values (second rest) (append (ldiff lambda-list rest) (cddr rest)))))
 
@@ -141,8 +140,7 @@ or for which BODY signals an error, signals MALFORMED-DEFINITION."
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun intended-test (form)
-  "If FORM, a test, is quoted data or a function, and so always true, return a list of the form that
-the user probably meant; else NIL."
+  "If FORM, a test, is quoted data or a function, return a list of the form meant; else NIL."
   (typecase form
     ((cons (eql quote) (cons (not null) null))
      (let ((data (second form)))
@@ -153,8 +151,7 @@ the user probably meant; else NIL."
      (and (string= "LAMBDA" (first form)) (list (body-form (cddr form)))))))
 
 (defun test-advice (form)
-  "If FORM, a test, is quoted data or a function, and so always true, return a text that says so and
-what to write; else NIL."
+  "If FORM, a test, is always true (quoted data or a function), return a text of advice; else NIL."
   (let ((meant (intended-test form)) (*print-case* :downcase) (*print-pretty* t)
         (*print-right-margin* 10000))
     (and meant
@@ -163,8 +160,7 @@ what to write; else NIL."
                  (abridged form) (eq 'quote (first form)) (abridged (first meant))))))
 
 (defun body-advice (forms)
-  "If FORMS, a body, is only a lambda form, which is never called, return a text that says so and
-what to write; else NIL."
+  "If FORMS, a body, is only a lambda form, never called, return a text of advice; else NIL."
   (let ((form (first forms)) (*print-case* :downcase) (*print-pretty* nil))
     (and (typep form '(cons symbol (cons list)))
          (null (rest forms))

@@ -20,8 +20,7 @@
 
 (public (atan2 :ars :nisp))
 (defun atan2 (y x)
-  "Return the angle of the direction (X, Y), in radians from -pi to pi (manual, Figure D.8). Signals
-WRONG-ARGUMENT."
+  "Return the angle of (X, Y), from -pi to pi radians (manual, Figure D.8). Signals WRONG-ARGUMENT."
   (check-finite atan2 y)
   (check-finite atan2 x)
   (arctangent (double y) (double x)))

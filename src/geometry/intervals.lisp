@@ -24,8 +24,7 @@ intervals along an axis. COMBINE joins the values of FORM for two axes."
                       (compare (low-y a) (high-y a) (low-y b) (high-y b)))))))))
 
 (define-comparison interval-intersect? and (low-a high-a low-b high-b)
-  "True if the intervals A and B have a common element, even if it is only a bound (manual, Table
-3.2)."
+  "True if the intervals A and B have a common element, if only a bound (manual, Table 3.2)."
   (and (<= low-a high-b) (<= low-b high-a)))
 
 (define-comparison interval-subset? and (low-a high-a low-b high-b)
@@ -113,8 +112,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 
 (public interval-intersect)
 (defun interval-intersect (a b)
-  "Return the intersection of the intervals A and B, a new interval; NIL if they do not intersect
-(manual, Table 3.2)."
+  "Return the intersection of the intervals A and B, a new interval, or NIL (manual, Table 3.2)."
   (dispatch-on-types interval-intersect (a b) "two intervals or two point intervals"
     ((span span) (interval-intersect! (lift a) b))
     ((region region) (interval-intersect! (lift a) b))))
@@ -127,8 +125,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 
 (public interval-lbi!)
 (defun interval-lbi! (a b)
-  "Grow the interval A as little as possible so that it contains the interval B, and return A
-(manual, Table 3.2)."
+  "Grow the interval A minimally to contain the interval B, and return A (manual, Table 3.2)."
   (dispatch-on-types interval-lbi! (a b) "an INTERVAL or PT-INTERVAL and one like it"
     ((interval span) (%bound! a (low b) (high b)))
     ((pt-interval region)
@@ -145,8 +142,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 
 (public add-to-lbi!)
 (defun add-to-lbi! (interval x)
-  "Grow INTERVAL as little as possible so that it contains the number or point X, and return
-INTERVAL (manual, Table 3.2)."
+  "Grow INTERVAL minimally to contain the number or point X; return INTERVAL (manual, Table 3.2)."
   (dispatch-on-types add-to-lbi! (interval x) "an INTERVAL and a number, or a PT-INTERVAL and a PT"
     ((interval finite) (interval-lbi! interval x))
     ((pt-interval pt) (interval-lbi! interval x))))
@@ -160,15 +156,13 @@ INTERVAL (manual, Table 3.2)."
 
 (public interval-lift)
 (defun interval-lift (x)
-  "Return the interval that contains only X: an INTERVAL if X is a number, a PT-INTERVAL if X is a
-point (manual, Table 3.2)."
+  "Return the INTERVAL of the number X alone, or PT-INTERVAL of the point X (manual, Table 3.2)."
   (dispatch-on-types interval-lift (x) "a number or a PT"
     (((or finite pt)) (lift x))))
 
 (public lift-lbi)
 (defun lift-lbi (x &rest more)
-  "Return the least interval that contains X and each of MORE, all numbers or all points
-(manual, Table 3.2)."
+  "Return the least interval that contains X and MORE, all numbers or points (manual, Table 3.2)."
   (declare (dynamic-extent more))
   (check-argument lift-lbi x (typep x '(or finite pt)) "a number or a PT")
   (let ((interval (lift x)))
@@ -181,8 +175,7 @@ point (manual, Table 3.2)."
 
 (declaim (inline %grown))
 (defun %grown (interval amount)
-  "Return the bounds of INTERVAL, moved outward by AMOUNT. A negative AMOUNT moves them inward, at
-most to the centre."
+  "Return the bounds of INTERVAL grown by AMOUNT; a negative AMOUNT shrinks, at most to the centre."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
     (if (<= low high)

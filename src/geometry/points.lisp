@@ -93,8 +93,7 @@ clause fits or the result is too large."
 
 (public add!)
 (defun add! (a b)
-  "Change A into the sum of A and B, and return A. Intervals add bound by bound (manual,
-Table 3.1)."
+  "Change A into the sum of A and B; return A. Intervals add bound by bound (manual, Table 3.1)."
   (dispatch-on-types add! (a b) "a PT and a PT, or an INTERVAL or PT-INTERVAL and one like it"
     ((pt pt) (set-pt! a (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((interval span) (%add! a (low b) (high b)))
@@ -103,9 +102,8 @@ Table 3.1)."
 
 (public add)
 (defun add (a b)
-  "Return the sum of A and B. They are two points (as vectors), two intervals, or two point
-intervals. One of two intervals may be a number, and one of two point intervals a point (manual,
-Table 3.1)."
+  "Return the sum of A and B. They are points (as vectors), intervals or point intervals; one of two
+intervals may be a number, one of two point intervals a point (manual, Table 3.1)."
   (dispatch-on-types add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((finite finite) (+ (double a) (double b)))
@@ -135,8 +133,7 @@ two intervals may be a number, and one of two point intervals a point (manual, T
 
 (public neg!)
 (defun neg! (a)
-  "Change A into its negative, and return A. The bounds of an interval are swapped (manual, Table
-3.1)."
+  "Negate A in place, and return A. The bounds of an interval are swapped (manual, Table 3.1)."
   (dispatch-on-types neg! (a) "a PT, INTERVAL or PT-INTERVAL"
     ((pt) (set-pt! a (- 0d0 (%pt-x a)) (- 0d0 (%pt-y a))))
     ((interval) (%neg! a))
@@ -219,9 +216,8 @@ interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)
 
 (public dist)
 (defun dist (a b)
-  "Return the Euclidean distance between the points A and B, in metres. If A or B is an interval or
-point interval, return the INTERVAL of the distances between their elements (manual, Table 3.1;
-reading 42)."
+  "Return the Euclidean distance of the points A and B, in metres; for an interval or point
+interval, the INTERVAL of the distances between the elements (manual, Table 3.1; reading 42)."
   (dispatch-on-types dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))

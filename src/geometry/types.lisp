@@ -21,8 +21,7 @@
 
 ;; An operation that uses another one reports its own operands.
 (defmacro check-overflow ((operator operand) &body body)
-  "Evaluate BODY. Run BODY. If a floating-point number overflows, signal WRONG-ARGUMENT about the
-variable OPERAND."
+  "If a floating-point number overflows in BODY, signal WRONG-ARGUMENT about the variable OPERAND."
   `(handler-case (progn ,@body)
      ((or floating-point-overflow beyond-floats) ()
        (error 'beyond-floats :operator ',operator :name ',operand :value ,operand))))
@@ -109,8 +108,7 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
 
 (declaim (inline set-interval!))
 (defun set-interval! (interval min max)
-  "Set the bounds of INTERVAL to MIN and MAX, real numbers, and return INTERVAL. MIN above MAX is an
-error."
+  "Set the bounds of INTERVAL to reals MIN and MAX. MIN above MAX is an error. Return INTERVAL."
   (check-argument set-interval! min (<= min max) "a number that is not above the max")
   (%set-interval! interval (double min) (double max)))
 
@@ -144,8 +142,7 @@ interval that contains only this number. Written (make PT-INTERVAL A B) in Nisp.
   (%make-interval (min a b) (max a b)))
 
 (defun lift (x)
-  "Return a new interval or point interval: a copy of X, or, if X is a number or point, the interval
-that contains only X."
+  "Return a copy of X, an interval; for a number or point, a new interval that contains only X."
   (etypecase x
     (real (let ((x (double x))) (%make-interval x x)))
     (interval (%make-interval (%interval-min x) (%interval-max x)))
@@ -195,8 +192,7 @@ function copies the bounds of an interval into that side."
   pt-interval)
 
 (defun set-pt-interval! (pt-interval x-min x-max y-min y-max)
-  "Set the bounds of PT-INTERVAL to X-MIN and X-MAX along x, and to Y-MIN and Y-MAX along y, real
-numbers. Return PT-INTERVAL."
+  "Set the bounds, real numbers, of PT-INTERVAL along x and along y. Return PT-INTERVAL."
   (check-argument set-pt-interval! x-min (<= x-min x-max) "a number that is not above x-max")
   (check-argument set-pt-interval! y-min (<= y-min y-max) "a number that is not above y-max")
   (%set-region! pt-interval (double x-min) (double x-max) (double y-min) (double y-max)))

@@ -22,8 +22,7 @@
   (closer-mop:generic-function-methods function))
 
 (defun methods-on-class (name)
-  "Return a list of the methods of all generic functions that specialize on the class NAME; NIL if
-there is none."
+  "Return a list of all methods that specialize on the class NAME; NIL if there is none."
   (let ((class (find-class name nil)))
     (and class (closer-mop:specializer-direct-methods class))))
 

@@ -105,8 +105,7 @@ environments around ENVIRONMENT."
       (copy-interpreted closure)))
 
 (defun replace-closure-values (closure function)
-  "Call FUNCTION with each value and cell that CLOSURE closes over, and replace the value or cell by
-the result. Return CLOSURE."
+  "Replace each value and cell that CLOSURE closes over by FUNCTION's value for it. Return CLOSURE."
   (declare (type function function))
   (if (compiled-closure-p closure)
       (let ((count 0))

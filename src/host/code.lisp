@@ -61,16 +61,14 @@
          0)))
 
 (defun code-constants (function)
-  "Return a list of the constants in the code of FUNCTION, the functions compiled with FUNCTION, and
-the names that they use."
+  "Return the constants in the code of FUNCTION and of those compiled with it, and the names used."
   (let ((code (code-of function)))
     (append (constants-from code (first-constant code))
             (linked-names code)
             (names-used code))))
 
 (defun constant-or-function-name (constant)
-  "If CONSTANT, a constant of code, refers to a function by name, return that name; else return
-CONSTANT."
+  "Return the name of the function that CONSTANT, a constant of code, refers to; else CONSTANT."
   (if (internal-type-p constant :sb-kernel #:fdefn)
       (internal (:sb-kernel #:fdefn-name) constant)
       constant))
@@ -99,15 +97,13 @@ other functions, constants and closed-over values. Numbers, characters and strin
   (sb-introspect:function-lambda-list name))
 
 (defun accepts-count-p (lambda-list count)
-  "True if a function with the ordinary lambda list LAMBDA-LIST accepts COUNT arguments. Keywords
-and their values count as arguments."
+  "True if a function with LAMBDA-LIST accepts COUNT arguments, counting keywords and their values."
   (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
     (and (<= (length required) count)
          (or rest-p keys (<= count (+ (length required) (length optional)))))))
 
 (defun callable-with-p (function count)
-  "True if FUNCTION, a function or its name, accepts COUNT arguments, or if its lambda list is
-unknown."
+  "True if FUNCTION, a function or a name, accepts COUNT arguments or has an unknown lambda list."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
     (or unknown-p (accepts-count-p list count))))
 
@@ -123,8 +119,7 @@ unknown."
        (gethash (native-name namestring) *write-dates*)))
 
 (defun call-recording-file (function path)
-  "Call FUNCTION, which evaluates forms read from the file PATH. Functions that FUNCTION defines are
-recorded as defined in PATH."
+  "Call FUNCTION, which evaluates forms of the file PATH; record its functions as defined in PATH."
   (let ((name (native-name path)) (errors *error-output*))
     (setf (gethash name *write-dates*) (file-write-date path))
     ;; The summary that a unit was left is useless here: the caller knows.
@@ -173,8 +168,7 @@ other things than a function."
 ;;; definitions are reported as declarations of that name, since no other type is unused.
 
 (defun add-definition-sources (function)
-  "Make Lisp report further definition sources of symbols. FUNCTION returns those of a symbol: lists
-(file position operator)."
+  "Make Lisp report also the sources (file position operator) that FUNCTION lists for a symbol."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

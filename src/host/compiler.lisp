@@ -7,10 +7,9 @@
           at-end-of-unit call-as-unit location-in-text compiler-location form-start
           line-of-last-character line-of-next-character encapsulated-condition undecodable-format))
 
-;;; SBCL records the location of each list that it has read to compile or load.
-;;; COPY-SOURCE-LOCATION gives a list made from another list the location of that list, so that the
-;;; compiler's notes point to the text of the author. The locations are in tables and variables of
-;;; the compiler.
+;;; SBCL records the location of each list that it has read to compile or load. COPY-SOURCE-LOCATION
+;;; gives a list made from another list the location of that list, so that the compiler's notes
+;;; point to the author's text. The locations are in the compiler's tables and variables.
 
 (defmacro compiler-variable (name)
   `',(internal-name :sb-c name))
@@ -19,8 +18,7 @@
   (and (boundp variable) (symbol-value variable)))
 
 (defun show-lambda-list (name lambda-list &optional (function (macro-function name)))
-  "Make editors and DESCRIBE show LAMBDA-LIST as the arguments of FUNCTION, by default the function
-of the macro NAME."
+  "Make editors and DESCRIBE show LAMBDA-LIST for FUNCTION, by default that of the macro NAME."
   (when (compiled-function-p function)
     (funcall (fdefinition `(setf ,(internal-name :sb-c '#:%simple-fun-arglist)))
              lambda-list function)))
@@ -58,8 +56,7 @@ of the macro NAME."
     (progv (and location (list (compiler-variable #:*current-path*))) (list location)
       (funcall function))))
 
-;;; An editor that compiles a piece of a file copies it to a temporary file and tells the compiler
-;;; where it is from.
+;;; An editor that compiles a piece of a file copies it to another file and says where it is from.
 
 (defun edited-file ()
   "If an editor compiles a part of a file, return the name of that file, a string; else NIL."
@@ -82,8 +79,7 @@ next form. ENCAPSULATED-CONDITION returns the cause of CONDITION."
   (internal-type-p condition :sb-c #:compiler-error))
 
 (defun wrap-unit-summaries (wrapper)
-  "When a compilation unit ends, call WRAPPER with SBCL's function that reports the end, and true if
-the unit was aborted."
+  "When a compilation unit ends, call WRAPPER with SBCL's reporter, and true if the unit aborted."
   (if-internal (:sb-c #:summarize-compilation-unit)
     (wrap-function (internal-name :sb-c '#:summarize-compilation-unit) wrapper)
     wrapper))
@@ -91,8 +87,7 @@ the unit was aborted."
 ;;; SBCL also records where each top-level form begins in the text.
 
 (defvar *deferred-location* nil
-  "While deferred work is done: a list (form . location) of the form it is about and its location in
-the text.")
+  "While deferred work is done: a list (form . location) of its form and the location in the text.")
 
 (defun source-location-at (path)
   "Return the location in the text, as of LOCATION-IN-TEXT, of the form with the source path PATH, a
@@ -182,8 +177,7 @@ were warnings, and whether there were others than style warnings."
         do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
 
 (defun call-in-unit (kind function &optional own)
-  "Call FUNCTION in a unit of KIND: in the current unit if its kind fits and OWN is false, else in a
-new unit."
+  "Call FUNCTION in the current unit if KIND fits it and OWN is false, else in a new unit of KIND."
   (if (and *unit* (not own) (member (unit-kind *unit*) (list kind :compilation)))
       (funcall function)
       (let ((*unit* (make-unit kind (and (not own) *unit*))))
@@ -250,8 +244,7 @@ must not return NIL for STREAM."
     (if (plusp column) line (max 1 (1- line)))))
 
 (defun encapsulated-condition (condition)
-  "If CONDITION only adds a position to another condition, as conditions of LOAD do, return that
-other condition; else NIL."
+  "Return the condition to which CONDITION only adds a position, as conditions of LOAD do; or NIL."
   (and (internal-type-p condition :sb-int #:encapsulated-condition)
        (internal (:sb-int #:encapsulated-condition) condition)))
 

@@ -10,8 +10,7 @@
 ;;; A debugger of Lisp or an editor writes a report as PRINC does.
 
 (defvar *report-addition* (constantly nil)
-  "A function that is called with an error of Lisp's own. It returns a sentence to append to the
-report of the error, or NIL.")
+  "A function that returns a sentence to append to the report of an error of Lisp's own, or NIL.")
 
 (defun write-addition (condition stream)
   (unless *print-escape*
@@ -57,8 +56,7 @@ and the hook of another program that was set before; or NIL.")
 
 ;; The hook of an editor's server stays set when the editor disconnects.
 (defvar *editor-gone-p* (constantly nil)
-  "A function that returns true if the global debugger hook belongs to the server of an editor that
-has disconnected.")
+  "A function that returns true if the debugger hook is that of a disconnected editor's server.")
 
 (defun disconnected-hook-p (hook)
   "True if HOOK is not the simulator's, and belongs to an editor that has disconnected."
@@ -67,8 +65,7 @@ has disconnected.")
        (funcall *editor-gone-p*)))
 
 (defun foreign-hook ()
-  "Return the debugger hook. If the simulator has set it, return the hook of another program that
-was set before."
+  "Return the debugger hook. If the simulator has set it, return the hook that was set before."
   (let ((hook (debugger-hook)))
     (if (and hook (eq hook (first *answering-hook*)))
         (rest *answering-hook*)

@@ -87,8 +87,7 @@ and so on, or NIL if it is not known."
 
 (defun extended-environment (environment &rest additions &key &allow-other-keys)
   "Return ENVIRONMENT, a lexical environment, extended by ADDITIONS: :variable and :function with
-lists of names, :macro with a list of (name expander), :symbol-macro with a list of (name
-expansion)."
+names, :macro with lists (name expander), :symbol-macro with (name expansion)."
   (apply #'sb-cltl2:augment-environment environment additions))
 
 ;;; Forms.
@@ -172,8 +171,7 @@ such as those of Common Lisp and of the simulator, cannot."
 ;;; Names that the compiler finds used but undefined.
 
 (defun undefined-name (condition)
-  "If CONDITION, a compiler warning, reports an undefined name, return the name and its kind,
-:FUNCTION or :VARIABLE; else NIL."
+  "If CONDITION warns of an undefined name, return the name and :FUNCTION or :VARIABLE; else NIL."
   (let ((arguments (and (typep condition '(and warning simple-condition))
                         (simple-condition-format-arguments condition))))
     (when (and (proper-list-p arguments)

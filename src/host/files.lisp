@@ -57,8 +57,7 @@ true. ~ and ~/ are the home directory."
     (error () t)))
 
 (defun file-name-text (file)
-  "Return FILE, a pathname or string, as a native name for messages. Show an empty name as two
-quotes."
+  "Return FILE, a pathname or string, as a native name for messages; an empty name as two quotes."
   (let ((name (if (and (pathnamep file) (not (wildcard-name-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
@@ -76,8 +75,7 @@ quotes."
   (uiop:file-exists-p path))
 
 (defun missing-directory (path)
-  "If the directory of PATH, a pathname or string, does not exist, return the name of the directory;
-else NIL."
+  "Return the name of the directory of PATH, a pathname or string, if it does not exist; else NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
     (unless (or (wildcard-name-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))
@@ -95,15 +93,13 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
       (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun regular-file-p (path)
-  "True if PATH is a regular file: no directory, device or pipe. Signals an error if PATH does not
-exist."
+  "True if PATH is a regular file: no directory, device, pipe. Signals an error if PATH is missing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-writable (path)
-  "Signal an error if the file PATH, a pathname, exists and is write-protected, or this process may
-not write it."
+  "Signal an error if the file PATH exists and is write-protected or not writable by this process."
   (let ((name (system-name path)))
     (when (and (existing-path path)
                (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
@@ -122,8 +118,7 @@ not write it."
   "The reason why a name with wildcards cannot be used.")
 
 (defun unusable-file-text (path)
-  "Return a text that says why PATH, a pathname or string, cannot be used as a regular file, or
-NIL."
+  "Return a text that says why PATH, a pathname or string, is no usable regular file, or NIL."
   (cond ((wildcard-name-p path) *wildcard-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
         ((not (ignore-errors (sb-posix:stat (system-name path))))
@@ -143,8 +138,7 @@ look the same.)"
   (map 'string #'code-char (sb-ext:string-to-octets text :external-format :utf-8)))
 
 (defun utf-8-decoded (octets)
-  "Return the UTF-8 text of OCTETS, a string of Latin 1 characters, with +ILLEGIBLE+ for each
-invalid octet."
+  "Return the UTF-8 text of OCTETS, a Latin 1 string, with +ILLEGIBLE+ for each invalid octet."
   (sb-ext:octets-to-string (map '(vector (unsigned-byte 8)) #'char-code octets)
                            :external-format '(:utf-8 :replacement #.+illegible+)))
 
@@ -225,8 +219,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
   (uiop:getenv name))
 
 (defun real-microseconds ()
-  "Return the real time in microseconds since an arbitrary moment. Results of runs must not depend
-on the real time."
+  "Return the real time, on which no result may depend, in microseconds since an arbitrary moment."
   ;; Lisp's own clock has steps of 4000.
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
@@ -277,8 +270,7 @@ also the error output, a string."
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Run PROGRAM with ARGUMENTS as RUN-TIED does, on the standard streams of this process. Return the
-exit status or NIL."
+  "Run PROGRAM as RUN-TIED does, on this process's standard streams. Return the exit status or NIL."
   (run-tied program arguments
             :input :interactive :output :interactive :error-output :interactive))
 
@@ -310,8 +302,7 @@ output as a string."
                                                   :external-format '(:utf-8 :replacement #\?)))
 
 (defun wait-for-input (stream seconds)
-  "Wait at most SECONDS until STREAM, a stream on a file descriptor, has input or is at its end.
-Return true if so."
+  "Wait at most SECONDS; return true if STREAM, on a file descriptor, has input or is at its end."
   (or (listen stream)
       (internal (:sb-sys #:wait-until-fd-usable)
                 (internal (:sb-sys #:fd-stream-fd) stream) :input seconds)))

@@ -55,8 +55,7 @@ only while SBCL waits.")
         (funcall function))))
 
 (defmacro deferring-interrupts (&body body)
-  "Run BODY with interrupts deferred, except within ALLOWING-INTERRUPTS and
-WITH-INTERRUPTIBLE-WAIT."
+  "Run BODY with interrupts deferred except in ALLOWING-INTERRUPTS and WITH-INTERRUPTIBLE-WAIT."
   (form-calling 'call-deferring-interrupts body))
 
 (defmacro allowing-interrupts (&body body)
@@ -98,8 +97,7 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
 
 (deftype deadline-passed ()
-  "The type of the condition that is signalled if a thread still waits for a stream, lock or other
-thread at its deadline."
+  "The type of the condition signalled if a wait for a stream, lock or thread reaches its deadline."
   (internal-name :sb-sys '#:deadline-timeout))
 
 (defmacro waiting-at-most ((seconds) &body body)
@@ -139,8 +137,7 @@ values of the first form."
        (call-in-any-case ,@(loop for name in names collect `(function ,name))))))
 
 (defun call-each (function list)
-  "Call FUNCTION with each element of LIST in order. After a non-local exit from a call, still call
-FUNCTION with the other elements."
+  "Call FUNCTION with each element of LIST in order, even after a non-local exit from a call."
   (unwind-protect (loop while list do (funcall function (pop list)))
     (when list (call-each function list))))
 

@@ -10,8 +10,7 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *hot* '(optimize (speed 3) (safety 1) (debug 0) (sb-ext:inhibit-warnings 3))
-    "The optimisation policy for functions that take much time according to a profile: (declare
-#.*hot*)."))
+    "The optimisation policy for functions that take much time in a profile: (declare #.*hot*)."))
 
 (deftype compiler-note ()
   "The type of the condition by which the compiler reports that code will be slow."
@@ -27,8 +26,7 @@
   `(sb-ext:truly-the ,type ,form))
 
 (defun form-calling (function body &rest arguments)
-  "Return a form that calls FUNCTION with the arguments (lambda () BODY) and ARGUMENTS. The lambda
-function has dynamic extent."
+  "Return a form that calls FUNCTION with (lambda () BODY), of dynamic extent, and ARGUMENTS."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
      (,function #'body ,@arguments)))
@@ -45,8 +43,7 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
   (setf (sb-ext:symbol-global-value symbol) value))
 
 (defmacro define-global (name value documentation)
-  "Define the variable NAME with VALUE, computed at load time. Threads cannot bind such a variable,
-so reading it is fast."
+  "Define the variable NAME with VALUE at load time. Threads cannot bind NAME, so reading is fast."
   `(sb-ext:define-load-time-global ,name ,value ,documentation))
 
 ;;;; Hash tables
@@ -69,24 +66,20 @@ so reading it is fast."
   (sb-ext:make-weak-pointer object))
 
 (defun weak-value (weak)
-  "Return the object that WEAK, a weak reference, refers to; NIL if the object was garbage
-collected."
+  "Return the object of the weak reference WEAK; NIL if the object was garbage collected."
   (values (sb-ext:weak-pointer-value weak)))
 
 ;;;; Events
 
 ;;; An event is a variable with a list of function names, its listeners. The newest is called first.
-;;; Because they are names, loading a file again adds none twice, and a redefined function takes
-;;; effect.
+;;; Because they are names, reloading a file adds none twice, and a redefined function takes effect.
 
 (defmacro define-event (name documentation)
-  "Define the variable NAME as an event, a list of listeners. DOCUMENTATION says with which
-arguments listeners are called."
+  "Define the variable NAME as an event, a list of listeners, called as DOCUMENTATION says."
   `(defvar ,name '() ,documentation))
 
 (defmacro add-listener (event listener)
-  "Add the function named LISTENER to EVENT. It will be called before the listeners that were added
-earlier."
+  "Add the function named LISTENER to EVENT, to be called before the listeners added earlier."
   `(pushnew ',listener ,event))
 
 (defun call-listeners (listeners &rest arguments)
@@ -179,6 +172,5 @@ infinities, NaNs, and integers and ratios that are too large."
   (internal (:sb-kernel #:init-random-state) seed words))
 
 (defun wrap-random-renewal (wrapper)
-  "When SBCL renews the used-up words of a random state, call WRAPPER with SBCL's function and the
-words."
+  "When SBCL renews a random state's words, call WRAPPER with SBCL's function and the words."
   (wrap-function (internal-name :sb-kernel '#:random-mt19937-update) wrapper))

@@ -8,8 +8,7 @@
           users-thread-p yield-thread function-with-specials call-recording-names
           other-thread-robot-text other-thread-run-text))
 
-;;; A PLACE here is a structure's slot, by its accessor, the CAR or CDR of a cons, or a symbol's
-;;; value.
+;;; A PLACE here is a structure's slot, by its accessor, a CAR or CDR, or a symbol's value.
 
 (deftype atomic-count ()
   "The type of structure slots that ATOMIC-INCF and ATOMIC-DECF can change."
@@ -22,8 +21,7 @@
        (eq ,before (compare-and-swap ,place ,before ,new)))))
 
 (defmacro memory-barrier ()
-  "Order memory accesses: other threads see what this thread wrote before the barrier, before this
-thread reads or writes more."
+  "Order memory accesses: other threads see this thread's earlier writes before its later accesses."
   '(sb-thread:barrier (:memory)))
 
 ;;;; Threads and locks
@@ -51,8 +49,7 @@ else return NIL and false."
   (bordeaux-threads:make-semaphore :name name))
 
 (defun wait-on-semaphore (semaphore &optional seconds)
-  "Wait until SEMAPHORE can be decremented, at most SECONDS (NIL: no limit). Return true if it was
-decremented."
+  "Wait at most SECONDS (NIL: no limit) to decrement SEMAPHORE. Return true if it was decremented."
   (with-interruptible-wait
     (if seconds
         ;; SBCL accepts no timeout of 0.
@@ -84,13 +81,11 @@ values. While this thread waits, it serves the front end and allows interrupts."
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")
 
 (defun own-thread-p ()
-  "True if the simulator has started this thread: it is neither a REPL nor another thread of a
-user."
+  "True if the simulator has started this thread: neither a REPL nor another thread of a user."
   *own-thread-p*)
 
 (defun users-thread-p ()
-  "True if a user's program has started this thread: it is neither a thread of the simulator nor the
-initial thread of Lisp."
+  "True if a user's program started this thread: neither the simulator's nor Lisp's initial thread."
   (not (or (own-thread-p) (sb-thread:main-thread-p))))
 
 (defun start-thread (function name)
@@ -126,8 +121,7 @@ Report nothing if the unit was aborted because this Lisp exits."
   (values))
 
 (defun interrupt-thread (thread function)
-  "Make THREAD call FUNCTION, without arguments, as soon as THREAD allows interrupts. Return
-nothing."
+  "Make THREAD call FUNCTION, without arguments, once THREAD allows interrupts. Return nothing."
   ;; This is an error if the thread has ended.
   (ignore-errors (bordeaux-threads:interrupt-thread thread function))
   (values))
@@ -155,12 +149,10 @@ threads start with global values; such a function gives them the values bound in
 ;;; robot can explain why.
 
 (defvar *bound-names* (list '())
-  "A list of one element, which has a list (thread number name...) for each WITH-SIMULATION in
-progress.")
+  "A list of one list, with (thread number name...) for each WITH-SIMULATION in progress.")
 
 (defvar *binding-count* (list 0)
-  "A list of one integer: how many times CALL-RECORDING-NAMES has bound
-names.")
+  "A list of one integer: how many times CALL-RECORDING-NAMES has bound names.")
 
 (defun call-recording-names (names function)
   "Call FUNCTION, in which this thread has bound NAMES to robots, and record the bindings for
@@ -173,8 +165,7 @@ messages in other threads. Return the values of FUNCTION."
             until (swap-if-eq (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
 (defun other-thread-run-text ()
-  "Return a text that says how code in this thread can use the run of another thread; NIL if no
-thread has bound a run."
+  "Return a text on how this thread can use another's run; NIL if no thread has bound a run."
   (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
     (and entry
          (format nil "The simulation of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is known to ~

@@ -20,8 +20,7 @@
            (some (lambda (name) (find-symbol (string name) package)) names))))
 
   (defun internal-name (package &rest names)
-    "Return the first symbol of NAMES, strings or symbols, that SBCL's PACKAGE has. Signals an ERROR
-if SBCL has none of NAMES."
+    "Return the first symbol among NAMES that SBCL's PACKAGE has. Signals an ERROR if it has none."
     (or (find-internal package names)
         (error "SBCL ~A has no ~A:~{~A~^ or ~}. ARS MAGNA runs on SBCL ~A to ~A. Use one of ~
                 these, or add the new name to the files in src/host."
@@ -29,13 +28,11 @@ if SBCL has none of NAMES."
                (first *tried-versions*) (first (last *tried-versions*))))))
 
 (defmacro internal ((package &rest names) &rest arguments)
-  "Call the first function or macro among NAMES that SBCL's PACKAGE has, with ARGUMENTS. The form
-can be a place for SETF."
+  "Call the first function or macro among NAMES that SBCL's PACKAGE has. Also a place for SETF."
   `(,(apply #'internal-name package names) ,@arguments))
 
 (defmacro if-internal ((package &rest names) then else)
-  "Evaluate THEN if SBCL's PACKAGE has one of NAMES, else ELSE. Only the form that is evaluated is
-compiled."
+  "Compile and evaluate only THEN if SBCL's PACKAGE has one of NAMES, else only ELSE."
   (if (find-internal package names) then else))
 
 (defmacro internal-value (package &rest names)

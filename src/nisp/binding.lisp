@@ -19,8 +19,7 @@
   `#'(lambda ,(untyped-lambda-list lambda-list "\\") ,@body))
 
 (defun check-continuation (lambda-list body)
-  "Signal MALFORMED-DEFINITION, or warn, if the form CONTINUATION has its body in place of
-LAMBDA-LIST."
+  "Signal MALFORMED-DEFINITION, or warn, if a CONTINUATION has its body in place of LAMBDA-LIST."
   (let ((*print-pretty* nil) (*print-case* :downcase) (shown (abridged lambda-list)))
     (when (consp lambda-list)
       (cond ((some #'constantp (ldiff lambda-list (member-if #'lambda-keyword-p lambda-list)))
@@ -33,8 +32,7 @@ LAMBDA-LIST."
                             shown))))))
 
 (defun warn-of-error-codes (variable body)
-  "Warn if BODY, the body of a CONTINUATION, compares the first parameter, VARIABLE, with a keyword
-that is no error code."
+  "Warn if BODY of a CONTINUATION compares VARIABLE with a keyword that is no error code."
   (map-comparisons (lambda (subject word form)
                      (declare (ignore form))
                      (cl:let ((doubt (and (eq subject variable) (wrong-error-code-text word))))

@@ -13,15 +13,13 @@
 
 (public if)
 (defmacro if (test then &rest else)
-  "Evaluate THEN if TEST is true, otherwise the forms ELSE, of which there may be any number
-(manual, Figure D.5; reading 40)."
+  "Evaluate THEN if TEST is true, else any number of forms ELSE (manual, Figure D.5; reading 40)."
   (doubt-test 'if test)
   `(cl:if ,test ,then ,@(cl:if (rest else) `((progn ,@else)) else)))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun loop-keyword (forms)
-    "Return :UNTIL or :WHILE if FORMS, the body of a LOOP, begin with a symbol of that name; else
-NIL."
+    "Return :UNTIL or :WHILE if FORMS, the body of a LOOP, begin with a symbol so named; else NIL."
     (and (symbolp (first forms))
          (find (first forms) '(:until :while) :test #'string=))))
 
@@ -39,8 +37,7 @@ meaning in CL:LOOP (manual, Figure D.3)."
 
 (public !=)
 (defmacro != (place value &rest more)
-  "Set PLACE to VALUE, and then each further place in MORE to the value that follows it, as SETF
-does (manual 3.1; reading 14)."
+  "Set PLACE to VALUE, and each further place in MORE, as SETF does (manual 3.1; reading 14)."
   `(setf ,place ,value ,@more))
 
 (public nop)
@@ -59,8 +56,7 @@ does (manual 3.1; reading 14)."
 (public vref)
 (settable vref)
 (defun vref (vector index)
-  "Return the element of VECTOR (a vector or a list) at INDEX, counted from 0. Can be set
-(manual 3.1.3)."
+  "Return element INDEX, from 0, of VECTOR (a vector or a list). Can be set (manual 3.1.3)."
   (check-vref vector index)
   (elt vector index))
 
@@ -98,8 +94,7 @@ alist from names of slots to names of readers."
              when (find-class symbol nil) collect (symbol-name symbol))))
 
 (defun known-types ()
-  "Return a sorted list of the names of all registered types and of the classes that NISP and ARS
-export."
+  "Return a sorted list of the names of registered types and of classes that NISP and ARS export."
   (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
                                    (names-of-classes "NISP")
                                    (names-of-classes "ARS"))
@@ -132,8 +127,7 @@ export."
                    operator type (similar-type type))))
 
 (defun without-types (operator list what)
-  "Return LIST without hyphens and types. The text WHAT describes the elements; error messages name
-OPERATOR."
+  "Return LIST without hyphens and types. Error messages call its elements WHAT, and name OPERATOR."
   (unless (listp list) (reject-clause operator list (format nil "a list of ~A" what)))
   (loop with typed = t                  ; nothing to declare yet
         with tail = list

@@ -8,7 +8,6 @@
 ;;; package.
 
 (defun delimiter-p (char)
-  "True if CHAR ends a token in the current readtable."
   (or (blank-p char)
       (multiple-value-bind (function non-terminating) (get-macro-character char)
         (and function (not non-terminating)))))
@@ -22,8 +21,7 @@
             until (char= next #\|))))
 
 (defun read-token (stream)
-  "Return the characters of STREAM up to the end of the token, including escape characters, as a
-string."
+  "Return the rest of the token in STREAM, a string, including escape characters."
   (loop with token = (make-array 16 :element-type 'character :fill-pointer 0 :adjustable t)
         for char = (peek-char nil stream nil nil t)
         until (or (null char) (delimiter-p char))
@@ -35,15 +33,13 @@ string."
   (reject-clause "Nisp's reader" text expected))
 
 (defun token-object (token)
-  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if TOKEN is
-incomplete."
+  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if incomplete."
   (let ((*readtable* (find-readtable :standard)))
     (handler-case (values (read-from-string token))
       ;; The text around TOKEN is complete, so that is no END-OF-FILE there.
       (end-of-file () (reject-syntax token "a name or number after ! or ?")))))
 
 (defun token-name (token)
-  "Return the name of the slot that TOKEN denotes, in upper case, as the reader converts it."
   (string-upcase (remove #\| token)))
 
 ;;; ! and its forms.
@@ -61,8 +57,7 @@ is a slot of the value before it."
             :initial-value (token-object (first parts)))))
 
 (defun read-typed-accessor (stream)
-  "Read (TYPE slot) from STREAM, and return the name of the reader function of that slot (reading
-33)."
+  "Read (TYPE slot) from STREAM; return the name of the reader function of that slot (reading 33)."
   (let ((form (read stream t nil t)))
     (unless *read-suppress*
       (unless (typep form '(cons symbol (cons symbol null)))
@@ -154,8 +149,7 @@ is a slot of the value before it."
 ;;; compiled in Nisp's syntax, and kept like that.
 
 (defvar *library-readtable* (copy-readtable nil)
-  "The readtable for loading systems while Nisp's readtable is current. Libraries may modify this
-readtable.")
+  "The readtable, which may be modified, for loading systems while Nisp's readtable is current.")
 
 (defmethod asdf:perform :around ((operation asdf:operation) (component asdf:cl-source-file))
   (if (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\!))

@@ -65,8 +65,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
 
 (public make)
 (defmacro make (type &rest arguments)
-  "Return a new object of TYPE, a name that is not evaluated, made from ARGUMENTS, such as
-(make PT 1 2) (manual 3.1)."
+  "Return a new object of TYPE, which is not evaluated, from ARGUMENTS: (make PT 1 2) (manual 3.1)."
   `(make-object ',type ,@arguments))
 
 ;;;; Slots by name
@@ -85,8 +84,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
     (intern (concatenate 'string "!_" (string slot)) :ars-magna.slots))
 
   (defun ensure-slot-accessor (slot)
-    "Return the name of the accessor of the slot named SLOT. If the accessor is not yet defined,
-define it."
+    "Return the name of the accessor of the slot named SLOT, which is defined if necessary."
     (let ((name (slot-accessor-name slot)))
       (unless (fboundp name)
         (ensure-generic-function `(setf ,name) :lambda-list '(value object)
@@ -151,8 +149,7 @@ has the accessor's name."))
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
 (defun typed-reader (type slot)
-  "Return the name of the accessor of SLOT for TYPE; if TYPE has no accessor of its own, that for
-all types."
+  "Return the name of the accessor of SLOT for TYPE, or else of that for all types."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
     (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))

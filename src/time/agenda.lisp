@@ -108,8 +108,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
       (values (gethash resource (agenda-claims agenda)))))
 
 (defun set-pending-event (agenda event resource)
-  "Make EVENT the pending event of RESOURCE. If EVENT is NIL, RESOURCE then has no pending event.
-See reading 81."
+  "Make EVENT the pending event of RESOURCE; if EVENT is NIL, RESOURCE has none (reading 81)."
   (cond ((null resource))
         ((resource-p resource) (setf (resource-event resource) event))
         (event (setf (gethash resource (agenda-claims agenda)) event))
@@ -142,8 +141,7 @@ See reading 81."
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
   "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and return
-it. RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is called with the
-event."
+it. RESOURCE must have no pending event. INTERRUPT is called with an interrupted event."
   (let ((event (%make-event function)))
     (setf (event-resource event) resource
           (event-priority event) priority
@@ -175,8 +173,7 @@ event."
     (funcall (event-function event) event)))
 
 (defun run-in-order (agenda event)
-  "Run EVENT and the events that follow it. After a non-local exit from an event, still run the
-rest."
+  "Run EVENT and the events that follow it; after a non-local exit from one, still run the rest."
   (declare #.*hot* (type agenda agenda))
   (unwind-protect
        (loop while event
@@ -206,8 +203,7 @@ rest."
 ;;; Listing and copying.
 
 (defun pending-events (agenda)
-  "Return a list of the events pending in AGENDA, sorted by time, then by priority, then in the
-order of queueing."
+  "Return a list of the pending events of AGENDA, sorted by time, priority and order of queueing."
   (let ((events '()))
     (flet ((note-bucket (last)
              (when last
@@ -243,8 +239,7 @@ order of queueing."
   (:method ((request request)) (request-operator request)))
 
 (define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
-  "The record of an interruption in TICK: the request BY of BY-ASKER has interrupted the request
-WHAT of ASKER."
+  "The record that, in TICK, request BY of BY-ASKER interrupted request WHAT of ASKER."
   (tick 0 tick-count "the tick of the interruption" :export)
   (what nil t "the name of what was interrupted" :export)
   (asker nil t "a note of who had asked for that" :export)
@@ -252,8 +247,7 @@ WHAT of ASKER."
   (by-asker nil t "a note of who had asked for that" :export))
 
 (defun note-interruption (request rival tick)
-  "Record, for messages to users, that the request RIVAL interrupts REQUEST on its resource in
-TICK."
+  "Record, for messages, that the request RIVAL interrupts REQUEST on its resource in TICK."
   (let ((resource (event-resource request)))
     (when (resource-p resource)
       (setf (resource-interruption resource)

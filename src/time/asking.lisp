@@ -71,8 +71,7 @@ Return its values."
           (t (error trouble)))))
 
 (defun check-outside-ticks ()
-  "Signal MISUSE if this thread is inside a tick. Such a thread answers no questions, so it must not
-ask questions."
+  "Signal MISUSE inside a tick, where a thread answers no questions and so must not ask any."
   (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
              (owner-p *simulation*))
     (reject-use "A tick of ~A is under way here. Another live world can be asked or changed only ~
@@ -86,8 +85,7 @@ ask questions."
            (call-with-custody custody (constantly nil) (constantly nil))))
 
 (defun keeping-seclusion (function)
-  "Return a function that calls FUNCTION with the same seclusion as the current code, in any
-thread."
+  "Return a function that calls FUNCTION, in any thread, with the seclusion of the current code."
   (let ((seclusion *seclusion*))
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 

@@ -27,7 +27,6 @@
   (if-paced (pacing simulation) (pause-in-effect-p pacing)))
 
 (defun paused-or-stopped-p (pacing)
-  "True if no tick may pass because the clock of PACING was paused or stopped."
   (or (pacing-stopping-p pacing) (pause-in-effect-p pacing)))
 
 (defun nothing-to-do-p (pacing)
@@ -59,8 +58,7 @@
         (pacing-trouble pacing) (brief-text trouble)))
 
 (defun pass-tick (pacing)
-  "Pass a tick. An error in the simulator itself, not in users' code, is reported and pauses the
-clock."
+  "Pass a tick. An error in the simulator, not in users' code, is reported and pauses the clock."
   (handler-case (funcall (pacing-tick pacing))
     ((or error storage-condition) (trouble) (pause-after-failure pacing trouble)))
   (when (plusp (pacing-steps pacing)) (decf (pacing-steps pacing))))
@@ -82,8 +80,7 @@ clock."
                       (pass-tick pacing))))))
 
 (defun release-pacing (custody pacing)
-  "Release the custody that the thread of PACING holds, because the thread ends, perhaps because it
-was killed."
+  "Release the custody of the thread of PACING, which ends, perhaps because it was killed."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)

@@ -51,8 +51,7 @@
 
 (defun call-with-custody (custody function otherwise)
   "Take CUSTODY and call FUNCTION. If another thread has CUSTODY, call OTHERWISE instead. Return the
-values of the call. FUNCTION and OTHERWISE can be interrupted if this thread allowed interrupts
-before."
+values of the call. FUNCTION and OTHERWISE are interruptible if this thread was before."
   (if (has-custody-p custody)
       (funcall function)
       (let ((open-p (not (interrupts-deferred-p))))
@@ -71,25 +70,21 @@ before."
 ;;; Waiting.
 
 (defun wake-if-asleep (custody)
-  "If the thread that has CUSTODY sleeps, wake it, because there may be work for it."
   (when (custody-asleep-p custody)
     (signal-semaphore (custody-wake-up custody))))
 
 (defun release-custody-if-dead (custody)
-  "Take CUSTODY from a thread that has ended without giving it up."
   (let ((thread (custody-thread custody)))
     (when (and thread (not (thread-alive-p thread)))
       (swap-if-eq (custody-thread custody) thread nil))))
 
 (defun answer-own-questions ()
-  "Answer the questions about worlds that this thread owns. This prevents a deadlock between threads
-that wait for each other."
+  "Answer the questions about this thread's worlds, lest threads that wait for each other deadlock."
   (dolist (custody *held-custodies*)
     (when (has-custody-p custody) (answer-questions custody))))
 
 (defun wait-while-answering (semaphore &optional (seconds 0.2))
-  "Answer questions, then wait for SEMAPHORE for at most SECONDS. Return true if SEMAPHORE was
-signalled."
+  "Answer questions, then wait at most SECONDS for SEMAPHORE. Return true if it was signalled."
   (answer-own-questions)
   (yield-foreground)
   ;; A thread that owns a world must check for questions often.

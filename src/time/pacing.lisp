@@ -53,13 +53,11 @@ needed. CALLS records the calls of users' code by the thread."
   (signal-semaphore (custody-wake-up (pacing-custody pacing))))
 
 (defun seconds-now ()
-  "Return the real time, in seconds since an arbitrary moment. Results of runs must not depend on
-the real time."
+  "Return the real time, on which results must not depend, in seconds since an arbitrary moment."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (defmacro if-paced ((pacing object) &body body)
-  "Run BODY with PACING bound to the pacing of the run of OBJECT. If the run was never live, return
-NIL."
+  "Run BODY with PACING bound to the pacing of OBJECT's run. If it was never live, return NIL."
   `(let ((,pacing (timeline-pacing (timeline-of ,object))))
      (when ,pacing ,@body)))
 
@@ -136,8 +134,7 @@ RATE. Signals WRONG-ARGUMENT."
     (wake-clock pacing))
   rate)
 
-;;; The thread ends after its tick. User code that does not return is aborted only when somebody
-;;; stops the run.
+;;; The thread ends after its tick. Endless user code is aborted only when somebody stops the run.
 
 (defun wait-for-end (pacing seconds)
   "Wait at most SECONDS for the thread of PACING to end. Return true if it has ended."
@@ -169,8 +166,7 @@ Signals MISUSE if the thread does not end."
                               (and origin (text-of-origin origin))))))
 
 (defun stop (pacing)
-  "End the thread of PACING after its current tick. If that is another thread, wait until it has
-ended."
+  "End the thread of PACING after its current tick; if it is another thread, wait for its end."
   (swap-if-eq (pacing-stopping-p pacing) nil t)
   (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
@@ -182,13 +178,11 @@ replace the run. Return true if the run was live and no thread had stopped it."
   (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) nil :replaced)))
 
 (defun claimed-p (timeline)
-  "True if CLAIM-PACING has returned true for TIMELINE, and UNCLAIM-PACING was not called after
-that."
+  "True if CLAIM-PACING has returned true for TIMELINE without a later call of UNCLAIM-PACING."
   (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
 (defun unclaim-pacing (timeline)
-  "Prevent a run that is about to replace the run of TIMELINE from becoming live, because the run of
-TIMELINE was stopped."
+  "Prevent a run that will replace the stopped run of TIMELINE from becoming live."
   (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
@@ -199,8 +193,7 @@ interrupted."
   timeline)
 
 (defun call-without-clock (timeline function)
-  "Stop the thread that paces the world of TIMELINE. Then call FUNCTION with custody of the world,
-and return its value."
+  "Stop the thread that paces TIMELINE's world; return the value of FUNCTION, called with custody."
   (let ((custody (timeline-custody timeline)))
     (loop
       (block busy
@@ -244,8 +237,7 @@ code, or waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort the users' code of the live SIMULATION that a warning has named as slow. Return true if
-that code was still running."
+  "Abort users' code of the live SIMULATION that a warning named as slow. True if it still ran."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

@@ -23,8 +23,7 @@
 
 (defgeneric perform (request timeline)
   (:documentation
-   "Perform REQUEST, at the start of a tick of TIMELINE or at the end of its run. The thread that
-owns the world calls this function."))
+   "Perform REQUEST, in the thread of its world, as a tick of TIMELINE starts or its run ends."))
 
 (defgeneric request-entry (request)
   (:documentation "Return the journal entry of REQUEST: a list (operator argument ...).")

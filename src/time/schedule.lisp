@@ -27,8 +27,7 @@
 
 ;; Requests are performed in a tick before the agenda has advanced to it.
 (defun call-in-tick (function timeline)
-  "Call FUNCTION, users' code. Before the agenda of TIMELINE has advanced to the current tick,
-advance it for this call."
+  "Call FUNCTION, users' code, with the agenda of TIMELINE advanced to the current tick."
   (let ((agenda (timeline-agenda timeline)))
     (cond ((= (phase-number :requests) (timeline-phase timeline))
            (incf (agenda-tick agenda))
@@ -42,7 +41,6 @@ advance it for this call."
                     (timeline-of *simulation*)))))
 
 (defun expires-first-p (event)
-  "True if the timeout of EVENT is shorter than its timer."
   (and (scheduled-deadline event)
        (< (scheduled-timeout event) (scheduled-timer event))))
 
@@ -98,8 +96,7 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
                                       :timeout timeout :timer timer)))
 
 (defun intended-delay (head body)
-  "Return the number in a form (schedule HEAD . BODY) that the user probably meant as a delay, or
-NIL."
+  "Return the number in (schedule HEAD . BODY) that the user probably meant as a delay, or NIL."
   (find-if #'integerp (list* head (and (consp head) (ignore-errors (second head)))
                              (and (typep body '(cons t null)) body))))
 

@@ -52,8 +52,7 @@ first"))
    (seclusion *seclusion* symbol "the mark of the secluded code that made the timeline, or NIL")
    (run nil t "the run that the timeline belongs to, or NIL" :export)
    (over nil (or null string)
-         "the reason why the run is over, a sentence without its full stop; NIL if the run is not
-over" :export)
+         "the reason why the run is over, a sentence without full stop; NIL if it is not" :export)
    (tick-dice (make-tick-dice) tick-dice
               "the dice of CL:RANDOM for users' code that changes the world" :export)
    (custody (make-custody) custody "the custody, which records the thread that owns the timeline and
@@ -83,8 +82,7 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
 
 (addition *simulation*)
 (defvar *simulation* nil
-  "The current simulation: that of WITH-SIMULATION, that of the simulator's thread, or the last one
-that SIMULATOR has started.")
+  "The current simulation: that of WITH-SIMULATION or the simulator's thread, or SIMULATOR's last.")
 
 (setf *reporting-run* (lambda () *simulation*))
 
@@ -97,8 +95,7 @@ that SIMULATOR has started.")
                       "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
-  "Signal MISUSE if the run of OBJECT is over. OPERATOR, if given, is the function that the user has
-called."
+  "Signal MISUSE, about the function OPERATOR if given, if the run of OBJECT is over."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
       (reject-finished-run "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. ~
@@ -122,8 +119,7 @@ called."
 ;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun count-moment (timeline)
-  "Record that code which forks repeat is about to be called, or to act, in a tick of TIMELINE after
-the world has changed."
+  "Record that code which forks repeat is about to run in a tick of TIMELINE with a changed world."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
@@ -188,16 +184,14 @@ that owns the world calls this function."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
-  "Remove REQUEST from the inbox of TIMELINE. Return true, or NIL if another thread has already
-removed REQUEST."
+  "Remove REQUEST from the inbox of TIMELINE. Return true, or NIL if another thread did so before."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil
         when (swap-if-eq (timeline-inbox timeline) inbox (remove request inbox))
           return t))
 
 (defun requested-inside-tick-p (request)
-  "True if REQUEST was made while a tick changed the world. If that tick is repeated, it makes the
-request again."
+  "True if REQUEST was made while a tick changed the world; if repeated, the tick makes it again."
   (changing-phase-p (request-phase request)))
 
 ;; Requests made by a tick are not in the journal. Other threads may post during that tick, so the
@@ -237,8 +231,7 @@ functions that were passed before."
       (when (notifications-left-p timeline) (deliver-all timeline)))))
 
 (defun deliver-notifications (timeline)
-  "Make the calls that are due at the end of this tick, in order. After a non-local exit from a
-call, still make the rest."
+  "Make the calls due at the end of this tick, in order, even after a non-local exit from a call."
   (when (notifications-left-p timeline) (deliver-all timeline)))
 
 ;;; The manual (1.2) separates simulated time from thinking time. To measure the value of thinking,
@@ -251,8 +244,7 @@ call, still make the rest."
 ;;; the run, and these are in the journal.
 
 (defun thinking-charge (mode)
-  "Return the cost of thinking in the thinking mode MODE, NIL for no ticks or a plist, and true if
-MODE is valid."
+  "Return the cost of thinking in MODE, NIL for no ticks or a plist, and true if MODE is valid."
   (cond ((member mode '(:free :real)) (values nil t))
         ((member mode '(:charged (:charged)) :test #'cl:equal) (values '(:charged t) t))
         ((and (typep mode '(cons (eql :charged) (cons (eql :budget) (cons t null))))
@@ -287,8 +279,7 @@ MODE is valid."
         (timeline-real-p timeline) (eq mode :real)))
 
 (defun choose-plan-threads (timeline real)
-  "If REAL is true and thinking is not charged for, make the plans of TIMELINE run in a separate
-thread."
+  "If REAL is true and thinking is free, make the plans of TIMELINE run in a separate thread."
   (setf (timeline-real-p timeline) (and real (not (timeline-charge timeline)))))
 
 (defun thinking-charged-p (timeline)
