@@ -8,10 +8,9 @@
           tick-dice make-tick-dice begin-tick-dice *tick-dice* with-users-random-state))
 
 ;;; CL:RANDOM must not depend on what this Lisp has done before. Programs (continuations, plans and
-;;; the code around them) use a random state of their run, seeded when that begins. Code that
-;;; changes a world uses another one, because a journal repeats the world but not the programs. It
-;;; is seeded again in each tick, from the run's seed and the tick, so it need not be copied, saved
-;;; or digested.
+;;; the code around them) use a random state of their run, seeded at its start. Code that changes a
+;;; world uses another one, as a journal repeats the world but not the programs. It is seeded in
+;;; each tick, from the run's seed and the tick, so it need not be copied, saved or digested.
 
 (defparameter *random-state-variable* 'cl:*random-state*
   "The name of the variable that holds the random state of CL:RANDOM.")

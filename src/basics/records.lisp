@@ -6,9 +6,8 @@
           settable-p addition-p addition-text public-symbols *marking-p* define-record reader-text
           reader-marks))
 
-;;; A mark precedes the definition of a name: PUBLIC if the name is the manual's, ADDITION if it is
-;;; ours. The users' packages ARS and NISP collect marked names (see src/faces.lisp). Unmarked names
-;;; are internal to the layers.
+;;; A mark precedes the definition of a name: PUBLIC for the manual's names, ADDITION for ours. The
+;;; users' packages ARS and NISP collect these (see src/faces.lisp). Unmarked names are internal.
 
 (defstruct (mark (:constructor make-mark (symbol faces addition-p)) (:copier nil))
   "The mark of a public name: the FACES (:ARS, :NISP) whose packages export SYMBOL, and whether

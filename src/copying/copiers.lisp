@@ -43,7 +43,7 @@ for the copy and true, or NIL and false" :writable)
   (record-copy copy copy copier))
 
 (defun queue-references (copy indices copier)
-  "Queue COPY in COPIER: REPLACE-REFERENCES will replace its slots number INDICES. Return COPY."
+  "Queue COPY in COPIER: REPLACE-REFERENCES will replace its slots numbered INDICES. Return COPY."
   (let ((fill (copier-fill copier)))
     (declare (type (unsigned-byte 40) fill))
     (when (= fill (length (copier-work copier)))

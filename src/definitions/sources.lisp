@@ -5,9 +5,8 @@
 (export '(source-of-current-form source-file count-in-file part-in-file-p skip-comment
           line-of-clause form-digest file-digest same-printed-form-p))
 
-;;; A source is a list (file digest): the file that a definition was read from, and a number for its
-;;; contents then. NIL stands for a typed definition. Definitions keep their source in compiled
-;;; files, so it is a plain list.
+;;; A source is a list (file digest): the file of a definition, and a number for its contents then.
+;;; NIL stands for a typed definition. Compiled files keep sources, so they are plain lists.
 
 (defun source-of-current-form ()
   "Return the source of the form that is being compiled or loaded, or NIL."

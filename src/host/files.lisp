@@ -75,7 +75,7 @@ true. ~ and ~/ are the home directory."
   (uiop:file-exists-p path))
 
 (defun missing-directory (path)
-  "Return the name of the directory of PATH, a pathname or string, if it does not exist; else NIL."
+  "If the directory of PATH, a pathname or string, does not exist, return its name; else NIL."
   (let ((directory (uiop:pathname-directory-pathname (merge-pathnames path))))
     (unless (or (wildcard-name-p directory) (uiop:directory-exists-p directory))
       (native-name directory))))

@@ -10,8 +10,7 @@
           end-on-interrupt end-on-termination))
 
 ;;; A thread is interrupted by a time limit, Ctrl-C, another thread, or a request to end. An
-;;; interrupt may exit from the code that it hits. It is deferred where that would leave a lock held
-;;; for ever.
+;;; interrupt may exit from the code it hits. It is deferred where that would leave a lock held.
 
 ;;; SBCL's WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS inside cannot be used: the runtime dies if
 ;;; an interrupt comes during a garbage collection in that thread, and each lock that is taken

@@ -2,10 +2,9 @@
 
 (in-package :ars-magna.nisp)
 
-;;; ! and ? start special syntax only at the start of a token: add! and interval-subset? stay
-;;; symbols. A user's own symbols are interned where the standard reader would; Nisp's operators are
-;;; symbols of this package and slot accessors of ARS-MAGNA.SLOTS, so that what is read works in any
-;;; package.
+;;; ! and ? start special syntax only at a token's start: add! and interval-subset? stay symbols. A
+;;; user's own symbols are interned where the standard reader would; Nisp's operators are symbols of
+;;; this package and slot accessors of ARS-MAGNA.SLOTS, so what is read works in any package.
 
 (defun delimiter-p (char)
   (or (blank-p char)

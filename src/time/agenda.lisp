@@ -141,7 +141,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
   "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and return
-it. RESOURCE must have no pending event. INTERRUPT is called with an interrupted event."
+it. RESOURCE must have no pending event. INTERRUPT is called with the event if interrupted."
   (let ((event (%make-event function)))
     (setf (event-resource event) resource
           (event-priority event) priority

@@ -57,7 +57,7 @@ needed. CALLS records the calls of users' code by the thread."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
 (defmacro if-paced ((pacing object) &body body)
-  "Run BODY with PACING bound to the pacing of OBJECT's run. If it was never live, return NIL."
+  "If OBJECT's run was ever live, run BODY with PACING bound to its pacing; else return NIL."
   `(let ((,pacing (timeline-pacing (timeline-of ,object))))
      (when ,pacing ,@body)))
 
@@ -237,7 +237,7 @@ code, or waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort users' code of the live SIMULATION that a warning named as slow. True if it still ran."
+  "Abort users' code of the live SIMULATION named as slow by a warning. True if the code still ran."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))
