@@ -4,9 +4,8 @@
 
 (export '(+number-text+))
 
-;;; A fixed-point number is an integer that counts units of 2^-PLACES. Integer arithmetic gives the
-;;; same results on every machine. After the simulator is loaded, this is used only for angles
-;;; beyond a million radians.
+;;; A fixed-point number is an integer that counts units of 2^-PLACES. Integer arithmetic is the
+;;; same everywhere. After loading, such numbers are used only for angles beyond a million radians.
 
 (defvar *fixed-point-places* 256 "The number of binary places of fixed-point numbers.")
 
@@ -95,8 +94,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
     (list (first parts) (/ (second parts) (first parts)))))
 
 (defconstant +least-mantissa+ #x3FE6000000000000
-  "The bits of 0.6875, the least mantissa. Mantissas go from 0.6875 to 1.375, so that the exponent K
-is 0 for numbers near 1.")
+  "The bits of 0.6875. Mantissas go from 0.6875 to 1.375: exponents K are 0 for numbers near 1.")
 
 (defun mantissa-row-center (row)
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))

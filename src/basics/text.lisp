@@ -103,8 +103,7 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
 
 ;;;; Data in messages
 
-;;; A message quotes what is wrong. That may be circular, a thousand lists deep or megabytes long,
-;;; and the message must still be readable.
+;;; A message quotes readably what is wrong, even if circular, very deep or megabytes long.
 
 (defconstant +shown-conses+ 150 "The largest number of conses of a datum that a message shows.")
 (defconstant +shown-characters+ 200 "The largest number of characters of a text that a message

@@ -120,8 +120,7 @@ fork has NIL in its place) and MAKE-NO-FORK."))
       "Return a text that says where the object was found, such as the name of a plan's variable.")
 
 (defun value-location-text (value copier)
-  "Return a text that says where VALUE was found: the result of COPIER's option :PLACE-OF, or else
-the object that refers to VALUE."
+  "Return a text that says where VALUE was found: COPIER's :PLACE-OF, or what refers to VALUE."
   (let ((place-of (copier-option copier :place-of)))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))

@@ -110,8 +110,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
 
 (defun definition-sources (name)
   "Return a list of lists (file position operator): the present source locations of the definitions
-of NAME, a symbol, as a map, a kicker and so on. Lisp itself knows the locations of variables and
-functions."
+of NAME, a symbol, as a map and so on. Lisp itself knows those of variables and functions."
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))

@@ -67,8 +67,7 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol that the string NAME, such as \"PACKAGE:NAME\", denotes as it is or in upper
-case; NIL if there is none."
+  "Return the symbol that the string NAME, such as \"P:NAME\", denotes as is or upcased; or NIL."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))

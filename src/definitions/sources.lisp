@@ -252,8 +252,7 @@ same operator and name. Signals MISUSE if it is not found."
         finally (return (length text))))
 
 (defun code-without-forms (operator text)
-  "Return TEXT, a value of CODE-WITHOUT-COMMENTS, without the top-level forms whose operator
-has the name OPERATOR, a string."
+  "Return TEXT, of CODE-WITHOUT-COMMENTS, without the top-level forms with the operator OPERATOR."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))

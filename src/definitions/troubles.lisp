@@ -224,8 +224,7 @@ debugger has disconnected, and the question ends."
                             ((null hook) (invoke-debugger condition))))))
 
 (defun choose-restart-unasked (condition)
-  "Choose a restart of CONDITION without the user, because no debugger is left: ABORT for errors,
-else CONTINUE. Queue a warning."
+  "Choose a restart of CONDITION without a debugger, ABORT for errors, else CONTINUE, and warn."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
     (warning-set "The debugger that asked for a restart has disconnected; " (string-downcase name)
                  " was chosen: " (one-line-text condition))

@@ -66,8 +66,7 @@ keyword, or a form in place of a list; or NIL."
                                (misfit-text parameter argument)))))))
 
 (defun warn-of-nisp-syntax (form)
-  "Warn if FORM contains syntax of Nisp, such as !>robot.cameras, that the standard reader has read
-as a symbol."
+  "Warn if FORM has Nisp's syntax, such as !>robot.cameras, read as a symbol by Lisp's reader."
   (let ((slot (find-part (lambda (part)
                            (and part (symbolp part)
                                 (< 2 (length (symbol-name part)))

@@ -39,8 +39,8 @@
   (if (pt-p region) (%pt-y region) (%interval-max (%pt-interval-y region))))
 
 (defun reject-operand (operator name value expected)
-  "Signal WRONG-ARGUMENT: Signal WRONG-ARGUMENT, because OPERATOR cannot use VALUE as its operand
-NAME. The text EXPECTED says which operands are possible."
+  "Signal WRONG-ARGUMENT, because OPERATOR cannot use VALUE as its operand NAME. The text
+EXPECTED says which operands are possible."
   (reject-argument operator name value
                    (if (and (realp value) (not (finite-p value))) +number-text+ expected)))
 

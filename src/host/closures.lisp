@@ -17,8 +17,7 @@
     (internal (:sb-eval #:env-p) object))
 
   (defun environment-values (environment)
-    "Return a list of the values of the variables and functions in ENVIRONMENT and in the
-environments around ENVIRONMENT."
+    "Return the values of the variables and functions in ENVIRONMENT and those around it."
     (loop for each = environment then (internal (:sb-eval #:env-parent) each)
           while each
           append (mapcar #'cdr (internal (:sb-eval #:env-vars) each))

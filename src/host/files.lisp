@@ -324,8 +324,7 @@ output as a string."
     (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
 
 (defun char-width (char)
-  "Return the number of columns that CHAR takes on a terminal: 0 for combining accents, 2 for East
-Asian characters, else 1."
+  "Return the columns of CHAR on a terminal: combining accents 0, East Asian ones 2, others 1."
   (cond ((member (internal (:sb-unicode #:general-category) char) '(:mn :me :cf)) 0)
         ((member (internal (:sb-unicode #:east-asian-width) char) '(:w :f)) 2)
         (t 1)))

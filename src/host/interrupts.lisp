@@ -13,9 +13,8 @@
 ;;; interrupt may exit from the code it hits. It is deferred where that would leave a lock held.
 
 ;;; SBCL's WITHOUT-INTERRUPTS with ALLOW-WITH-INTERRUPTS inside cannot be used: the runtime dies if
-;;; an interrupt comes during a garbage collection in that thread, and each lock that is taken
-;;; allows interrupts. So interrupts are deferred strictly. To allow them, code calls a function
-;;; that was made outside.
+;;; an interrupt comes during a garbage collection there, and taking a lock allows interrupts. So
+;;; interrupts are deferred strictly. To allow them, code calls a function made outside.
 
 (defvar *interrupt-deferral* nil
   "How this thread defers interrupts: NIL, not at all; :STRICTLY, everywhere; or a function

@@ -66,8 +66,7 @@ are allocated. A later collection would have to copy the new objects."
   (search "STACK" (string (type-of condition))))
 
 (defun recover-memory (condition)
-  "After a non-local exit because of CONDITION, a full stack or a full heap, restore the guard pages
-of the stack or collect garbage."
+  "After a non-local exit for CONDITION, restore a full stack's guard pages or collect garbage."
   (when (typep condition 'storage-condition)
     (if (stack-full-p condition)
         (restore-stack)

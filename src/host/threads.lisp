@@ -38,8 +38,7 @@
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
 (defun call-if-free (lock function)
-  "If no other thread holds LOCK, call FUNCTION while holding LOCK, and return its value and true;
-else return NIL and false."
+  "Unless another thread holds LOCK, call FUNCTION holding it; return its value and true. Else NIL."
   (sb-thread:with-mutex (lock :wait-p nil)
     (return-from call-if-free (values (funcall function) t)))
   (values nil nil))

@@ -70,7 +70,7 @@ meaning in CL:LOOP (manual, Figure D.3)."
 ;;; is loaded; after that the registry is only read.
 
 (defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
-  "A type. A registered type of Nisp. CLASS is the Lisp class, if objects of the type have SLOTS, an
+  "A registered type of Nisp. CLASS is the Lisp class, if objects of the type have SLOTS, an
 alist from names of slots to names of readers."
   (name "" :type string :read-only t)
   (class nil :type symbol)
@@ -104,8 +104,7 @@ alist from names of slots to names of readers."
 ;;;; Lists without types
 
 ;;; A hyphen and a type after a variable declare its type (manual 3.1). Types are documentation:
-;;; they are checked for being there and then dropped, known or not. A name that resembles that of a
-;;; known type causes a warning.
+;;; required, then dropped, known or not. A name like that of a known type causes a warning.
 
 (defun hyphen-p (form)
   (and (symbolp form) (string= form "-")))

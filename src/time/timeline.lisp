@@ -179,8 +179,7 @@ over (reading 219)."
   (values))
 
 (defun post-again (request timeline)
-  "Put REQUEST, which was taken from the inbox of TIMELINE, back as the last request. The thread
-that owns the world calls this function."
+  "Put REQUEST, taken from the inbox of TIMELINE, back as the last. Called by the world's thread."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
@@ -208,8 +207,7 @@ first; in each group, the oldest comes first."
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "Call the function named FUNCTION with ARGUMENTS at the end of this tick of TIMELINE, after
-functions that were passed before."
+  "As this tick of TIMELINE ends, call the function named FUNCTION, after those passed before."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
