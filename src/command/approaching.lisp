@@ -36,14 +36,12 @@ arrived, and the obstacle that blocked it: :WALL, :THING or NIL."
             block)))
 
 (defun at-designator-p (robot designator &optional last-step block)
-  "True if ROBOT has arrived at the position of DESIGNATOR; see DESIGNATOR-POSITION and
-ARRIVED-AT-POINT-P."
+  "True if ROBOT has arrived at the position of DESIGNATOR; see ARRIVED-AT-POINT-P."
   (multiple-value-bind (x y) (designator-position designator)
     (arrived-at-point-p robot x y last-step block)))
 
 (defun arrive (operation camera designator)
-  "End OPERATION, whose robot has arrived at DESIGNATOR, and end the track of CAMERA (readings 108
-and 110)."
+  "End OPERATION, whose robot is at DESIGNATOR, and the track of CAMERA (readings 108, 110)."
   (cond ((designator-denotation designator)
          (succeed operation camera designator)
          (end-track-on-arrival camera))
@@ -51,8 +49,7 @@ and 110)."
            (fail-with operation :not-tracking camera designator))))
 
 (defun approach-step (operation robot camera designator)
-  "Move ROBOT towards DESIGNATOR for a tick, or end OPERATION if the approach is over (reading
-111)."
+  "Move ROBOT towards DESIGNATOR for a tick, or end OPERATION after the approach (reading 111)."
   (cond ((not (tracking-p camera designator))
          (fail-with operation :not-tracking camera designator))
         ((at-designator-p robot designator) (arrive operation camera designator))

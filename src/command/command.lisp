@@ -78,7 +78,6 @@ a list of its parameters (variable type text), and its sentence. Signals UNKNOWN
 
 (declaim (inline command-of))
 (defun command-of (symbol)
-  "Return the command that the function named SYMBOL issues."
   (get symbol 'command))
 
 (defun register-command (command)
@@ -123,8 +122,7 @@ DEFINE-STEP has not defined."
   (and (get name 'step) (fboundp name) t))
 
 (defun check-step-in-form (form)
-  "Return FORM, a call with a step as its second argument. If the step is quoted, let CHECK-STEP
-check it."
+  "Return FORM, a call with a step as its second argument. Check the step if it is quoted."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (check-step ,step)) ,@more)

@@ -48,7 +48,6 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
 (continuation (err &rest results) ...) makes, or NIL for none"))
 
 (defun argument-check-form (name variable type)
-  "Return a form that checks that VARIABLE, an argument of the command NAME, is of TYPE."
   `(check-argument-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
 (defun warn-of-uncallable (name forms)
@@ -66,15 +65,12 @@ such as an unquoted list of data, or (90 deg)."
                       name (abridged form))))))
 
 (defun warn-of-argument-count (name parameters forms)
-  "Warn if FORMS, the arguments in a call of the command NAME, are too few or too many for
-PARAMETERS."
   (unless (<= (- (length parameters) 2) (length forms) (1- (length parameters)))
     (warn-of-style "~(~A~) takes ~(~:A~), not ~D argument~:P."
                    name parameters (length forms))))
 
 (defun returns-nothing-p (form)
-  "True if FORM calls an operator that is used for its effect, such as output, and returns no
-function."
+  "True if FORM calls an operator that has an effect, such as output, and returns no function."
   (typecase form
     ((cons (member setf setq)) (constantp (first (last form))))
     ((cons symbol) (or (member (first form) '(out terpri fresh-line format error-set warning-set
@@ -83,8 +79,7 @@ function."
 
 (defun called-early-p (form count)
   "True if FORM calls a user's function without arguments, although the function takes COUNT
-arguments and could itself be the continuation. False if the function is known to return a
-function."
+arguments and could itself be the continuation. False if the value is known to be a function."
   (and (typep form '(cons symbol null))
        (users-symbol-p (first form))
        (fboundp (first form))
@@ -94,8 +89,7 @@ function."
                                                               (first form)))))))))
 
 (defun warn-of-early-call (name form count)
-  "Warn if FORM, the continuation in a call of the command NAME, runs at once instead of when the
-command ends."
+  "Warn if FORM, the continuation in a call of NAME, runs before the command NAME ends."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (warn-of-style "~(~A~): ~S is evaluated at once, not when the command has ended, and ~

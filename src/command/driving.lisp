@@ -4,8 +4,7 @@
 
 ;;; Each movement begins after ROBOT-MOVE-DELAY*, takes at least a tick, and ends in the tick of its
 ;;; last step, without braking. An interruption ends it at once, too, but after ROBOT-STOP the robot
-;;; coasts. What is left of a movement, in ticks or metres, is negative if it goes
-;;; backwards.
+;;; coasts. What is left of a movement, in ticks or metres, is negative if it goes backwards.
 
 (declaim (inline reduce-towards-zero drive-remaining-time drive-remaining-distance
                  drive-finished-p))
@@ -30,8 +29,7 @@ Return the value of DRIVE-TICK."
           (t (drive-tick robot)))))
 
 (defun drive-remaining-distance (operation)
-  "Drive the robot of OPERATION for a tick, at most the remaining metres of OPERATION. Return the
-value of DRIVE-TICK."
+  "Drive the robot of OPERATION for a tick, at most OPERATION's remaining metres. See DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     ;; What rounding leaves is not driven.
@@ -39,7 +37,6 @@ value of DRIVE-TICK."
     (drive-tick robot left)))
 
 (defun drive-finished-p (operation)
-  "True if OPERATION has no time or distance left to drive."
   (zerop (operation-left operation)))
 
 (defmacro with-drive-tick ((block operation &optional drive) &body body)
@@ -68,8 +65,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
       (:thing (fail-with operation :robot-blocked)))))
 
 (define-step coast (operation (robot-p (operation-resource operation)))
-  "Drive the robot for a tick. OPERATION succeeds after its last tick, at an obstacle, or if the
-speed is 0."
+  "Drive the robot for a tick. OPERATION succeeds in its last tick, at an obstacle or at speed 0."
   (if (speed-zero-p (operation-resource operation))
       (succeed operation)
       (with-drive-tick (block operation drive-remaining-time)
@@ -91,8 +87,7 @@ speed is 0."
          (go-on-now operation 'drive-a-while))
         (t (succeed operation))))
 
-;;; A distance instead of a time: the last step is shorter, and the robot's speed setting does not
-;;; change.
+;;; A distance instead of a time: the last step is shorter; the robot's speed setting is unchanged.
 
 (define-argument-type 'distance
   (lambda (value) (and (realp value) (< 0 value) (<= value 1000000)))
@@ -170,14 +165,12 @@ prolong the coasting."
   (mod (round (/ angle (/ pi 2))) 4))
 
 (defun neighbour-wall-p (robot quarter)
-  "True if a wall fills the cell next to ROBOT's cell in the direction QUARTER, in quarter turns
-from the x axis."
+  "True if a wall is next to ROBOT's cell in direction QUARTER, in quarter turns from the x axis."
   (destructuring-bind (dx . dy) (svref #((1 . 0) (0 . 1) (-1 . 0) (0 . -1)) (mod quarter 4))
     (wall-at-p (world-map (robot-world robot)) (+ (robot-x robot) dx) (+ (robot-y robot) dy))))
 
 (defun distance-to-side (robot quarter)
-  "Return the distance of ROBOT from the side of its cell in the direction QUARTER, in quarter turns
-from the x axis."
+  "Return ROBOT's distance from its cell's side QUARTER, counted in quarter turns from the x axis."
   (let ((x (mod (robot-x robot) 1d0)) (y (mod (robot-y robot) 1d0)))
     (ecase (mod quarter 4) (0 (- 1 x)) (1 (- 1 y)) (2 x) (3 y))))
 

@@ -31,7 +31,6 @@ number of the next tick, because a tick is counted after its requests are perfor
          interruption)))
 
 (defun record-failure (operation code text)
-  "Record in the robot of OPERATION that it ends with the error CODE and the message TEXT."
   (let* ((tick (timeline-tick (operation-timeline operation)))
          (interruption (and (eq code :interrupt) (interruption-of operation tick))))
     (setf (robot-failure (resource-robot (operation-resource operation)))
@@ -99,14 +98,12 @@ no command was interrupted."
             (interruption-tick interruption)))))
 
 (defun under-way-text (resource)
-  "Return a text on the command that RESOURCE executes, and who issued it; NIL if there is no
-command."
+  "Return a text on the command that RESOURCE executes, and who issued it; NIL if there is none."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (format nil "~(~A~), for ~A" name asker))))
 
 (defun interruption-text (resource)
-  "Return a text on the last interruption of a command of RESOURCE; NIL if no command was
-interrupted."
+  "Return a text on the last interruption of a command of RESOURCE; NIL if there was none."
   (let ((interruption (last-interruption resource)))
     (when interruption
       (format nil "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"

@@ -15,8 +15,6 @@
   (world-dice (robot-world (part-robot part)) :handling))
 
 (defun destination-name (destination)
-  "Return the name of DESTINATION if it is a storage bin, or of the container that the designator
-DESTINATION denotes."
   (cond ((storage-bin-p destination) (location-name destination))
         ((designator-denotation destination) (location-name (designator-denotation destination)))
         (t (princ-to-string destination))))
@@ -28,7 +26,6 @@ DESTINATION denotes."
 ;;; Designators.
 
 (defun own-designator-p (resource designator)
-  "True if DESIGNATOR is valid and belongs to the robot of RESOURCE, a robot or part."
   (and (designator-valid-p designator)
        (eq (designator-robot designator) (resource-robot resource))))
 
@@ -60,21 +57,18 @@ no thing, drop only DESIGNATOR, with PROBABILITY."
       (part-reaches-p part container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER can hold things and has room for SIZE more, apart from rounding (readings 153
-and 237)."
+  "True if CONTAINER can hold things of SIZE more, apart from rounding (readings 153 and 237)."
   (and (plusp (if (storage-bin-p container)
                   (storage-bin-capacity container)
                   (thing-capacity container)))
        (<= size (+ (remaining-capacity container) 1d-9))))
 
-;;; A grip is only lost by changes of the thing held: kickers, manipulations, another hand,
-;;; destruction.
+;;; A grip is only lost by changes of the thing: kickers, manipulations, another hand, destruction.
 
 ;;; Grasping.
 
 (defun grasp-error-code (hand camera designator)
-  "Return the error code for what prevents HAND from grasping, or NIL if nothing does (reading
-164)."
+  "Return the error code for what keeps HAND from grasping, or NIL if nothing does (reading 164)."
   (cond ((hand-holding hand) :hand-grasping)
         ((not (and (eq (hand-robot hand) (camera-robot camera))
                    (eq (hand-location hand) (camera-location camera))))
@@ -84,8 +78,7 @@ and 237)."
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Make HAND grasp THING, or NIL for a false sighting. Return an error code, or NIL after success
-(readings 151, 231)."
+  "Let HAND grasp THING, NIL for a false sighting. Return an error code or NIL (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
         (t (move-thing thing hand)
@@ -157,8 +150,7 @@ the thing, which silently makes designators of the thing invalid."
   "The number of ticks after which the event that watches a grip is queued again.")
 
 (define-step watch-grip (operation (hand-p (operation-resource operation)))
-  "Occupy the hand of OPERATION until the hand no longer holds the subject of OPERATION, a thing
-(reading 162)."
+  "Occupy the hand of OPERATION as long as the hand holds OPERATION's subject (reading 162)."
   (let ((hand (operation-resource operation)))
     (cond ((not (eq (operation-subject operation) (hand-holding hand)))
            (fail-with operation :grasp-lost))

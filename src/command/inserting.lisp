@@ -10,8 +10,7 @@
           (destination-name destination)))
 
 (defun insertion-error-text (control)
-  "Return a function of an operation that formats CONTROL, an error text, with the part and the name
-of the destination."
+  "Return a function of an operation that formats CONTROL with the part and the destination's name."
   (lambda (operation)
     (format nil control (operation-resource operation)
             (destination-name (first (operation-arguments operation))))))
@@ -19,14 +18,12 @@ of the destination."
 ;;; Hands.
 
 (defun inside-held-thing-p (hand container)
-  "True if HAND holds CONTAINER, or something that CONTAINER is in."
   (loop for outer = container then (thing-location outer)
         while (thing-p outer)
         thereis (eq outer (hand-holding hand))))
 
 (defun try-hand-insertion (hand container)
-  "Move HAND into CONTAINER, which is NIL if the designator is false. Return an error code or NIL
-(reading 155)."
+  "Move HAND into CONTAINER, NIL for a false designator. Return an error code or NIL (reading 155)."
   (cond ((null container) :hand-bump)
         ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
@@ -108,15 +105,13 @@ of the destination."
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if CAMERA bumps CONTAINER by chance, within its reach, or if DESTINATION is a false local
-designator."
+  "True if CAMERA bumps CONTAINER, in its reach, by chance, or if DESTINATION is false and local."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))
 
 (defun try-camera-insertion (camera destination container)
-  "Move CAMERA into CONTAINER, the container that DESTINATION stands for. Return an error code or
-NIL (reading 159)."
+  "Move CAMERA into the CONTAINER of DESTINATION. Return an error code or NIL (reading 159)."
   (cond ((and container (location-closed-p container)) :bin-closed)
         ((and (designator-p destination) (null (camera-tracks camera))) :not-tracking)
         ((and (designator-p destination) (not (tracking-p camera destination)))

@@ -43,8 +43,7 @@ position. TOLD lists the names of the arguments."
 
 (defun warn-of-continuation (command world continuation
                              &optional (told (continuation-arguments command)))
-  "Warn once if CONTINUATION cannot be called with the arguments that COMMAND passes. TOLD lists the
-names of the arguments."
+  "Warn once if CONTINUATION cannot take the arguments that COMMAND passes. TOLD lists their names."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
@@ -60,18 +59,15 @@ names of the arguments."
 ;;; One simulation inside another.
 
 (defun elsewhere-request-key (world)
-  "Return the key under which requests to WORLD from a simulation of another world are recorded in
-this tick."
+  "Return the key for requests to WORLD from a simulation of another world in this tick."
   (list :asked-elsewhere (world-tick world)))
 
 (defun requested-elsewhere-p (world)
-  "True if a program has issued a request to WORLD inside a simulation of another world since the
-last tick of WORLD."
+  "True if a program simulating another world issued a request to WORLD since WORLD's last tick."
   (warning-given-p (elsewhere-request-key world) world))
 
 (defun record-elsewhere-request (world)
-  "If a program issues a request to an idle WORLD inside a simulation of another world, record
-this."
+  "If a program in a simulation of another world issues a request to an idle WORLD, record this."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
                (from-program-p)
@@ -101,8 +97,7 @@ something do not count."
            (timeline-inbox timeline)))
 
 (defun operation-just-begun (resource timeline)
-  "Return the operation that RESOURCE has begun in the last tick of a live run, if its command takes
-time, or NIL."
+  "Return RESOURCE's operation if it began in the last tick of a live run and takes time, or NIL."
   (let ((event (resource-event resource)))
     (and (live-p timeline)
          (operation-p event)
@@ -123,8 +118,7 @@ BEFORE may be left over from earlier work."
 
 (defun warn-if-interrupting (command resource arguments timeline)
   "Warn once for each pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts a
-command without a continuation that the same program issued in this tick or, in a live run, in the
-last tick."
+command without continuation that the same program issued in this tick or, in a live run, the last."
   (when (and (from-program-p) (takes-time-p command))
     (let ((before (or (pending-request resource timeline)
                       (operation-just-begun resource timeline))))
@@ -221,8 +215,7 @@ it was issued with. Then forget the recorded parameters."
   (setf *recorded-bindings* (remove world *recorded-bindings* :key #'second :test #'eq)))
 
 (defun warn-of-thread-bindings (command world bindings)
-  "Warn once that COMMAND, issued in the live run of WORLD, does not see BINDINGS, which hold in
-this thread only."
+  "Warn once that COMMAND, issued in the live run of WORLD, does not see BINDINGS of this thread."
   (loop for (symbol . value) in bindings
         do (warn-once (list :bound (command-name command)) world
                       (format nil "~(~A~) is carried out in the simulator's thread, where ~(~A~) ~
@@ -230,8 +223,7 @@ this thread only."
                               (command-name command) symbol (global-value symbol) value))))
 
 (defun record-bindings (command world)
-  "Record the parameters that are bound around COMMAND, issued in WORLD between ticks. In a live
-run, warn at once."
+  "Record the parameters bound around COMMAND in WORLD between ticks. Warn at once in a live run."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (parameters-bound timeline world)))
@@ -240,8 +232,7 @@ run, warn at once."
               (t (push (list* command world bindings) *recorded-bindings*)))))))
 
 (defun between-runs-p (world)
-  "True if requests to a robot in WORLD, the resident world of a map, wait for a run to start or
-continue."
+  "True if requests to robots in WORLD, a resident world, wait for a run to start or continue."
   (let ((timeline (world-timeline world)))
     (and (eq world (map-resident (world-map world)))
          (not (live-p timeline))

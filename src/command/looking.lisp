@@ -36,8 +36,7 @@ that the attributes can have; a range begins with its lower end"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
-  "Return designators for the SIGHTINGS of CAMERA that are still true, at most as many as a robot
-keeps."
+  "Return designators for SIGHTINGS of CAMERA that are still true, at most what a robot keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
@@ -58,8 +57,7 @@ keeps."
         (fail-with operation :designator-not-found))))
 
 (defun designate-all (operation sightings)
-  "End OPERATION with designators for SIGHTINGS, a tick later for each sighting after the first
-(reading 134)."
+  "End OPERATION with designators for SIGHTINGS, a tick later for each but the first (reading 134)."
   (setf (operation-subject operation) sightings)
   (if (rest sightings)
       (go-on operation 'designate-found (length (rest sightings)))
@@ -68,8 +66,7 @@ keeps."
 ;;; Places.
 
 (defun place-search-error-code (camera type)
-  "Return the error code for what keeps CAMERA from searching for the place type TYPE, or NIL if
-nothing does (reading 69)."
+  "Return the error code for what keeps CAMERA from searching for TYPE, or NIL (reading 69)."
   (cond ((camera-tracking camera) :already-tracking)
         ((null type) :invalid-place-type)
         ((place-type-invisible-p type) :invisible-place-type)
@@ -237,16 +234,14 @@ called with NIL when the track begins, and with an error code when the track end
 ;;; angle is relative to the robot and never normalised. Turning a camera interrupts its track.
 
 (defun turn-camera (operation camera angle)
-  "Turn CAMERA by ANGLE, in radians, for OPERATION; return an estimate of the angle turned (reading
-144)."
+  "Turn CAMERA by ANGLE, in radians, for OPERATION; return the estimated angle (reading 144)."
   (let ((world (robot-world (camera-robot camera))))
     (interrupt-track operation camera)
     (incf (camera-angle camera) (double angle))
     (+ (double angle) (angle-error (world-dice world :looking)))))
 
 (defun turn-camera-to (operation camera direction)
-  "Turn CAMERA the shorter way to DIRECTION, relative to the robot; return an estimate of the angle
-turned."
+  "Turn CAMERA the shorter way to DIRECTION, relative to the robot; return the estimated angle."
   (turn-camera operation camera (angle-difference direction (camera-angle camera))))
 
 (defun camera-turn-message (operation angle)

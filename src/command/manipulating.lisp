@@ -31,8 +31,7 @@
                always (or (null known) (argument-of-type-p value type))))))
 
 (defun methods-for (manipulation arguments)
-  "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if no method
-does."
+  "Return the methods of MANIPULATION that take ARGUMENTS. Signals WRONG-ARGUMENT if none does."
   (or (remove-if-not (lambda (method) (method-takes-p method arguments))
                      (manipulation-methods manipulation))
       (reject-argument (manipulation-name manipulation) "argument list" arguments
@@ -98,8 +97,7 @@ with :FAILED if the body fails."
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
                                        (method-takes-p (operation-subject operation)
                                                        (operation-arguments operation))))
-  "Run the method that is the subject of OPERATION. Fail if the method no longer applies, or by
-chance."
+  "Run the method that is OPERATION's subject. Fail if the method no longer applies, or by chance."
   (let ((method (operation-subject operation))
         (dice (world-dice (operation-world operation) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
@@ -123,16 +121,14 @@ no method, as after UNDEFINE."
   (remove-if-not #'designator-p (operation-arguments operation)))
 
 (defun manipulation-report-text (operation value)
-  "Return a text with the objects and the resource of OPERATION, and with its VALUE unless NIL
-(manual E)."
+  "Return a text with the objects and resource of OPERATION, and its VALUE unless NIL (manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
           (mapcar #'destination-name (designator-arguments operation))
           (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
 (defun designated-things (operation)
-  "Return a list of the things that the designators of OPERATION denote; NIL if a designator denotes
-no local thing."
+  "Return a list of the things designated in OPERATION; NIL if a designator denotes no local thing."
   (let ((things (loop for designator in (designator-arguments operation)
                       collect (designated-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))

@@ -68,8 +68,7 @@ type) for its resource and for each other parameter. The type may be NIL."
         finally (return (values variables patterns))))
 
 (defun parse-typed-variables (definition list)
-  "Return a list of (variable type) for the variables in LIST. A hyphen and a type may follow each
-variable."
+  "Return a list of (variable type) for the variables in LIST. A hyphen and a type may follow each."
   (loop while list
         collect (let ((variable (pop list)))
                   (unless (variable-p variable)
@@ -113,8 +112,7 @@ type) for its resource, and such lists for the others. The type is NIL where non
        "the list of options comes after the parameters, () for none"))
 
 (defun outdated-method-p (name method source)
-  "True if METHOD of NAME comes from an earlier version of the file of SOURCE, and the file no
-longer contains METHOD."
+  "True if METHOD of NAME was in an earlier version of the file of SOURCE, and no longer is."
   (let ((old (method-source method)))
     (and source
          (equal (source-file old) (source-file source))
@@ -123,8 +121,7 @@ longer contains METHOD."
                               (method-form method))))))
 
 (defun retyped-method-p (old method)
-  "True if OLD and METHOD were both typed, not read from files, and METHOD looks like an edited
-OLD."
+  "True if OLD and METHOD were typed, not read from files, and METHOD looks like an edited OLD."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
     (and (null (method-source old)) (null (method-source method))
          (equal (parameter-variables parameters) (parameter-variables others))
@@ -133,8 +130,7 @@ OLD."
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
 (defun replace-old-methods (name methods method)
-  "Return METHODS of NAME with METHOD in front, without the methods that METHOD replaces (reading
-174)."
+  "Return METHODS of NAME with METHOD in front, without those that METHOD replaces (reading 174)."
   (let* ((current (remove-if (lambda (old) (outdated-method-p name old (method-source method)))
                              methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
@@ -171,8 +167,7 @@ list, BODY a function of these parameters. Return NAME."
     name))
 
 (defun warn-of-type (definition type)
-  "Warn if TYPE, the type of a parameter, is neither an argument type nor a class, but resembles an
-argument type."
+  "Warn if the parameter type TYPE is no argument type or class, but resembles an argument type."
   (unless (or (not (symbolp type)) (find-argument-type type nil) (find-class type nil))
     (let ((like (similar-argument-type type)))
       (when like

@@ -94,8 +94,7 @@ the command that it has interrupted, or NIL"))
       (function (funcall text operation)))))
 
 (defun format-text (control)
-  "Return a function of an operation that formats CONTROL with the operation's resource and
-arguments."
+  "Return a function that formats CONTROL with the resource and arguments of an operation."
   (lambda (operation)
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
 
@@ -130,7 +129,6 @@ arguments."
 
 ;; See reading 86.
 (defun call-continuation (operation code results)
-  "Call the continuation of OPERATION, which has ended with CODE and RESULTS, if it has one."
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
       (count-moment (operation-timeline operation)))
@@ -169,12 +167,10 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
   (apply #'finish operation code results))
 
 (defun body-begun-p (operation)
-  "True if the delay of OPERATION is over."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun results-if-interrupted (operation)
-  "Return the results that OPERATION has after an interruption: those that :ECHO names, and NIL for
-all others."
+  "Return the results of OPERATION after an interruption: those that :ECHO names, NIL for others."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
@@ -230,8 +226,7 @@ queue a message and end OPERATION with :FAILED."
   (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
-  "Continue OPERATION with STEP, the name of a function of an operation, in this tick and later
-ticks."
+  "Continue OPERATION with STEP, the name of a function of an operation, in this tick and later."
   (setf (operation-step operation) step)
   (funcall step operation))
 
@@ -277,7 +272,6 @@ operation RIVAL.")
       (begin-operation operation)))
 
 (defun resource-robot (resource)
-  "Return RESOURCE if it is a robot, else the robot whose part or mind RESOURCE is."
   (cond ((robot-p resource) resource)
         ((mind-p resource) (mind-robot resource))
         (t (part-robot resource))))

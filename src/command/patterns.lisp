@@ -53,8 +53,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return VALUE of the attribute KEY. For a substance, return its parameter if WANTED is a number or
-range, else its type."
+  "Return VALUE of KEY; of substances, the parameter if WANTED is a number or range, else the type."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))
@@ -71,8 +70,7 @@ range, else its type."
 ;;; Matchvars.
 
 (defun bind-matchvar (matchvar key value bindings)
-  "True if MATCHVAR can have VALUE, a value of the attribute KEY. Return as a second value BINDINGS
-with that binding added."
+  "True if MATCHVAR can have VALUE, a value of KEY. The second value is BINDINGS with that binding."
   (let ((binding (assoc matchvar bindings)))
     (cond ((not (or value (can-be-false-p (declared-attribute key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))
@@ -95,8 +93,7 @@ with that binding added."
       (setf bindings after))))
 
 (defun patterns-fit-p (patterns things)
-  "True if each of THINGS fits the pattern at the same position in PATTERNS. The patterns share
-matchvars."
+  "True if each of THINGS fits the corresponding pattern in PATTERNS. The patterns share matchvars."
   (loop with bindings = '()
         for pattern in patterns
         for thing in things

@@ -13,8 +13,7 @@ range, else NIL (reading 91)."
         (t (values (double value) nil))))
 
 (defun limit-error-text (control parameter)
-  "Return a function of an operation that formats CONTROL, an error text, with the value of
-PARAMETER."
+  "Return a function of an operation that formats the text CONTROL with the value of PARAMETER."
   (lambda (operation)
     (declare (ignore operation))
     (format nil control (symbol-value parameter))))
@@ -69,8 +68,7 @@ the step (reading 99)."
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
 (defun turn-towards (robot angle close)
-  "Turn ROBOT by ANGLE, as far as possible in a tick, unless ANGLE is less than CLOSE. Return true
-if nothing is left to turn."
+  "Turn ROBOT by ANGLE, at most a tick's turn, unless below CLOSE. True if no angle is left."
   (or (< (abs angle) close)
       (< (abs (turn-step robot angle)) +facing+)))
 

@@ -81,8 +81,7 @@ MODE."
         (t (reject-entry file entry "trinary, scale or raw"))))
 
 (defun image-path (file entry)
-  "Return the pathname of the image that ENTRY of FILE names, relative to FILE. The image need not
-exist."
+  "Return the pathname of the image, perhaps missing, that ENTRY of FILE names, relative to FILE."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
@@ -135,8 +134,7 @@ exist."
                      "it is an image; (import-map FILE) reads the .yaml that names it"))
 
 (defun check-description-file (file)
-  "Signal UNUSABLE-FLOOR unless FILE looks like the description of a floor by its size and first
-bytes."
+  "Signal UNUSABLE-FLOOR unless the size and the first bytes of FILE may be those of a description."
   (check-readable file)
   (let ((advice (advice-on-file file :floor)))
     (when advice (reject-floor file nil "~A" advice)))

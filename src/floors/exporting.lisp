@@ -9,8 +9,7 @@
   :documentation "The brightness, from 0 to 255, of pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+.")
 
 (defun number-of-substance (map substance)
-  "Return the number of SUBSTANCE in MAP, or NIL if no wall is made of SUBSTANCE. Signals
-UNKNOWN-NAME."
+  "Return the number of SUBSTANCE in MAP, or NIL if no wall has SUBSTANCE. Signals UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
         (unless (find-substance substance nil)
@@ -72,8 +71,7 @@ writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
             (yaml-file-name image) (decimal-notation size) (mapcar #'decimal-notation origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
-  "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals UNUSABLE-FLOOR if FILE cannot be
-written."
+  "Call CALL-REPLACING-FILE. Signals UNUSABLE-FLOOR if FILE cannot be written."
   (handler-case (call-replacing-file function file :external-format format :check check)
     (unusable-floor (condition) (error condition))
     (error (condition)

@@ -14,8 +14,7 @@
 (defstruct (grid (:constructor make-grid
                      (width height &optional (cells (make-octets (* width height)))))
                  (:copier nil))
-  "A grid of WIDTH by HEIGHT cells, row by row from the top. Each cell is +FREE+, +OCCUPIED+ or
-+UNKNOWN+."
+  "A grid of WIDTH by HEIGHT cells, row by row from the top: +FREE+, +OCCUPIED+ or +UNKNOWN+."
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (cells (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t))
@@ -24,8 +23,7 @@
   (count state (grid-cells grid)))
 
 (defun occupied-probability (description sample white)
-  "Return the probability that a pixel with the value SAMPLE is occupied, or NIL if the pixel is
-unknown."
+  "Return the probability that a pixel with value SAMPLE is occupied, or NIL for an unknown pixel."
   (let ((brightness (/ sample white)))
     (cond ((eq :raw (description-mode description))
            (let ((percent (round (* 255 brightness))))
@@ -60,8 +58,7 @@ if more pixels are unknown than free."
         (t +free+)))
 
 (defun count-states (image table left top right bottom)
-  "Return the numbers of free, occupied and unknown pixels of IMAGE in a rectangle. TABLE maps
-values of pixels to states."
+  "Count free, occupied and unknown pixels of IMAGE in a rectangle. TABLE maps values to states."
   (let ((samples (image-samples image)) (width (image-width image))
         (counts (make-array 3 :initial-element 0)))
     (declare (type samples samples) (type octets table) (dynamic-extent counts))
@@ -150,7 +147,6 @@ neighbouring lines."
     runs))
 
 (defun states-mask (states)
-  "Return an integer with a bit set for each state in the list STATES."
   (reduce #'logior states :key (lambda (state) (ash 1 state))))
 
 (defun find-runs (grid allowed along)
@@ -202,8 +198,7 @@ mate, or -1 if there is no way; REACHED has for each row the number of its cells
 
 (declaim (inline tie-at))
 (defun tie-at (cover row place)
-  "Return the column to which the cell at the index PLACE of ROW ties ROW, or -1 if the cell is not
-needed."
+  "Return the column to which the cell at PLACE of ROW ties ROW, or -1 if the cell is not needed."
   (declare (type fixnum row place))
   (let* ((rows (cover-rows cover))
          (index (+ (aref (runs-starts rows) row) place)))
@@ -274,8 +269,7 @@ a way. Pair each row of the way with its column on the way, so that some rows ch
                    (aref column-mate column) row))))
 
 (defun match-runs (cover)
-  "Find a maximum matching for COVER. Afterwards the layers of COVER are those of the last round,
-which has found no way."
+  "Find a maximum matching for COVER. COVER keeps the layers of the last round, which found no way."
   (loop while (find-layers cover)
         do (dotimes (row (runs-count (cover-rows cover)))
              (when (minusp (aref (cover-row-mate cover) row))
@@ -283,8 +277,7 @@ which has found no way."
   cover)
 
 (defun covering-columns (cover)
-  "Return a bit vector with a bit for each column of COVER: 1 if a row that the last round reached
-is tied to the column."
+  "Return a bit vector, 1 for columns of COVER to which a row reached in the last round is tied."
   (let ((taken (make-array (runs-count (cover-columns cover))
                            :element-type 'bit :initial-element 0)))
     (dotimes (row (runs-count (cover-rows cover)) taken)

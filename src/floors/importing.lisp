@@ -32,8 +32,7 @@ three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defun frame-to-map (map x y &optional (yaw 0))
   "Convert the point (X, Y), in metres, and YAW, radians counterclockwise, from the frame of MAP, a
 map or its name (see MAP-FRAME). Return x and y in MAP and the direction, radians clockwise: three
-double-floats. The point may be outside the map. Signals WRONG-ARGUMENT and
-UNKNOWN-NAME."
+double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-pose 'frame-to-map x y yaw)
   (let ((map (find-map-argument 'frame-to-map map)))
     (destructuring-bind (size left low turn) (mapcar #'double (map-frame map))
@@ -58,7 +57,6 @@ UNKNOWN-NAME."
   (unless test (reject-argument 'import-map option value expected)))
 
 (defun plain-number (value)
-  "Return VALUE, converted to an integer if VALUE is a whole number."
   (if (= value (round value)) (round value) value))
 
 (defun substance-option-p (value)
@@ -92,8 +90,7 @@ package made of the letters and digits of the name of FILE, with dashes for othe
     (or name (intern own))))
 
 (defun cell-side-in-pixels (description pixels cell)
-  "Return the width of a cell in pixels: PIXELS, or the width CELL in metres converted to pixels; 1
-if both are NIL."
+  "Return the width of a cell in pixels: PIXELS, or CELL metres in pixels; 1 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
                 "the width of a cell in pixels, an integer from 1 to 32767")
   (check-option :cell (or (null cell) (and (sane-number-p cell) (plusp cell) (null pixels))) cell

@@ -75,8 +75,7 @@
     (setf (input-position input) position)))
 
 (defun next-number (input what)
-  "Return the next number in INPUT, of at most 9 digits. The string WHAT names the number in
-errors."
+  "Return the next number in INPUT, of at most 9 digits. WHAT is the name of the number in errors."
   (skip-blanks input)
   (let ((octets (input-octets input)) (start (input-position input)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
@@ -106,8 +105,7 @@ errors."
                          save it again" sample white)))
 
 (defun read-text-samples (input count white)
-  "Return a vector of the next COUNT values of INPUT, which are written as text, each at most
-WHITE."
+  "Return a vector of the next COUNT values of INPUT, written as text, each at most WHITE."
   (let ((samples (make-array count :element-type '(unsigned-byte 16))))
     (dotimes (index count)
       (skip-blanks input)

@@ -72,8 +72,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
 ;;; Chunks.
 
 (defun chunk-name (octets start)
-  "Return the name of a chunk, the four characters at START of OCTETS, or NIL if they are not all
-letters."
+  "Return the name of a chunk, the four characters at START of OCTETS, NIL unless all are letters."
   (let ((name (map 'string #'code-char (subseq octets start (+ start 4)))))
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
@@ -146,8 +145,7 @@ there are more than LIMIT pixels."
     (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
 (defun store-chunk (png name content)
-  "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown and must not be
-ignored."
+  "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown and critical."
   (cond ((and (string= "PLTE" name) (png-palette-p png))
          (check-palette png content)
          (setf (png-palette png) content))
@@ -159,8 +157,7 @@ ignored."
                                       position" name))))
 
 (defun join-pieces (octets pieces)
-  "Return the concatenation of pieces of OCTETS. PIECES lists pairs (start . end), the last piece
-first."
+  "Return the concatenated PIECES of OCTETS, a list of pairs (start . end), the last piece first."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
          (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces

@@ -33,15 +33,13 @@ less than END only at the end of the data; NIL if the data are damaged."
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))
 
 (defun png-row-size (png)
-  "Return the number of octets of the pixels in a row of PNG."
   (ceiling (* (png-width png) (png-channels png) (png-depth png)) 8))
 
 ;;; Filters.
 
 (declaim (inline paeth-predictor))
 (defun paeth-predictor (left above corner)
-  "Return LEFT, ABOVE or CORNER, the octet above LEFT, whichever is nearest to LEFT + ABOVE -
-CORNER."
+  "Return LEFT, ABOVE or CORNER (above LEFT), whichever is nearest to LEFT + ABOVE - CORNER."
   (declare (type (unsigned-byte 8) left above corner))
   (let ((from-left (abs (- above corner))) (from-above (abs (- left corner)))
         (from-corner (abs (- (+ left above) (* 2 corner)))))
@@ -61,8 +59,7 @@ octet STEP to the left of OVER."
                 (setf (aref ,row ,index) (logand 255 (+ (aref ,row ,index) ,expected)))))))
 
 (defun undo-filter (filter row above step)
-  "Undo FILTER in ROW, after the filter of the row ABOVE has been undone. Return NIL if there is no
-such filter."
+  "Undo FILTER in ROW, after that of the row ABOVE has been undone. NIL if there is no such filter."
   (declare (type octets row above) (type (integer 1 8) step) #.*hot*)
   (case filter
     (0)
@@ -73,8 +70,7 @@ such filter."
     (t (return-from undo-filter nil)))
   t)
 
-;;; Rows are decompressed a few at a time, so that an image takes no more memory than its samples,
-;;; whatever is in the file.
+;;; A few rows are decompressed at a time, so that no image takes more memory than its samples.
 
 (defun check-pixels-there (png needed)
   "Signal UNUSABLE-FLOOR if the compressed data of PNG are too few for NEEDED octets."
@@ -145,8 +141,7 @@ the octets of its pixels after PNG-PIXEL-OCTETS other octets. Signals UNUSABLE-F
 
 (declaim (inline colour-sample))
 (defun colour-sample (red green blue alpha rule)
-  "Return the sample for a pixel with the channels RED, GREEN, BLUE and ALPHA, from 0 to 255. RULE
-says how alpha counts."
+  "Return the sample for a pixel with these channels, from 0 to 255. RULE says how ALPHA counts."
   (declare (type (unsigned-byte 8) red green blue alpha))
   (case rule
     (:averaged (+ red green blue alpha))
@@ -175,8 +170,7 @@ says how alpha counts."
         +no-colour+)))
 
 (defun grey-sample (png value rule)
-  "Return the sample for a pixel with the value VALUE in the grey image PNG, in which one value may
-be transparent."
+  "Return the sample for a pixel with VALUE in the grey image PNG. One value may be transparent."
   (if (plain-grey-p png)
       value
       (let ((grey (if (= 16 (png-depth png))
@@ -237,8 +231,7 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
 ;;; The image.
 
 (defun row-sampler (png samples rule)
-  "Return a function of a row number and a row of PNG that sets the samples of this row in SAMPLES.
-RULE says how alpha counts."
+  "Return a function of a number and a row of PNG that sets SAMPLES. RULE says how alpha counts."
   (let ((width (png-width png)) (depth (png-depth png)) (step (png-pixel-octets png))
         (channels (png-channels png)))
     (if (= 1 channels)

@@ -48,13 +48,11 @@ of the file"))
   "The largest exponent of a number: no double-float has a larger exponent.")
 
 (defun digits-end (text start)
-  "Return the end of the decimal digits that begin at START in TEXT."
   (or (position-if-not (lambda (char) (find char "0123456789")) text :start start)
       (length text)))
 
 (defun sign-at (text start)
-  "Return 1 or -1 for the sign at START in TEXT, and the end of the sign. Return 1 and START if
-there is no sign."
+  "Return the sign at START in TEXT, 1 or -1, and its end; 1 and START if there is no sign."
   (case (and (< start (length text)) (char text start))
     (#\+ (values 1 (1+ start)))
     (#\- (values -1 (1+ start)))
@@ -64,8 +62,7 @@ there is no sign."
   (if (< start end) (parse-integer text :start start :end end) 0))
 
 (defun exponent-at (text start)
-  "Return the exponent that TEXT has from START to its end, 0 if TEXT ends at START, or NIL if there
-is no valid exponent."
+  "Return the exponent in TEXT from START on, 0 if TEXT ends at START, or NIL if invalid."
   (cond ((= start (length text)) 0)
         ((char-equal #\e (char text start))
          (multiple-value-bind (sign digits) (sign-at text (1+ start))
@@ -74,8 +71,7 @@ is no valid exponent."
                (and (<= size +largest-exponent+) (* sign size))))))))
 
 (defun decimal-at (text start)
-  "Return the exact value of the unsigned number in TEXT from START on, or NIL if there is no
-number."
+  "Return the exact value of the unsigned number in TEXT from START on, or NIL if there is none."
   (let* ((point (digits-end text start))
          (pointed (and (< point (length text)) (char= #\. (char text point))))
          (end (if pointed (digits-end text (1+ point)) point))
@@ -87,8 +83,7 @@ number."
          (expt 10 exponent)))))
 
 (defun read-decimal (text)
-  "Return the exact value of the number TEXT, such as -12.5, .5 or 1e-2, or NIL if TEXT is no
-number."
+  "Return the exact value of the number TEXT, such as -12.5, .5 or 1e-2; NIL if TEXT is no number."
   (when (<= (length text) +longest-decimal+)
     (multiple-value-bind (sign start) (sign-at text 0)
       (let ((number (decimal-at text start)))
@@ -192,8 +187,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
          end)))
 
 (defun read-entry (file line text entries)
-  "Return the entry in TEXT, which is LINE of FILE. Signals UNUSABLE-FLOOR if ENTRIES have its key
-already."
+  "Return the entry in TEXT, LINE of FILE. Signals UNUSABLE-FLOOR if ENTRIES have its key already."
   (let* ((end (key-end text)) (key (subseq text 0 end)) (other (find-entry key entries)))
     (unless end
       (reject-floor file line "~S is not a key at the left edge, a colon, a blank and a value, as ~

@@ -44,8 +44,7 @@ INITARG. PARSE-CAMERA is such a function for cameras."
       map)))
 
 (defun settable-slots (kind)
-  "Return the slots of KIND, a kind of part, that DEFROBOT may set: the fixed slots except ROBOT and
-INDEX."
+  "Return the slots of the part KIND that DEFROBOT may set: the fixed slots except ROBOT and INDEX."
   (remove-if-not (lambda (slot)
                    (and (eq :fixed (kind-slot-role slot))
                         (not (member (kind-slot-name slot) '(robot index)))))
@@ -56,8 +55,7 @@ INDEX."
           (kind-slot-type slot) (kind-slot-text slot)))
 
 (defun parse-initarg (kind initarg value)
-  "Return a list of INITARG and VALUE, converted for a part of KIND; NIL if KIND has no such slot or
-VALUE has the wrong type."
+  "Return a list of INITARG and VALUE, converted for a part of KIND; NIL if either is invalid."
   (let ((slot (and (keywordp initarg)
                    (find initarg (settable-slots kind)
                          :key #'kind-slot-name :test #'same-name-p))))
@@ -79,8 +77,7 @@ VALUE has the wrong type."
                                     (mapcar #'slot-value-text (settable-slots kind)))))))
 
 (defun parse-part (specification reject)
-  "Return SPECIFICATION, (kind initarg value ...), with values converted to the types of their
-slots."
+  "Return SPECIFICATION, (kind initarg value ...), with values converted to their slots' types."
   (let ((kind (and (proper-list-p specification)
                    (find (first specification) (all-kinds 'part) :key #'kind-name))))
     (unless (and kind

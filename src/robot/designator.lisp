@@ -28,8 +28,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (data '() list "what was seen: a list of lists (attribute value), or of the name of a place type
 (manual 3.4.1)" :shared :addition)
    (denotation nil (or null thing place)
-               "the THING or PLACE that the designator denotes, or NIL if the designator is
-false" :addition)
+               "the THING or PLACE that the designator denotes, or NIL if it is false" :addition)
    (distance 0d0 double-float
              "the distance at which the denotation was last seen, in metres" :addition)
    (valid-p t boolean "the designator has not been dropped" :addition)
@@ -63,8 +62,7 @@ that no camera tracks is removed.")
 
 (addition find-designator)
 (defun find-designator (robot number)
-  "Return the designator of ROBOT with NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a
-robot."
+  "Return ROBOT's designator NUMBER, or NIL. Signals WRONG-ARGUMENT unless ROBOT is a robot."
   (check-argument find-designator robot (robot-p robot) (argument-type-text 'robot robot))
   (let ((designators (robot-designators robot)))
     (and (integerp number)
@@ -97,8 +95,7 @@ and REPL. Signals WRONG-ARGUMENT if there is no such designator."
           collect designator))
 
 (defun assign-number (robot designator)
-  "Give DESIGNATOR the smallest number that no designator of ROBOT has, and a serial number (reading
-198)."
+  "Give DESIGNATOR the smallest number unused in ROBOT, and a serial number (reading 198)."
   (mark-world-unsettled robot)
   (let* ((designators (robot-designators robot))
          (number (or (position nil designators)

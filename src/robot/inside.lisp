@@ -15,8 +15,7 @@
 
 (public in-location)
 (defun in-location (thing location)
-  "True if THING is directly in LOCATION: a hand, a storage bin, another thing, or :FLOOR (manual
-5.5.1)."
+  "True if THING is directly in LOCATION: a hand, bin, another thing or :FLOOR (manual 5.5.1)."
   (check-argument in-location thing (thing-p thing) "a thing")
   (eq (thing-location thing) location))
 
@@ -39,15 +38,13 @@
           (find-if #'there-p (robot-hands robot))))))
 
 (defun part-reaches-p (part thing)
-  "True if PART can reach THING: both are in the same container or in the open, and THING is within
-the robot's reach."
+  "True if PART can reach THING: in the same container or in the open, within the robot's reach."
   (and (eq (thing-enclosure thing) (part-location part))
        (multiple-value-bind (x y) (thing-position thing)
          (and x (within-reach-p (part-robot part) x y)))))
 
 (defun part-reaches-bin-p (part bin)
-  "True if PART can reach the storage BIN: PART is in the open, and BIN belongs to the same robot
-(reading 230)."
+  "True if PART can reach BIN: PART is in the open and belongs to BIN's robot (reading 230)."
   (and (eq (part-robot part) (storage-bin-robot bin))
        (null (part-location part))))
 
@@ -63,8 +60,7 @@ the robot's reach."
       (some #'location-closed-p (outer-locations hand))))
 
 (defun set-down (hand thing)
-  "Leave THING, which HAND holds, where the hand is: in its container, or on the floor where the
-robot stands (reading 152)."
+  "Leave THING, held by HAND, in HAND's container or on the floor where the robot is (reading 152)."
   (let ((robot (hand-robot hand)))
     (if (hand-location hand)
         (move-thing thing (hand-location hand))
@@ -93,8 +89,7 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
   (move-part part nil))
 
 (defun must-pull-out-p (part)
-  "True if PART is inside a thing that is out of the robot's reach, in a closed bin or in another
-robot's bin."
+  "True if PART is inside a thing out of the robot's reach, in a closed bin or another robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)
@@ -136,7 +131,6 @@ robot's bin."
 (note-savable-function 'watch-container)
 
 (defun enforce-containment (world)
-  "Enforce the rules of containment in WORLD: pull robots' parts out of things that are out of
-reach."
+  "Enforce the rules of containment in WORLD: pull robots' parts out of things beyond reach."
   (dolist (robot (world-robots world))
     (enforce-robot-containment robot)))

@@ -9,8 +9,7 @@
 ;;; name; a fresh simulation makes another by the same blueprint.
 
 (defun blueprint-robot (blueprint)
-  "Return the current robot of BLUEPRINT: the value of its variable, or the robot in the
-resident world of its map."
+  "Return BLUEPRINT's current robot: its variable's value or the one in its map's resident world."
   (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name)))
          (map (find-map (blueprint-map blueprint) nil)))
     (cond ((robot-p value) value)
@@ -19,8 +18,7 @@ resident world of its map."
 
 (addition all-robots)
 (defun all-robots ()
-  "Return a list of all robots in order of definition. The robots are those that the variables of
-their names hold."
+  "Return a list of all robots, the values of their variables, in order of definition."
   (remove nil (mapcar #'blueprint-robot (all-blueprints))))
 
 (addition find-robot)

@@ -13,8 +13,7 @@
 
 (defun reading-reliability (attribute distance)
   "Return the probability that the discrete ATTRIBUTE is read right from DISTANCE metres: p / max(1,
-f d (1-p)), where p is its base probability and f DISCRETE-NOISE-FACTOR* (manual 3.4.2; reading
-115)."
+f d (1-p)) with its base probability p and f = DISCRETE-NOISE-FACTOR* (manual 3.4.2; reading 115)."
   (let ((p (attribute-success attribute)))
     (/ p (max 1d0 (* (double discrete-noise-factor*) (double distance) (- 1d0 p))))))
 
@@ -34,8 +33,7 @@ CONTINUOUS-NOISE-FACTOR* (manual 3.4.2; reading 116)."
 
 (defun symbol-of-package (value package)
   "Return VALUE or, if VALUE is a symbol, the symbol of the same name in PACKAGE, the name of a
-package. So a misread value is a symbol of the package that the map was written in. If PACKAGE is
-NIL, return VALUE."
+package. So a misread value is a symbol of the map's package. If PACKAGE is NIL, return VALUE."
   (let ((package (and package (find-package package))))
     (if (and value (symbolp value) (not (keywordp value)) (not (eq value t))
              package
@@ -50,8 +48,7 @@ NIL, return VALUE."
       (symbol-of-package (roll-element domain dice) package)))
 
 (defun noisy-substance (attribute value distance package dice)
-  "Return a noisy reading of VALUE, a value of the :substance ATTRIBUTE: a number, a type, or a list
-of type and number."
+  "Return a noisy reading of VALUE of the :substance ATTRIBUTE: a number, a type or a list of both."
   (flet ((read-type (type)
            (noisy-choice attribute type (mapcar #'substance-name (all-substances))
                          distance package dice)))
@@ -109,22 +106,19 @@ when LOW is NIL, one of CHOICES."
                        :choices (if (consp value) value (list value)))))))
 
 (defun parse-specification (specification)
-  "Return the demands that the descriptor SPECIFICATION makes."
   (mapcar #'parse-demand specification))
 
 ;;; What can be a specification.
 
 (defun possible-value-p (attribute value)
-  "True if VALUE, an atom, can be a value of ATTRIBUTE. ATTRIBUTE is NIL for an undeclared
-attribute."
+  "True if VALUE, an atom, can be a value of ATTRIBUTE, which is NIL if undeclared."
   (cond ((null attribute) t)
         ((discrete-p attribute) (in-domain-p attribute value))
         ((eq (attribute-name attribute) :substance) (or (realp value) (symbolp value)))
         (t (realp value))))
 
 (defun takes-range-p (attribute value)
-  "True if VALUE, a list in a specification of ATTRIBUTE, must be a range. ATTRIBUTE is NIL for an
-undeclared attribute."
+  "True if VALUE, a list in a specification of ATTRIBUTE (NIL if undeclared), must be a range."
   (or (specifies-range-p attribute value)
       (not (or (null attribute)
                (discrete-p attribute)
@@ -146,8 +140,7 @@ undeclared attribute."
        (every #'demand-form-p object)))
 
 (defun specification-problem-text (object)
-  "Return a text that says why OBJECT is no valid descriptor specification, or NIL if no part of it
-is invalid."
+  "Return a text that says why OBJECT is no valid descriptor specification, or NIL if it is valid."
   (let* ((form (and (proper-list-p object)
                     (find-if-not #'demand-form-p object)))
          (attribute (and (consp form) (symbolp (first form)) (declared-attribute (first form))))
@@ -178,8 +171,7 @@ is invalid."
   (world-map (thing-world thing)))
 
 (defun reading-with-asked-symbols (demand reading thing)
-  "Return READING of THING, which fits DEMAND, with the same symbols as DEMAND, or else with symbols
-of the package of the map."
+  "Return READING of THING, which fits DEMAND, with symbols of DEMAND or else of the map's package."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
                (symbol-of-package value
@@ -209,9 +201,8 @@ an object descriptor, as a second value (reading 127)."
 ;;; Attributes noticed in addition.
 
 (defun notice-probability (attribute keys)
-  "Return the probability that ATTRIBUTE is sensed unasked when the attributes KEYS were asked for:
-1 - (1-p)^(n+1), where p is the base probability and n the number of its supporters among KEYS
-(manual 3.4.2; reading 224)."
+  "Return the probability that ATTRIBUTE is sensed unasked when KEYS were asked for: 1 - (1-p)^(n+1)
+for the base probability p and n supporters among KEYS (manual 3.4.2; reading 224)."
   (let* ((supporters (attribute-supporters attribute))
          (given (count-if (lambda (key) (member key supporters :test #'eq)) keys)))
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
@@ -226,8 +217,7 @@ attribute is noticed as false, but a user's attribute only if some thing of MAP 
 
 (defun notice-attributes (map keys value-of distance dice)
   "Return readings of attributes not among KEYS that are noticed by chance in MAP. VALUE-OF, a
-function of an attribute, returns the attribute's value, and whether there is a thing with
-attributes at all."
+function of an attribute, returns its value, and whether there is a thing with attributes."
   (loop for attribute in (all-attributes)
         for key = (attribute-name attribute)
         unless (member key keys :test #'eq)

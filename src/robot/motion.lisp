@@ -13,8 +13,7 @@
 
 (declaim (inline cell-obstacle))
 (defun cell-obstacle (flag)
-  "Return the obstacle, :WALL, :THING or NIL, that keeps a robot out of a cell with FLAG (reading
-101)."
+  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL (reading 101)."
   (declare (type (unsigned-byte 8) flag))
   (cond ((logtest flag +wall+) :wall)
         ((logtest flag +obsmove+) :thing)))
@@ -114,8 +113,7 @@ obstacle that stops ROBOT, or NIL."
              block))))
 
 (defun continue-move (robot dx dy distance moved)
-  "Call MOVE-THROUGH-CELLS for a ROBOT that has already moved MOVED metres, and add these to
-ROBOT-MOVED."
+  "Call MOVE-THROUGH-CELLS for ROBOT, which has moved MOVED metres; add these to ROBOT-MOVED."
   (prog1 (move-through-cells robot (robot-world robot) dx dy distance)
     (incf (robot-moved robot) moved)))
 
@@ -208,8 +206,7 @@ robot can drive along the border of two cells and stay in one cell."
   (* (step-now robot) (+ 1d0 (double motion-noise*))))
 
 (defun robot-turn-angle-now (robot)
-  "Return the turn angle of ROBOT, within the current limits MIN-TURN-ANGLE* and MAX-TURN-ANGLE*, in
-radians per tick."
+  "Return the turn angle of ROBOT, in radians per tick, from MIN-TURN-ANGLE* to MAX-TURN-ANGLE*."
   (max (double min-turn-angle*) (min (robot-turn-angle robot) (double max-turn-angle*))))
 
 ;;; Driving and turning.

@@ -14,8 +14,7 @@
 (public odometer)
 (addition odometer-p)
 (define-kind (odometer :constructor (%make-odometer (robot name)))
-    "An uncertain estimate of the robot's position and heading since the odometer was reset (manual
-3.2.2)."
+    "An uncertain estimate of the robot's position and heading since the last reset (manual 3.2.2)."
   (:fixed
    (robot nil (or null robot) "the robot of the odometer" :export)
    (name nil symbol "the symbol that names the odometer" :addition))
@@ -44,8 +43,7 @@
 
 (defun odometer-estimate (odometer)
   "Return the robot's position on the map according to ODOMETER, the middle of its interval: x and y
-in metres, and the heading in radians. Only displays use this position: a robot's program cannot
-know it."
+in metres, and the heading in radians. Only displays use this position; robots cannot know it."
   (let* ((x (* 0.5d0 (+ (odometer-x-min odometer) (odometer-x-max odometer))))
          (y (* 0.5d0 (+ (odometer-y-min odometer) (odometer-y-max odometer))))
          (axis (odometer-origin-angle odometer))
@@ -88,8 +86,7 @@ know it."
   (+ 1d-14 (* 1d-15 (abs value))))
 
 (defmacro widen-interval (low-place low high-place high)
-  "Add the interval from LOW to HIGH to the interval whose bounds are in LOW-PLACE and HIGH-PLACE,
-rounding outwards."
+  "Add the interval from LOW to HIGH to that from LOW-PLACE to HIGH-PLACE, rounding outwards."
   `(progn
      (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding-bound sum))))
      (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding-bound sum))))))
@@ -214,7 +211,6 @@ ROBOT is. In a cell without a place, both directions are the robot's heading (re
         (list (robot-angle robot) (robot-angle robot)))))
 
 (defun nearest-direction (directions heading)
-  "Return the direction in DIRECTIONS, a list of angles, that differs least from HEADING (reading
-73)."
+  "Return the angle in the list DIRECTIONS that differs least from HEADING (reading 73)."
   (flet ((turn-to (direction) (abs (angle-difference direction heading))))
     (first (stable-sort (copy-list directions) #'< :key #'turn-to))))

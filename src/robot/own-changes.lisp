@@ -5,8 +5,7 @@
 (export '(robot-remaining-way))
 
 ;;; The simulator sees single commands; only the program knows where they lead. The planned way
-;;; affects nothing: it is not in a run's digest or journal. It belongs to the run, so forks copy
-;;; it.
+;;; affects nothing: it is not in a run's digest or journal. It belongs to the run; forks copy it.
 
 (defstruct (planned-way (:constructor make-planned-way (points interruption)) (:copier nil))
   "A way that a program has published: POINTS, a list of lists (x y), and INTERRUPTION, the robot's
@@ -17,7 +16,6 @@ last interruption at that time. After another interruption the way is no longer 
 (define-shared planned-way)
 
 (defun way-point (point)
-  "Return the coordinates of POINT, a PT or a list (x y), as a list."
   (if (pt-p point)
       (list (pt-x point) (pt-y point))
       (list (double (first point)) (double (second point)))))
@@ -49,8 +47,7 @@ way, or if a command of ROBOT has been interrupted since."
 ;;; The remaining way.
 
 (defun nearest-point-on-segment (from to x y)
-  "Return the point (x y) nearest to X, Y on the line segment between FROM and TO, and its distance
-from X, Y."
+  "Return the point (x y) nearest to X, Y on the line from FROM to TO, and its distance from X, Y."
   (destructuring-bind (x1 y1 x2 y2) (append from to)
     (let* ((dx (- x2 x1)) (dy (- y2 y1))
            (square (+ (* dx dx) (* dy dy)))
@@ -90,8 +87,7 @@ destroyed: it no longer changes (manual 3.2.2)."
 (define-operator 'make-odometer '(robot name) #'make-odometer)
 
 (defun reset-by-program (odometer part)
-  "Reset PART of ODOMETER for a program; return ODOMETER. The reset of a destroyed odometer is not
-journalled."
+  "Reset PART of ODOMETER for a program; return ODOMETER. If destroyed, do not journal the reset."
   (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
     (if (eq odometer (robot-odometer robot name))
         (changing ((robot-world robot) reset-odometer robot name part)

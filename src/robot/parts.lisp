@@ -40,8 +40,7 @@
 ;; See reading 92.
 (addition robot-p)
 (define-kind (robot :include resource :constructor %make-robot)
-    "A point robot: it turns in place, drives straight ahead, and carries its parts along (manual
-2.2)."
+    "A point robot: it turns in place, drives straight ahead, and carries its parts (manual 2.2)."
   (:fixed
    (name nil symbol "the symbol that names the robot" :addition)
    (blueprint nil (or null blueprint) "the blueprint that the robot was made from" :export)
@@ -65,8 +64,7 @@
 has the number" :part :export)
    (designators-made 0 fixnum "how many designators the robot has had so far")
    (ended-tracks '() list
-                 "a list of pairs (track . code) for the tracks that have ended in this tick, newest
-first" :export)
+                 "a list of (track . code) for the tracks ended in this tick, newest first" :export)
    (last-place nil symbol "the name of the place type that the robot last sensed, or NIL" :addition)
    (drove-tick -1 fixnum "the tick in which the robot last drove" :export))
   (:memory
@@ -84,19 +82,16 @@ first" :export)
   (:scratch
    (moved 0d0 double-float "the true length of the last step of driving, in metres" :export)
    (turned-low 0d0 double-float
-               "the lower bound of the odometers' reading of the last step of turning, in
-radians" :export)
+               "the odometers' least reading of the last turning step, in radians" :export)
    (turned-high 0d0 double-float
-                "the upper bound of the odometers' reading of the last step of turning, in
-radians" :export))
+                "the odometers' greatest reading of the last turning step, in radians" :export))
   (:link
    (retired nil (or null string) "why the robot's run is over, or NIL while it is not" :export)
    (enders '() list "the functions to call when the robot's run is over" :export)))
 
 ;; Parts of another run are not copied.
 (defun copy-robot-object (object robot copier)
-  "Return the copy that COPIER makes of OBJECT, which is ROBOT or belongs to ROBOT. If ROBOT is in
-another run, return OBJECT."
+  "Return COPIER's copy of OBJECT, which is ROBOT or ROBOT's; OBJECT if ROBOT is in another run."
   (if (eq (robot-world robot) (copier-option copier :world))
       (copy-slots object copier)
       object))
@@ -142,14 +137,12 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (contents '() list "a list of the thing that the hand holds, or ()" :addition))
   (:memory
    (way-in '() list
-           "the containers that plans have put the hand into and that it is still in, innermost
-first" :export)))
+           "the containers that the hand is in since plans put it there, innermost first" :export)))
 
 (public storage-bin)
 (addition storage-bin-p)
 (define-kind (storage-bin :include part)
-    "A storage bin of a robot, with room for things with a total size of CAPACITY units (manual
-3.6)."
+    "A storage bin of a robot, with room for things of a total size of CAPACITY units (manual 3.6)."
   (:fixed
    (capacity 0d0 double-float "the total size of the things that fit into the bin" :addition))
   (:state
@@ -239,8 +232,7 @@ the first vector whose element type fits.")
         (setf parts (remove-if #'here-p parts))))))
 
 (defun robot-resources (robot)
-  "Return a list of all resources of ROBOT, each of which does one thing at a time: the robot, its
-parts and its mind."
+  "Return a list of all resources of ROBOT, each doing one thing at a time: robot, parts and mind."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (defun mark-world-unsettled (robot)

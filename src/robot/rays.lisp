@@ -20,8 +20,7 @@
 
 (declaim (inline nonzero-component walk-to-corner walk-ray))
 (defun nonzero-component (component)
-  "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if COMPONENT is almost 0, whatever its
-sign."
+  "Return COMPONENT of a direction, or +LEAST-COMPONENT+ if almost 0, whatever its sign."
   (declare (type double-float component))
   (if (< (abs component) +least-component+) +least-component+ component))
 

@@ -12,7 +12,6 @@
 
 (declaim (inline toggle-seen walls-around-p))
 (defun toggle-seen (flags index)
-  "Replace +OCCUPIED+ by +SEEN+, or the reverse, in the element of FLAGS at INDEX."
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
 
@@ -92,8 +91,7 @@ meet within REACH columns and rows."
                                 scan-density* reach)))))
 
 (defun in-close-view-p (camera thing)
-  "True if THING, on the floor within reach, is in the field of view of CAMERA and not hidden, or is
-at the position of CAMERA."
+  "True if THING, on the floor within reach, is in CAMERA's view and not hidden, or is at CAMERA."
   (let ((robot (camera-robot camera)) (x (thing-x thing)) (y (thing-y thing)))
     (or (<= (distance-to robot x y) +contact+)
         (and (<= (abs (angle-difference (bearing-to robot x y) (camera-heading camera)))
@@ -110,8 +108,7 @@ at the position of CAMERA."
                        when index collect index))))
 
 (defun things-in-cells (cells camera local)
-  "Return the things in CELLS that are local to CAMERA's robot if LOCAL, else the things that are
-not (reading 131)."
+  "Return the things in CELLS local to CAMERA's robot if LOCAL, else the others (reading 131)."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
     (dolist (index cells (nreverse things))
       (do-cell (thing index world)
@@ -119,8 +116,7 @@ not (reading 131)."
           (push thing things))))))
 
 (defun things-in-open-view (camera local)
-  "Return the things on the floor that CAMERA has in view: those within reach if LOCAL, else those
-out of reach."
+  "Return the things on the floor in CAMERA's view: those within reach if LOCAL, else the others."
   (let* ((cells (cells-in-view camera (if local 1 +no-limit+)))
          (others (and local cells
                       (remove-if (lambda (index) (member index cells))
@@ -149,8 +145,7 @@ out of reach."
         finally (return count)))
 
 (defun all-or-random-one (finds all dice)
-  "Return FINDS if ALL, else a list of one element of FINDS, chosen at random; () if FINDS is empty
-(reading 133)."
+  "Return FINDS if ALL, else a list of one random element; () if FINDS is empty (reading 133)."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
 (defun matching-things (camera type demands dice)
@@ -236,8 +231,7 @@ symbol by which the caller asked for TYPE (reading 74)."
     best))
 
 (defun true-pixel (world x y dx dy)
-  "Return the substance parameter that a ray from (X,Y) in direction DX, DY sees, without noise
-(reading 65)."
+  "Return the noiseless substance parameter that a ray from (X,Y) along DX, DY sees (reading 65)."
   (let ((sum 0d0) (count 1) (last 0d0))
     (flet ((visit (index flag)
              (cond ((zerop flag) nil)
@@ -256,8 +250,7 @@ symbol by which the caller asked for TYPE (reading 74)."
 
 (defun noisy-pixel (value map dice)
   "Return a noisy reading of VALUE, a true pixel: uniformly distributed within PIXEL-ERROR-RANGE* of
-VALUE, or occasionally any number from the least to the greatest parameter of the walls of MAP
-(reading 147)."
+VALUE, or occasionally within the range of the wall parameters of MAP (reading 147)."
   (cond (no-sensor-error* value)
         ((chance pixel-outlier-prob* dice)
          (roll-between (map-least-parameter map) (map-greatest-parameter map) dice))

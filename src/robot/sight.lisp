@@ -50,8 +50,7 @@ NIL. Cells with a flag of MASK stop the line."
 
 (defun line-past-corner (world mask x y dx dy)
   "If a line in direction (DX,DY), stopped at (X,Y), only touches a corner there and may pass,
-return the point just beyond the corner, as two values; else NIL. Cells with a flag of MASK stop the
-line."
+return the point just beyond, as two values; else NIL. Cells with a flag of MASK stop lines."
   (flet ((before (position direction)
            (if (plusp direction) (1- (round position)) (round position))))
     (unless (or (zerop dx) (zerop dy))
@@ -94,8 +93,7 @@ there and reaches its end."
         (corner-clear-p world (+ x (* dx at)) (+ y (* dy at)) dx dy to-x to-y))))
 
 (defun in-sight-p (world x y to-x to-y)
-  "True if in WORLD the point (TO-X,TO-Y), or at least one corner of its cell, can be seen from
-(X,Y)."
+  "True if in WORLD the point (TO-X,TO-Y), or a corner of its cell, can be seen from (X,Y)."
   (let ((left (+ (floor to-x) 1d-3)) (top (+ (floor to-y) 1d-3)) (side (- 1d0 2d-3)))
     (flet ((clear-p (to-x to-y) (line-clear-p world x y to-x to-y)))
       (or (clear-p to-x to-y)

@@ -106,8 +106,7 @@ value of a random thing in WORLD."
 ;;; Designators.
 
 (defun sighting-unchanged-p (sighting camera)
-  "True if CAMERA and the thing that SIGHTING denotes are still where they were at the time of
-SIGHTING."
+  "True if neither CAMERA nor the thing that SIGHTING denotes has moved since the sighting."
   (let ((thing (sighting-denotation sighting))
         (robot (camera-robot camera)) (x (sighting-x sighting)) (y (sighting-y sighting)))
     (and (or (not (thing-p thing))

@@ -9,8 +9,7 @@
 ;;; does not find what no ray reaches. The same holds for tracks.
 
 (defun ray-crosses-cell-p (dx dy angle)
-  "True if a ray in the direction ANGLE crosses the cell whose centre is at (DX,DY), relative to the
-start of the ray."
+  "True if a ray in direction ANGLE crosses the cell whose centre is (DX,DY) from the ray's start."
   (let ((cos (cosine angle)) (sin (sine angle)))
     (and (plusp (+ (* dx cos) (* dy sin)))
          (<= (abs (- (* dx sin) (* dy cos)))
@@ -81,8 +80,7 @@ During an approach a free line to a corner of the cell is enough."
 ;;; Refreshing.
 
 (defun drift-false-designator (designator dice)
-  "Move the false DESIGNATOR at random, unless it is local: nearer or farther, and to a side
-(reading 143)."
+  "Move the false DESIGNATOR at random unless local: nearer or farther, and sideways (reading 143)."
   (let* ((robot (designator-robot designator))
          (map (world-map (robot-world robot)))
          (x (designator-x designator)) (y (designator-y designator)))
@@ -97,8 +95,7 @@ During an approach a free line to a corner of the cell is enough."
                            (+ (robot-y robot) (* distance (sine bearing)))))))))
 
 (defun refresh-designator (designator dice)
-  "Update the tracked DESIGNATOR, and store the change of its direction in DESIGNATOR-SWING (reading
-226)."
+  "Update the tracked DESIGNATOR; store the change of direction in DESIGNATOR-SWING (reading 226)."
   (let ((robot (designator-robot designator)) (before (designator-distance designator)))
     (unless (designator-denotation designator) (drift-false-designator designator dice))
     (multiple-value-bind (x y) (designator-position designator)
@@ -113,8 +110,7 @@ During an approach a free line to a corner of the cell is enough."
               (setf (designator-bearing-p designator) nil)))))))
 
 (defun update-bearing (designator bearing before dice)
-  "Update the direction of DESIGNATOR to the true direction BEARING. BEFORE is the previous distance
-of its denotation."
+  "Update DESIGNATOR to the true direction BEARING. BEFORE is its denotation's previous distance."
   (let* ((robot (designator-robot designator))
          (relative (- bearing (robot-angle robot)))
          (known (designator-bearing-p designator)))
@@ -142,7 +138,6 @@ of its denotation."
              (null (denotation-enclosure designator))))))
 
 (defun robot-at-denotation-p (designator)
-  "True if the robot of the non-local DESIGNATOR is in the cell of what DESIGNATOR denotes."
   (in-same-cell-p (designator-robot designator)
                   (designator-x designator) (designator-y designator)))
 
@@ -187,7 +182,6 @@ approach does not count, because the approach itself reports it (reading 112)."
                  (keep-or-lose-track camera designator dice))))))
 
 (defun update-track (camera designator tick dice)
-  "Update the track of DESIGNATOR by CAMERA in TICK."
   (refresh-once designator tick dice)
   (cond ((eq (designator-type designator) :local)
          (update-local-track camera designator dice))
@@ -233,8 +227,7 @@ approach does not count, because the approach itself reports it (reading 112)."
                       (some #'camera-tracking (robot-cameras robot)))))
 
 (defun start-track (camera designator operation)
-  "Make CAMERA track DESIGNATOR. When the track ends, TRACK-ENDED is called with OPERATION (reading
-142)."
+  "Make CAMERA track DESIGNATOR. At the track's end call TRACK-ENDED with OPERATION (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))
@@ -244,8 +237,7 @@ approach does not count, because the approach itself reports it (reading 112)."
         (camera-tracking camera) (make-track designator operation)))
 
 (defun end-track-on-arrival (camera)
-  "End the track of CAMERA, because the robot has arrived. Before that, point CAMERA at what it
-tracks (reading 108)."
+  "Point CAMERA at what it tracks and end its track, because the robot has arrived (reading 108)."
   (let ((designator (camera-tracks camera)))
     (when (designator-denotation designator)
       (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))

@@ -53,14 +53,12 @@ NIL" :export)))
           thereis (tracking-p camera designator)))
 
 (defun camera-approached-p (camera)
-  "True if the robot of CAMERA is driving to what CAMERA tracks."
   (let ((event (resource-event (camera-robot camera))))
     (and event (approaching-p event camera))))
 
 ;;; Ending.
 
 (defun report-track-end (track code)
-  "Report the end of TRACK with CODE to its command, if any."
   (when (track-operation track)
     (track-ended (track-operation track) code (track-designator track))))
 

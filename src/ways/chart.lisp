@@ -143,8 +143,7 @@ NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT."
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
 (defconstant +nodes-kept+ 2000000
-  "The largest total number of nodes in the fields that a terrain keeps, if it keeps more than two
-fields.")
+  "The largest total number of nodes in the fields that a terrain keeps, if more than two fields.")
 
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))

@@ -32,8 +32,7 @@ true for a line that needs only free cells, and no distance from walls."
 ;; Allocated on the stack and passed to functions instead of floats, which would have to be boxed.
 (declaim (inline make-line))
 (defstruct (line (:constructor make-line (x y end-x end-y limit)) (:copier nil) (:predicate nil))
-  "A straight line from (X,Y) to (END-X,END-Y), the largest cost LIMIT that it may have, and its
-COST."
+  "A straight line from (X,Y) to (END-X,END-Y), the largest cost LIMIT allowed, and its COST."
   (x 0d0 :type metres :read-only t)
   (y 0d0 :type metres :read-only t)
   (end-x 0d0 :type metres :read-only t)
@@ -93,8 +92,7 @@ near a wall."
 (defconstant +least-drop+ 0.125d0 "By how much each step must lower the cost to the goal.")
 
 (defstruct (descent (:constructor make-descent (field x y value)) (:copier nil))
-  "A position (X,Y) on the way down FIELD to its goal. VALUE is the cost from this position to the
-goal."
+  "A position (X,Y) on the way down FIELD to its goal. VALUE is the cost from there to the goal."
   (field nil :type field :read-only t)
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
@@ -183,12 +181,10 @@ COST. The cost to the goal is lower by DROP at the end of the side than at its b
 ;;;; Drawing a way
 
 (defconstant +straight-cost-ratio+ 1.02d0
-  "The largest ratio of the cost of a straight piece to the cost of the steps that it replaces.
-Straight pieces save turns.")
+  "The largest ratio of a straight piece's cost to that of the steps replaced. This saves turns.")
 
 (defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
-  "A way that is being extended: its last vertex (X,Y), its end (END-X,END-Y), the cost SINCE the
-last vertex, and its POINTS."
+  "A growing way: its last vertex (X,Y), end (END-X,END-Y), cost SINCE the last vertex, and POINTS."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (end-x x :type double-float)
@@ -198,7 +194,6 @@ last vertex, and its POINTS."
 (declaim-final polyline)
 
 (defun add-vertex (polyline)
-  "Make the end of POLYLINE a vertex."
   (push (make-pt (polyline-end-x polyline) (polyline-end-y polyline)) (polyline-points polyline))
   (setf (polyline-x polyline) (polyline-end-x polyline)
         (polyline-y polyline) (polyline-end-y polyline)
@@ -207,8 +202,7 @@ last vertex, and its POINTS."
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
   "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD; +BARRED+
-if the line is not free, or costs more than LIMIT. LEAVING is true if the line may begin near a
-wall."
+if the line is not free, or costs more than LIMIT. If LEAVING, the line may begin near a wall."
   (let ((line (make-line x y end-x end-y limit)))
     (declare (dynamic-extent line))
     (measure-line line (field-cells field) (field-columns field) leaving)
@@ -221,16 +215,14 @@ wall."
 (declaim (inline go-straight-p extend-polyline))
 (defun go-straight-p (polyline field x y limit last)
   "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
-If LAST, the line is the last line of a way, which may end as near to a wall as the first line may
-begin."
+If LAST, the line is the last of a way, which may end as near to a wall as the first may begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
     (or (< (free-line-cost field from-x from-y x y limit (first-line-p polyline)) +barred+)
         (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
 
 (defun extend-polyline (polyline field x y cost last)
-  "Extend POLYLINE to (X,Y) by a free step that costs COST, without a turn if a straight line is as
-good."
+  "Extend POLYLINE to (X,Y) by a free step of COST, without a turn if a straight line is as good."
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let ((since (+ (polyline-since polyline) cost)))
     (unless (or (zerop (polyline-since polyline))

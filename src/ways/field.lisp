@@ -16,7 +16,6 @@
 (declaim-final queue)
 
 (defun enlarge-queue (queue)
-  "Double the capacity of QUEUE."
   (flet ((enlarged (array)
            (replace (make-array (* 2 (length array)) :element-type (array-element-type array))
                     array)))
@@ -25,7 +24,6 @@
 
 (declaim (inline store-in-heap))
 (defun store-in-heap (keys nodes place key node)
-  "Store NODE and KEY at PLACE of the arrays KEYS and NODES of a queue."
   (declare (type amounts keys) (type nodes nodes))
   (setf (aref keys place) key
         (aref nodes place) node))
@@ -128,8 +126,7 @@ and CELLS are the cells of the terrain, which must not change."
 (declaim-final field)
 
 (defun make-field (terrain goal)
-  "Return a new field of TERRAIN with its goal in the node GOAL. No total of another node is known
-yet."
+  "Return a new field of TERRAIN with its goal in the node GOAL. No other total is known yet."
   (ensure-memory (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
@@ -273,8 +270,7 @@ yet."
              (set-draft field node draft)))))
 
 (defun compute-total (field node)
-  "Compute the total of NODE in FIELD, and all lesser totals. Return the total of NODE, +BARRED+ if
-there is no way."
+  "Compute all totals up to NODE's in FIELD. Return NODE's total, +BARRED+ if there is no way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))

@@ -11,8 +11,7 @@
 ;;; for its middle too, and is called a node then.
 
 (defconstant +barred+ 1d100
-  "A cost above that of any way, for cells that cannot be crossed and for nodes without a known
-way.")
+  "A cost above that of any way, for uncrossable cells and for nodes without a known way.")
 
 (defconstant +close-to-wall+ 4d0
   "The cost of a metre in cells nearer to a wall than the clearance.")
@@ -62,8 +61,7 @@ never modified" :writable)
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
 (defun ensure-memory (cells octets)
-  "Signal MISUSE unless there is memory for OCTETS bytes for each of CELLS cells. Discard all fields
-if this frees enough memory."
+  "Signal MISUSE unless CELLS times OCTETS bytes are free. Discard all fields if this frees enough."
   (let ((all (* cells octets)))
     (unless (or (heap-room-p all)
                 (progn (discard-all-fields) (heap-room-p all)))
@@ -75,7 +73,6 @@ if this frees enough memory."
 
 (declaim (inline cell-node node-column node-row))
 (defun cell-node (terrain x y)
-  "Return the number of the cell (X Y) of the map or its margin."
   (declare (type (integer -1 32767) x y))
   (+ (1+ x) (* (1+ y) (terrain-columns terrain))))
 
@@ -88,14 +85,12 @@ if this frees enough memory."
   (1- (floor node (terrain-columns terrain))))
 
 (defun in-map-p (map x y)
-  "True if the point (X,Y) is inside MAP."
   (and (<= 0 x) (< x (map-width map)) (<= 0 y) (< y (map-height map))))
 
 ;;; Making one.
 
 (defun free-cell-costs (map columns)
-  "Return a vector of costs for the cells of MAP and a margin around it: 1 for free cells, +BARRED+
-for walls."
+  "Return a vector of the costs of MAP's cells and a margin: 1 for free cells, +BARRED+ for walls."
   (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))
@@ -174,8 +169,7 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
 
 (defun terrain-for-map (map clearance costs)
   "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
-cost), in which the cost is a double-float. Equal arguments return the same terrain, as long as it
-is kept."
+cost), in which the cost is a double-float. Equal arguments return the same terrain while kept."
   (or (known-terrain map clearance costs)
       (with-lock (**terrains-lock**)
         (or (known-terrain map clearance costs)

@@ -5,11 +5,9 @@
 ;;; Points in walls.
 
 (defconstant +free-point-distance+ 5
-  "The largest distance, in columns or rows, from a point in a wall to the free cell that replaces
-it.")
+  "The largest distance, in columns or rows, from a point in a wall to the free cell used instead.")
 
 (defun free-node-p (chart x y)
-  "True if the cell (X Y) is on the map of CHART and can be crossed."
   (and (in-map-p (chart-map chart) x y)
        (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
 
@@ -26,15 +24,13 @@ is no such cell within +FREE-POINT-DISTANCE+ columns and rows."
         finally (return (and least (values best-x best-y)))))
 
 (defun nearest-free-coordinates (chart x y)
-  "Return X and Y if the cell at (X,Y) can be crossed, or else the middle of the nearest cell that
-can be crossed, or NIL."
+  "Return X and Y if their cell can be crossed, else the middle of the nearest such cell, or NIL."
   (if (free-node-p chart (floor x) (floor y))
       (values x y)
       (nearest-free-middle chart x y)))
 
 (defun ensure-chart (operator chart)
-  "Return CHART, an argument of OPERATOR, if it is a chart, or a new chart if CHART is a map or the
-name of a map."
+  "Return CHART, an argument of OPERATOR, if it is a chart; a new chart if it is a map or its name."
   (if (chart-p chart)
       chart
       (make-chart (find-map-argument operator chart))))
@@ -50,8 +46,7 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
     (and x (make-pt x y))))
 
 (defun free-endpoint (operator chart point)
-  "Return the coordinates of POINT or, if POINT is in a wall, of a free point near it. Signals
-WRONG-ARGUMENT."
+  "Return the coordinates of POINT or, in a wall, of a free point near it. Signals WRONG-ARGUMENT."
   (node-of-point operator chart point)
   (multiple-value-bind (x y) (nearest-free-coordinates chart (point-x point) (point-y point))
     (unless x
@@ -63,8 +58,7 @@ WRONG-ARGUMENT."
 ;;; Ways between points that are free.
 
 (defun place-test (chart name)
-  "Return a function of a column and a row that returns true if the cell is a place of the type
-named NAME."
+  "Return a function of a column and a row that is true if the cell is a place of the type NAME."
   (let* ((map (chart-map chart)) (places (map-places map)) (width (map-width map))
          (number (place-type-index map (find-place-type name))))
     (declare (type (simple-array (unsigned-byte 8) (*)) places))
@@ -138,9 +132,8 @@ Signals WRONG-ARGUMENT. See FIND-WAY."
 (addition straight-cost)
 (defun straight-cost (chart start goal)
   "Return the cost of the straight line from START to GOAL on CHART: the sum of its metres, each
-times the cost of a metre in its cell. Return NIL if the line is not free, because it comes nearer
-than half a metre to a wall or goes through a cell that cannot be crossed. Signals WRONG-ARGUMENT.
-See FIND-WAY."
+times the cost of a metre in its cell. Return NIL if the line is not free: it comes nearer than half
+a metre to a wall or enters a cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (ensure-chart 'straight-cost chart)))
     (with-free-endpoints (straight-cost chart start goal)
       (let ((cost (free-line-cost (field-for-goal chart (node-at chart goal-x goal-y))

@@ -91,8 +91,7 @@ discrete or numeric."
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
-  "Define or redefine the attribute NAME. DEFATTRIBUTE expands to a call of this function. Return
-NAME (reading 120)."
+  "Define or redefine the attribute NAME for DEFATTRIBUTE, and return NAME (reading 120)."
   (let ((definition (title "defattribute" name))
         (old (declared-attribute name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
@@ -121,8 +120,7 @@ NAME (reading 120)."
     name))
 
 (defun warn-of-attribute-options (definition domain options)
-  "Warn if OPTIONS give an attribute of DOMAIN only options for the other kind of attribute, numeric
-or discrete."
+  "Warn if OPTIONS of DOMAIN are all for the other kind of attribute, numeric or discrete."
   (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
     (let ((strange (if (consp domain)
                        (find-if #'given-p '(:base :max-mult))
@@ -188,8 +186,7 @@ below 0. Numbers are from -1e15 to 1e15."
   (and (number-pair-p value) (<= (first value) (second value))))
 
 (defun value-limits (value)
-  "Return the least and the greatest number of VALUE, a number or a list of two numbers; NIL for
-other values."
+  "Return the least and the greatest number of VALUE, a number or a list of two; else NIL."
   (cond ((realp value) (values value value))
         ((number-pair-p value) (values (first value) (second value)))))
 
@@ -204,8 +201,7 @@ other values."
   (and (member value (attribute-domain attribute) :test #'value-equal) t))
 
 (defun can-be-false-p (attribute)
-  "True if the value NIL of ATTRIBUTE means false, rather than unspecified. ATTRIBUTE is NIL for an
-undeclared attribute."
+  "True if the value NIL of ATTRIBUTE (NIL if undeclared) means false, rather than unspecified."
   (and attribute (member nil (attribute-domain attribute)) t))
 
 (defun specifies-range-p (attribute value)

@@ -20,8 +20,7 @@
              (reject-clause definition (list key value) "each option only once"))))
 
 (defun check-probability (definition option value)
-  "Return VALUE, the value of OPTION, a probability, as a double-float. Signals
-MALFORMED-DEFINITION."
+  "Return VALUE of OPTION, a probability, as a double-float. Signals MALFORMED-DEFINITION."
   (unless (probability-p value)
     (reject-clause definition (list option value) (argument-type-text 'probability)))
   (double value))

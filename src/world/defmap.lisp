@@ -112,8 +112,7 @@ MALFORMED-DEFINITION for invalid contents."
 ;;; about when a file is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP again. If the code of all place types worked, cache MAP in the file PATH,
-unless PATH is NIL."
+  "Find the places of MAP again. If all place types worked, cache MAP in the file PATH, unless NIL."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))
@@ -166,7 +165,6 @@ cache. Worlds of MAP see the change at once. Return the map."
 ;;; Making it.
 
 (defun without-docstring (clauses)
-  "Return CLAUSES without the documentation of the map, a string before them."
   (if (stringp (first clauses)) (rest clauses) clauses))
 
 (defun fill-map (map clauses)

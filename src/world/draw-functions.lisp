@@ -29,8 +29,7 @@
                 (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
 
 (defun draw-function-advice (value)
-  "Return a text that says what to write instead of VALUE, which is no valid value of
-:draw-function."
+  "Return a text that says what to write instead of VALUE, an invalid value of :draw-function."
   (format nil "a function of ~A, or the name of a function that is defined already: (defun ~(~A~) ~
                ~A ...)~:[~;; a list is data, which is not executed~]"
           +draw-arguments+
@@ -66,7 +65,6 @@ without a function, a second value, a text, says why, and what to do."
   (and (proper-list-p form) (symbolp (first form)) (same-name-p (first form) name)))
 
 (defun name-for-lambda (thing-name form)
-  "Return a symbol to name the draw function FORM of things named THING-NAME."
   (intern (format nil "DRAW-~A-~36R" thing-name
                   (ldb (byte 32 0) (digest-value (digest-add (make-digest) form))))
           *package*))
@@ -81,8 +79,7 @@ without a function, a second value, a text, says why, and what to do."
         form)))
 
 (defun draw-function-called (name function)
-  "Define NAME as FUNCTION and return NAME. If FUNCTION is a closure or no draw function, return
-FUNCTION instead."
+  "Define NAME as FUNCTION; return NAME, or FUNCTION if it is a closure or no draw function."
   (cond ((or (closure-p function) (not (draw-function-p function))) function)
         (t (setf (fdefinition name) function)
            name)))
@@ -96,7 +93,6 @@ FUNCTION instead."
           (t `',value))))
 
 (defun contains-code-p (key value)
-  "True if VALUE, of the attribute KEY, contains code to evaluate."
   (and (consp value) (same-name-p key :draw-function)))
 
 (defun descriptor-form (thing-name descriptor)

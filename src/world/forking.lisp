@@ -11,8 +11,7 @@
 
 (declaim (inline copy-by-rank))
 (defun copy-by-rank (thing old new)
-  "Return the copy of THING if THING is in the vector OLD, whose elements have their copies in the
-vector NEW; else NIL."
+  "Return the copy in the vector NEW of THING in the vector OLD; NIL if THING is not in OLD."
   (declare (type thing thing) (type simple-vector old new))
   (let ((rank (thing-rank thing)))
     (and (< rank (length old))

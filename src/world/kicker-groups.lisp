@@ -14,8 +14,7 @@
 ;;; its kicker. They lie side by side because a kick costs mostly memory access (25 ns).
 
 (define-kind (group :constructor (make-group (probability)))
-    "A group of attached kickers with the same PROBABILITY. In each tick there is a trial for each
-member."
+    "A group of attached kickers with the same PROBABILITY. Each member has a trial in each tick."
   (:fixed
    (probability 0d0 double-float "the probability per unit of time of the group's kickers"))
   (:state
@@ -116,7 +115,6 @@ NIL"))
          nil)))
 
 (defun run-member (kicker thing)
-  "Run the body of KICKER for THING, unless its test is false."
   (let ((test (kicker-test kicker)))
     (when (or (null test) (test-holds-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
@@ -151,7 +149,6 @@ GROUP. Return the index of the first success for which nothing was read."
     ahead))
 
 (defun run-member-noting-move (kicker thing)
-  "Call RUN-MEMBER with KICKER and THING. Return true if THING has moved."
   (let ((x (thing-x thing)) (y (thing-y thing)))
     (run-member kicker thing)
     (not (and (= x (thing-x thing)) (= y (thing-y thing))))))
@@ -188,8 +185,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
   t)
 
 (defun run-row (group end dice tick)
-  "Run the members of GROUP before END whose trials succeed, also those after a member with an
-error."
+  "Run the members of GROUP before END whose trials succeed, even after a member with an error."
   (unwind-protect
        (loop while (< (group-skip group) end)
              do (unless (call-user-code #'run-members (group-origin group) group end dice tick)

@@ -11,8 +11,7 @@
 
 (addition kicker-p)
 (define-record (kicker (:constructor make-kicker (name)))
-  "Code that a thing runs with the probability PROB in each tick in which TEST, if any, returns
-true."
+  "Code that a thing runs with the probability PROB in each tick in which TEST, if any, is true."
   (name nil symbol "the symbol that names the kicker" :writable :addition)
   (prob 1d0 (double-float 0d0 1d0) "the kicker's probability per tick" :writable :addition)
   (test nil (or null function)
@@ -66,8 +65,7 @@ attachment" :writable))
 
 (public self)
 (defvar self nil
-  "The attached kicker whose test or body is running, for RUN-KICKER; otherwise NIL (manual
-5.3.1).")
+  "The attached kicker whose test or body is running, for RUN-KICKER; else NIL (manual 5.3.1).")
 
 (defmethod redo-definition ((kicker kicker))
   (incf *kicker-generation*)
@@ -91,8 +89,7 @@ are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. 
     (register *kickers* name (if old (overwrite-object old new) new) :variable t)))
 
 (defun kicker-functions (definition variable options body)
-  "Return the keyword arguments of DEFINE-KICKER, as forms, for a kicker with OPTIONS and BODY
-(reading 169)."
+  "Return the keyword arguments of DEFINE-KICKER, as forms, for OPTIONS and BODY (reading 169)."
   (unless (and variable (symbolp variable) (not (constantp variable)))
     (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
   (unless (typep options '(or null (cons keyword)))
@@ -176,8 +173,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
 (public set-kicker)
 (defun set-kicker (thing kicker-name)
   "Attach to THING the kicker KICKER-NAME, a symbol or a kicker (manual 5.3.1). Signals
-WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, the value of SELF when it runs. See
-reading 171."
+WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. See reading 171."
   (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
     (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
@@ -254,8 +250,7 @@ the file of WORLD's map, or the kicker is from another file."
                          (kicker-name kicker))))))
 
 (defun warn-of-untrue-test (kicker world)
-  "Warn if KICKER is on a thing of WORLD and its test was never true and reads an unknown
-attribute."
+  "Warn if KICKER is on a thing of WORLD, and its test, never true, reads an unknown attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker-p (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)

@@ -26,8 +26,7 @@
                                          (place-type-rules type)))))))
 
 (defun words-checksum (words)
-  "Return a check sum of WORDS without the first word and without the check sum itself, the last
-word of the header."
+  "Return a check sum of WORDS but the first word and the check sum itself, the header's last word."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
@@ -73,8 +72,7 @@ word of the header."
 ;;; Reading.
 
 (defun read-words (path most)
-  "Return a vector of the words of the file PATH, empty if there are more than MOST; NIL if there is
-no file."
+  "Return a vector of the words of the file PATH, empty if more than MOST; NIL if there is no file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
       (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)
@@ -121,8 +119,7 @@ no file."
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-cache-p (path)
-  "True if the file PATH exists and is not a map cache, not even a damaged one, or if this cannot be
-determined."
+  "True if the file PATH is, or may be, no map cache, not even a damaged one; NIL for no file."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (regular-file-p path) (begins-as-cache-p path))))))
 
@@ -151,8 +148,7 @@ determined."
                    " cannot be written: " (text-of-condition condition)))))
 
 (defun cache-path (name)
-  "Return the path of the cache file NAME, relative to the definition's file or else to the current
-directory."
+  "Return the path of the cache file NAME, relative to the definition's file or current directory."
   (let ((directory (base-directory))
         (file (source-file (current-source))))
     (merge-pathnames (path-of-name name)

@@ -53,8 +53,7 @@ NIL if KIND has no such form."
 ;;; Expansion. The parts of a map are walls, rects and circles, and recipes of things.
 
 (defun wrong-derivation-text (kind condition)
-  "Return a text that says what is expected instead of a clause of KIND, because CONDITION rejects
-the clause's expansion."
+  "Return a text on what is expected instead of a clause of KIND whose expansion CONDITION rejects."
   (let ((*print-pretty* nil))
     (format nil "~A; the clause expands to ~(~S~), where there should be ~
                  ~A" (clause-kind-usage kind)
@@ -117,8 +116,7 @@ and, with a warning in a compiled file, for an invalid clause."
                      "a name that no clause of the simulator has, and :clauses with a form"))))
 
 (defun clause-function-form (lambda-list options)
-  "Return a form for the function of a kind of clause, with the LAMBDA-LIST of its clauses and its
-OPTIONS."
+  "Return a form for the function of a kind of clause with OPTIONS and clauses of LAMBDA-LIST."
   (destructuring-bind (map . parameters) lambda-list
     (multiple-value-bind (whole parameters) (variable-after-key '&whole parameters)
       (with-gensyms (option clause kind)

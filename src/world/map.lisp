@@ -32,19 +32,15 @@
   (flags (make-octets 0) octets
          "the flags of the map's cells by index: +WALL+ where filled" :writable :export)
   (parameters (make-double-vector 0) doubles
-              "the substance parameters of the map's cells by index, 0 where
-empty" :writable :export)
+              "the substance parameters of the cells by index, 0 where empty" :writable :export)
   (substances (make-array 0 :element-type '(unsigned-byte 16)) indices
-              "the substances of the map's cells, by cell index, as indices into
-MAP-SUBSTANCE-TYPES" :writable :export)
+              "the cells' substances by index, indices in MAP-SUBSTANCE-TYPES" :writable :export)
   (substance-types #(nil) simple-vector
                    "a vector of substance names; element 0 is NIL, for no wall" :writable :export)
   (places (make-octets 0) octets
-          "the place types of the map's cells, by cell index, as indices into
-MAP-PLACE-TYPES" :writable :export)
+          "the cells' place types by index, indices in MAP-PLACE-TYPES" :writable :export)
   (directions (make-double-vector 0) doubles
-              "the basic canonical directions of the map's cells by index, in
-radians" :writable :export)
+              "the basic canonical directions of cells by index, in radians" :writable :export)
   (place-types #(nil) simple-vector
                "a vector of the place types known to the map; element 0 is NIL" :writable :export)
   (least-parameter 0d0 double-float
@@ -111,8 +107,7 @@ value is no map, such as ROOM, is the name of a map."
         (t `',form)))
 
 (defun variable-map-or-name (name)
-  "Return the value of the variable NAME if the value can be a map or its name; otherwise return
-NAME, the name of a map."
+  "Return the value of the variable NAME if it can be a map or its name; else NAME, a map's name."
   (let ((value (and (boundp name) (symbol-value name))))
     (if (or (map-p value)
             (stringp value)
@@ -128,16 +123,14 @@ NAME, the name of a map."
 
 (declaim (inline cell-index-at point-index))
 (defun cell-index-at (map x y)
-  "Return the index of the cell of MAP with the integer coordinates X and Y, or NIL outside the
-map."
+  "Return the index of the cell of MAP with the integer coordinates X and Y, or NIL outside MAP."
   (declare (type fixnum x y))
   (let ((width (map-width map)))
     (and (< -1 x width) (< -1 y (map-height map))
          (the cell-index (+ x (the cell-index (* y width)))))))
 
 (defun point-index (map x y)
-  "Return the index of the cell of MAP that holds the point (X, Y), double-floats, or NIL outside
-the map (reading 51)."
+  "Return the index of MAP's cell that holds (X, Y), double-floats; NIL outside MAP (reading 51)."
   (declare (type double-float x y))
   (let ((width (map-width map)))
     (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
@@ -145,8 +138,7 @@ the map (reading 51)."
             (the cell-index (* width (truncate (the (double-float 0d0 32768d0) y))))))))
 
 (defun map-index (map x y)
-  "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside the
-map."
+  "Return the index of the cell of MAP that holds the point (X, Y), in metres, or NIL outside MAP."
   (point-index map (double x) (double y)))
 
 ;; As reading 53 says.
@@ -164,8 +156,7 @@ map."
 
 (addition wall-at-p)
 (defun wall-at-p (map x y)
-  "True if the point (X, Y) of MAP, in metres, is in a wall or outside the map. Signals
-WRONG-ARGUMENT."
+  "True if the point (X, Y), in metres, is in a wall or outside MAP. Signals WRONG-ARGUMENT."
   (check-point 'wall-at-p x y)
   (let ((index (map-index map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))

@@ -21,8 +21,7 @@ is a place that faces DIRECTION."
   (dy 0 :type fixnum :read-only t))
 
 (defun parse-match-entry (entry)
-  "Return T, NIL or :ANY for ENTRY, an entry of a match form, or :BAD if ENTRY is invalid (reading
-75)."
+  "Return T, NIL or :ANY for ENTRY of a match form, or :BAD if ENTRY is invalid (reading 75)."
   (cond ((matchvar-p entry) :any)
         ((not (symbolp entry)) :bad)
         ((or (null entry) (same-name-p entry "-")) nil)

@@ -10,8 +10,7 @@
 
 (declaim (inline column-code))
 (defun column-code (flags x y width height)
-  "Return three bits that say whether column X has a wall in the row above Y, in the row Y, and in
-the row below."
+  "Return three bits that say whether column X has a wall in the row above Y, in Y, and below."
   (declare (type octets flags) (type (signed-byte 20) x y width height))
   (flet ((bit-at (y)
            (declare (type (signed-byte 20) y))
@@ -39,8 +38,7 @@ the row below."
 
 (declaim (inline classify-cell))
 (defun classify-cell (map number x y direction)
-  "Make the cell X, Y of MAP a place of the type NUMBER, if the cell is free and not a place yet
-(reading 71)."
+  "Make the cell X, Y of MAP a place of the type NUMBER, if free and not yet a place (reading 71)."
   (declare (type (signed-byte 20) x y) (type (unsigned-byte 8) number))
   (when (and (< -1 x (map-width map)) (< -1 y (map-height map)))
     (let ((index (+ x (* y (map-width map)))))
@@ -135,15 +133,13 @@ mistakes in the definition of TYPE."
       (call-place-type-code #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
-  "Make the cells of MAP that fit TYPE and are not places yet places of TYPE, whose number is
-NUMBER."
+  "Make the cells of MAP that fit TYPE and are not places yet places of TYPE, which has NUMBER."
   (cond ((place-type-checker type) (classify-by-checker map type number))
         ((place-type-table type) (classify-by-table map type number codes))
         (t (classify-by-forms map type number))))
 
 (defun check-directions (map type number)
-  "Signal MALFORMED-DEFINITION unless the :directions of TYPE return two angles for the first place
-of TYPE in MAP."
+  "Signal MALFORMED-DEFINITION unless TYPE's :directions are two angles for its first place in MAP."
   (let ((index (position number (map-places map)))
         (function (place-type-directions type)))
     (when (and index function)
@@ -200,8 +196,7 @@ and true if no type was left out (reading 70)."
   "The rows of a sample map with doorways, corners, posts and ends of walls.")
 
 (defun small-map (width height filled-p)
-  "Return a map with walls in the cells for which FILLED-P, a function of column and row, returns
-true."
+  "Return a map with walls in the cells for which FILLED-P, a function of column and row, is true."
   (let ((map (%make-map :name 'sample :width width :height height)))
     (clear-grid map)
     (dotimes (y height)
@@ -281,8 +276,7 @@ true."
            types))
 
 (defun covering-types (rules types)
-  "Return the types in TYPES that classify the cells that fit RULES, if they classify all these
-cells; else NIL."
+  "Return those of TYPES that classify cells that fit RULES, if they classify all; else NIL."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))

@@ -22,7 +22,6 @@
                                      (marks-of-cell index (world-stock world))))))
 
 (defun record-thing-flags (thing stock)
-  "Record in STOCK the flags that THING causes in its cell."
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
@@ -32,7 +31,6 @@
     (refresh-cell-flags world index)))
 
 (defun add-flags (rank index world)
-  "Add the flags that the thing with RANK causes to the cell INDEX of WORLD."
   (let ((flags (world-flags world)))
     (setf (aref flags index)
           (logior (aref flags index) (aref (stock-marks (world-stock world)) rank)))))
@@ -46,8 +44,7 @@
     (add-flags (thing-rank thing) index world)))
 
 (defun move-between-cells (rank world from to)
-  "Move the thing with RANK from the cell FROM of WORLD to the end of the list of things in the cell
-TO. Conses nothing."
+  "Move the thing with RANK from the cell FROM to the end of the cell TO of WORLD. Conses nothing."
   (declare #.*hot* (type cell-index rank from to) (type world world))
   (let ((stock (world-stock world)))
     (unless (and (= from to) (alone-in-cell-p rank from stock))
@@ -64,7 +61,6 @@ TO. Conses nothing."
     (move-between-cells (thing-rank thing) (thing-world thing) from (thing-index thing))))
 
 (defun remove-from-location (thing)
-  "Remove THING from its location, so that THING is nowhere."
   (let ((location (thing-location thing)))
     (case location
       ((nil))
@@ -208,8 +204,7 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
 
 (declaim (inline kickable-p free-point-p start-kick))
 (defun kickable-p (thing)
-  "True if THING is on the floor, or inside something from which it can get onto the floor, because
-nothing around it is closed."
+  "True if THING is on the floor, or can get there because nothing around it is closed."
   (or (eq :floor (thing-location thing))
       (and (thing-location (thing-outermost thing))
            (not (in-closed-holder-p thing)))))
@@ -222,8 +217,7 @@ nothing around it is closed."
 ;; It is on the stack, and is passed to functions instead of floats, which would be boxed.
 (declaim (inline make-kick))
 (defstruct (kick (:constructor make-kick (dx dy)) (:copier nil) (:predicate nil))
-  "A kick by DX and DY metres, with the thing's position before the kick (FROM-X, FROM-Y) and after
-the kick (X, Y)."
+  "A kick by DX and DY metres, with the thing's position before (FROM-X, FROM-Y) and after (X, Y)."
   (dx 0d0 :type double-float :read-only t)
   (dy 0d0 :type double-float :read-only t)
   (from-x 0d0 :type double-float)

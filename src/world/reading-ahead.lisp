@@ -23,8 +23,7 @@
 
 (defun read-ahead (batch count world)
   "Read into the cache the memory for moves of the first COUNT elements of BATCH, things or NIL, and
-overwrite these elements. Return a meaningless number, so that the compiler does not remove the
-reads."
+overwrite these elements. Return a meaningless number, so that the compiler keeps the reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -93,8 +92,7 @@ INDEX. Return the index of the first success after these gaps."
 
 (declaim (inline draw-gap-from-outlook))
 (defun draw-gap-from-outlook (outlook scale dice)
-  "Return the value of DRAW-GAP for SCALE and DICE. Take the value from OUTLOOK, unless NIL, if it
-was drawn ahead."
+  "Return the value of DRAW-GAP for SCALE and DICE, from OUTLOOK, unless NIL, if drawn ahead."
   (let ((next (if outlook (outlook-next outlook) 0)))
     (cond ((and outlook
                 (< next (outlook-count outlook))

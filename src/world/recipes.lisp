@@ -10,8 +10,7 @@
 ;;; Manual 5.1 and 5.3.
 
 (define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
-  "A recipe for a thing with NAME, ATTRIBUTES, CONTENTS and KICKERS. In the recipe of a map, the
-thing is at X, Y."
+  "A recipe for a thing with NAME, ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."
   (name nil symbol)
   (attributes '() list "the thing's attributes, an object descriptor")
   (contents '() list "the recipes of the thing's contents")
@@ -32,8 +31,7 @@ thing is at X, Y."
 
 (defun write-recipe (operator name descriptor &key prototype contents kickers x y)
   "Return the recipe of a thing NAME with the attributes and contents of PROTOTYPE, overridden by
-the attributes in DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals
-WRONG-ARGUMENT."
+DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGUMENT."
   (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
   (unless (or (null prototype) (thing-p prototype))
     (reject-argument operator "prototype" prototype "a thing, made by NEW-THING"))
@@ -55,8 +53,7 @@ WRONG-ARGUMENT."
         (warning-set thing " is made without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
-  "Make a thing from RECIPE and return it. The thing has no location yet; if WORLD is NIL, the thing
-is a prototype (reading 63)."
+  "Return a new thing from RECIPE without a location, a prototype if WORLD is NIL (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
          (thing (%make-thing (recipe-name recipe) (if world (world-next-serial world) 0) world)))
@@ -72,8 +69,7 @@ is a prototype (reading 63)."
     thing))
 
 (defun find-recipe (test recipes)
-  "Return the first recipe in RECIPES, or in their contents, for which TEST returns true, and the
-value of TEST."
+  "Return the first recipe in RECIPES, or their contents, for which TEST is true, and TEST's value."
   (dolist (recipe recipes)
     (let ((value (funcall test recipe)))
       (when value (return (values recipe value))))
@@ -114,8 +110,7 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
     (place-thing (follow-recipe recipe world) :floor (recipe-x recipe) (recipe-y recipe))))
 
 (defun make-world (map &key (seed 0))
-  "Return a fresh world of MAP, a map or its name. The world depends only on MAP and the integer
-SEED."
+  "Return a fresh world of MAP, a map or its name, that depends only on MAP and the integer SEED."
   (reset-world (%make-world (find-map map)) :seed seed))
 
 ;;; Objects of maps and definitions are shared.
@@ -124,8 +119,7 @@ SEED."
 ;;; Making things on the fly (manual 5.3).
 
 (defun resolve-location (location)
-  "Return the world, the location and the coordinates that LOCATION, an argument of MAKE-NEW-THING,
-stands for."
+  "Return the world, location and coordinates for LOCATION, an argument of MAKE-NEW-THING."
   (cond ((null location) nil)
         ((and (proper-list-p location) (= 2 (length location)) (eq :with (first location)))
          (let ((thing (second location)))
@@ -186,8 +180,7 @@ and MISUSE for a hand that holds something."
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
 (defun destroyed-thing (serial world)
-  "Return a placeholder for the destroyed thing of WORLD with the number SERIAL; NIL if WORLD never
-had this thing."
+  "Return a placeholder for the destroyed thing SERIAL of WORLD; NIL if WORLD never had this thing."
   (when (< 0 serial (world-next-serial world))
     (let ((thing (%make-thing 'destroyed serial world)))
       (setf (thing-alive-p thing) nil)

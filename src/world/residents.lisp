@@ -10,8 +10,7 @@
 (defvar *residents-lock* (make-lock "resident worlds"))
 
 (defun map-resident-world (map)
-  "Return the resident world of MAP, in which top-level code works. Make this world at the first
-call."
+  "Return the resident world of MAP, where top-level code works. The first call makes this world."
   (or (map-resident map)
       (with-lock (*residents-lock*)
         (or (map-resident map)
@@ -31,8 +30,7 @@ MAP, else the resident world of MAP. If MAP is a world, return MAP."
 ;;; Finding.
 
 (defun worlds-to-search (world)
-  "Return a list of the worlds to search: WORLD unless NIL, else *WORLD* unless NIL, else the
-resident worlds of all maps."
+  "Return a list of the worlds to search: WORLD, else *WORLD*, else all maps' resident worlds."
   (cond (world (list (current-world world)))
         (*world* (list *world*))
         (t (mapcar #'map-resident-world (registry-objects *maps*)))))

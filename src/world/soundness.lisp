@@ -172,8 +172,7 @@ circular")
              "the world's due kickers are not kickers of its things"))
 
 (defun check-world (world)
-  "Signal an error, usually CONTRADICTION, unless WORLD, which was read from a file, is in a state
-that a run can reach."
+  "Signal an error, usually CONTRADICTION, unless WORLD, read from a file, is in a reachable state."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
              "the world's dice are invalid")
@@ -184,7 +183,6 @@ that a run can reach."
   (check-kickers world))
 
 (defun world-invariant-violations (world)
-  "Return a list of the error message with which CHECK-WORLD rejects WORLD; NIL if WORLD is
-consistent."
+  "Return a list of the error message with which CHECK-WORLD rejects WORLD, or NIL if consistent."
   (handler-case (progn (check-world world) '())
     (error (condition) (list (princ-to-string condition)))))

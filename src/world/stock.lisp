@@ -5,8 +5,7 @@
 ;;; A world may have a million cells and a hundred thousand things. So positions are kept in flat
 ;;; vectors of small numbers, which need few memory accesses and are copied at once. The RANK of a
 ;;; thing is its index in the vector of things. In the vectors of numbers a thing is its TAG, 1 more
-;;; than its rank; 0 is no thing. The things on the floor of a cell form a chain, in order of
-;;; arrival.
+;;; than its rank; 0 is no thing. The things on a cell's floor form a chain, in order of arrival.
 
 (deftype tag () '(unsigned-byte 32))
 (deftype tags () '(simple-array tag (*)))
@@ -52,7 +51,6 @@
               finally (setf (aref nexts (1- tag)) (1+ rank))))))
 
 (defun take-from-cell (rank index stock)
-  "Take the thing with RANK out of the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (let* ((firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (tag (1+ rank)) (next (shiftf (aref nexts rank) 0)))
@@ -65,13 +63,11 @@
 
 (declaim (inline alone-in-cell-p))
 (defun alone-in-cell-p (rank index stock)
-  "True if the thing with RANK is the only thing in the cell INDEX of STOCK."
   (declare (type cell-index rank index) (type stock stock))
   (and (= (1+ rank) (aref (stock-firsts stock) index))
        (zerop (aref (stock-nexts stock) rank))))
 
 (defun marks-of-cell (index stock)
-  "Return the flags that the things in the cell INDEX of STOCK cause."
   (declare (type cell-index index) (type stock stock))
   (loop with flags of-type (unsigned-byte 8) = 0
         for tag of-type tag = (aref (stock-firsts stock) index)
@@ -83,8 +79,6 @@
 ;;; Things.
 
 (defun enlarge-vector (vector size)
-  "Return a vector of SIZE elements, which begins with the elements of VECTOR and ends with 0 or
-NIL."
   (replace (make-array size :element-type (array-element-type vector)
                             :initial-element (if (simple-vector-p vector) nil 0))
            vector))

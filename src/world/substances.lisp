@@ -27,16 +27,14 @@
                    "a number as the parameter of the substance, such as 60, from -1e15 to 1e15"))
 
   (defun check-parameter-form (name form)
-    "Signal MALFORMED-DEFINITION if FORM, the form for the parameter of the substance NAME, cannot
-have a number as its value."
+    "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, cannot have a number as value."
     (when (and (atom form)
                (or (not (symbolp form)) (null form) (keywordp form))
                (not (quantity-p form)))
       (reject-parameter name form))))
 
 (defun define-substance (name parameter)
-  "Define or redefine the substance NAME. DEFSUBSTANCE expands to a call of this function. Return
-NAME."
+  "Define or redefine the substance NAME for DEFSUBSTANCE, and return NAME."
   (unless (quantity-p parameter) (reject-parameter name parameter))
   (register *substances* name (make-substance name (double parameter)))
   name)
@@ -70,15 +68,13 @@ Return the name."
            (first value) (symbolp (first value)) (quantity-p (second value)))))
 
 (defun substance-value-type (value)
-  "Return the type, a symbol, that VALUE, the value of a :substance attribute, names; NIL if VALUE
-names no type."
+  "Return the type, a symbol, that VALUE of a :substance attribute names; NIL if VALUE names none."
   (cond ((realp value) nil)
         ((symbolp value) value)
         (t (first value))))
 
 (defun substance-value-parameter (value)
-  "Return the parameter, a double-float, of VALUE, the value of a :substance attribute; 0 if VALUE
-is NIL."
+  "Return the parameter, a double-float, of VALUE of a :substance attribute; 0 if VALUE is NIL."
   (cond ((realp value) (double value))
         ((null value) 0d0)
         ((symbolp value) (substance-parameter value))

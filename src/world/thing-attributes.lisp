@@ -10,8 +10,7 @@
       (return-from attribute-present-p t))))
 
 (defun undeclared-name-like (key world)
-  "Return an undeclared attribute of a thing of WORLD that KEY is probably a misspelling of, or
-NIL."
+  "Return an undeclared attribute of a thing of WORLD that KEY probably misspells, or NIL."
   (do-things (thing world)
     (loop for (other) in (thing-attributes thing)
           when (and (not (declared-attribute other)) (misspelling-p key other))
@@ -51,8 +50,7 @@ a declared attribute or of an attribute of some thing."
     (second entry)))
 
 (defun merge-descriptors (new old)
-  "Return the object descriptor OLD with its values overridden by NEW, followed by the attributes
-that only NEW has."
+  "Return the descriptor OLD with values overridden by NEW, followed by attributes only in NEW."
   (append (loop for entry in old
                 collect (or (assoc (first entry) new :test #'eq) entry))
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
@@ -91,8 +89,7 @@ that only NEW has."
     (list key (if (eq key :draw-function) (stored-draw-function value) value))))
 
 (defun checked-descriptor (operator descriptor)
-  "Return a copy of the object descriptor DESCRIPTOR with keywords as names. Signals
-WRONG-ARGUMENT."
+  "Return a copy of DESCRIPTOR with keywords as names. Signals WRONG-ARGUMENT."
   (unless (descriptor-p descriptor)
     (reject-argument operator "descriptor" descriptor
                      "a list of lists (attribute value), each attribute once"))
@@ -153,8 +150,7 @@ change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
     (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
     (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
-  "The options of things that are not attributes. Each entry lists the option, and how to write it
-in a map and at run time.")
+  "The options of things, not attributes: each entry is an option, and its form in maps and runs.")
 
 (defun option-named (name)
   "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
@@ -171,13 +167,11 @@ attribute LIKE, and (name NIL) for the name of an option."
           collect (list name like)))
 
 (defun option-of-things-p (name)
-  "True if NAME, used as an attribute, is the name of an option of things and of no declared
-attribute."
+  "True if NAME, used as an attribute, is an option of things and no declared attribute."
   (and (option-named name) (not (declared-attribute (attribute-key name)))))
 
 (defun misspelling-text (thing-name slip &optional map-p)
-  "Return a text that says which attribute of the thing is probably a mistake, and what to write
-instead."
+  "Return a text on which attribute of the thing is probably a mistake, and what to write instead."
   (destructuring-bind (name like &aux (option (option-named name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"

@@ -88,8 +88,7 @@ name" :addition)
    (world nil t "the world that the thing is in, or NIL for a prototype" :near :addition))
   (:state
    (location nil t
-             "where the thing is: :FLOOR, the holder of the thing, or NIL if the thing is
-nowhere" :near :addition)
+             "where the thing is: :FLOOR, its holder, or NIL for nowhere" :near :addition)
    (x 0d0 double-float "the x coordinate in metres, now or when the thing was last on the floor"
       :near :addition)
    (y 0d0 double-float "the y coordinate in metres, now or when the thing was last on the floor"
@@ -170,8 +169,7 @@ current definition, or else by a message."
         finally (return thing)))
 
 (defun thing-holders-text (thing)
-  "Return a text that lists the holders that THING is in, from the innermost to the outermost; NIL
-if THING is in no holder."
+  "Return a text that lists the holders of THING, from the innermost to the outermost; NIL if none."
   (let ((holders (loop for location = (thing-location thing) then (thing-location location)
                        while (and location (not (eq location :floor)))
                        collect (location-phrase location)
@@ -180,8 +178,7 @@ if THING is in no holder."
 
 (addition thing-position)
 (defun thing-position (thing)
-  "Return, as two values, the coordinates of THING or of its outermost holder, in metres. Return NIL
-and NIL if THING is nowhere."
+  "Return two values, the coordinates of THING or its outermost holder in metres, NIL if nowhere."
   (let* ((outermost (thing-outermost thing)) (location (thing-location outermost)))
     (case location
       (:floor (values (thing-x outermost) (thing-y outermost)))

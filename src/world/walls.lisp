@@ -21,8 +21,7 @@
           (aref (map-parameters map) index) parameter)))
 
 (defun build-line (map x0 y0 x1 y1 substance from to)
-  "Fill the cells of a line by Bresenham's algorithm; the parameter changes evenly from FROM to TO
-(reading 57)."
+  "Fill a line by Bresenham's algorithm; the parameter changes evenly from FROM to TO (reading 57)."
   (let* ((dx (abs (- x1 x0))) (dy (- (abs (- y1 y0))))
          (step-x (signum (- x1 x0))) (step-y (signum (- y1 y0)))
          (steps (max dx (- dy) 1))
@@ -50,8 +49,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
     (draw-wall map last corner type p3 p0)))
 
 (defun build-circle (map center radius type parameter)
-  "Draw the outline of a circle by the midpoint algorithm; parts outside the map are drawn at its
-edges (reading 22)."
+  "Draw the outline of a circle by the midpoint algorithm, outside MAP at its edges (reading 22)."
   (let ((cx (floor (first center))) (cy (floor (second center))))
     (if (encloses-map-p map cx cy radius)
         (draw-rect map '(0 0) (list (map-width map) (map-height map)) type parameter)
@@ -141,8 +139,7 @@ to 1e15"
                         (map-greatest-parameter map) greatest))))
 
 (defun record-wall-facts (map)
-  "Record the range of the walls' parameters in MAP, and whether walls enclose MAP, after all walls
-are drawn. Return MAP."
+  "Record the range of MAP's drawn wall parameters, and whether walls enclose MAP. Return MAP."
   (record-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)
