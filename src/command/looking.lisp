@@ -36,7 +36,7 @@ that the attributes can have; a range begins with its lower end"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
-  "Return designators for SIGHTINGS of CAMERA that are still true, at most what a robot keeps."
+  "Return designators for CAMERA's still true SIGHTINGS, at most as many as a robot keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
