@@ -46,7 +46,7 @@ map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
     (and x (make-pt x y))))
 
 (defun free-endpoint (operator chart point)
-  "Return coordinates of POINT or, if in a wall, a free point near it. Signals WRONG-ARGUMENT."
+  "Return coordinates of POINT or, if in a wall, of a free point near it. Signals WRONG-ARGUMENT."
   (node-of-point operator chart point)
   (multiple-value-bind (x y) (nearest-free-coordinates chart (point-x point) (point-y point))
     (unless x
