@@ -25,8 +25,7 @@
               (string= "" (result-error result)) (result-error result))))
 
 (defun failed-trial-lines (bad check)
-  "Return lines of text about the first *MOST-FAILURES-LISTED* results in BAD, a list of results of
-unsuccessful trials of CHECK."
+  "Return lines about the first *MOST-FAILURES-LISTED* of the unsuccessful results BAD of CHECK."
   (append (loop for result in bad
                 repeat *most-failures-listed*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
@@ -58,8 +57,7 @@ unsuccessful trials of CHECK."
 ;;;; The check
 
 (defun resolve-condition (experiment condition)
-  "Return the condition of EXPERIMENT for the designator CONDITION. If CONDITION is NIL, return the
-only condition of EXPERIMENT."
+  "Return the condition of EXPERIMENT for the designator CONDITION; for NIL, the only condition."
   (let ((all (experiment-conditions experiment)))
     (cond (condition (find-condition experiment condition))
           ((rest all)
@@ -98,8 +96,7 @@ FiveAM; return true if the check passes."
 
 (defun parse-experiment-clause (form options)
   "Return a list of name and condition in FORM, (:experiment name :condition c). Signals
-MALFORMED-DEFINITION if FORM does not have this form, or if there are OPTIONS, because the
-experiment determines these."
+MALFORMED-DEFINITION for another FORM, or if there are OPTIONS, which the experiment determines."
   (unless (and (proper-list-p form) (member (length form) '(2 4))
                (or (null (cddr form)) (eq :condition (third form))))
     (reject-clause "is-success-rate" form "(:experiment name) or (:experiment name :condition c)"))

@@ -40,9 +40,8 @@ trials. MOST is the largest number of trials."
     (reject-argument operator 'level level "a probability from 1e-9 to .5, such as .05")))
 
 (defun probabilities-after-trial (odds count rate)
-  "Return a vector of the probabilities of 0 to COUNT successes. ODDS is the vector of the
-probabilities of 0 to COUNT - 1 successes before the last trial, which succeeds with the probability
-RATE."
+  "Return a vector of the probabilities of 0 to COUNT successes. ODDS is the same vector for 0 to
+COUNT - 1 successes before the last trial, which succeeds with the probability RATE."
   (let ((next (make-array (1+ count) :initial-element 0)))
     (loop for successes below count
           for share = (aref odds successes)
@@ -54,9 +53,8 @@ RATE."
   "Return the probability that a check by IS-SUCCESS-RATE with these arguments passes if each trial
 succeeds with the probability RATE; and the average number of trials. Use this function to see which
 rates a check accepts: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with
-.20, and 85 % with .003. The two returned values are exact except for rounding: PASS-PROBABILITY
-adds up all sequences of successes and failures, which takes a second for 5,000 trials. Signals
-WRONG-ARGUMENT."
+.20, and 85 % with .003. Both values are exact except for rounding: PASS-PROBABILITY adds up all
+sequences of successes and failures, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rate-arguments 'pass-probability at-least trials level)
   (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))

@@ -8,8 +8,7 @@
                         (function form package robots parameters clean limit))
                     (:copier nil))
   "A form whose rate of success is checked. FUNCTION evaluates FORM, which was written in PACKAGE.
-Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN is true; and at most LIMIT
-ticks."
+Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN; and at most LIMIT ticks."
   (function nil :read-only t)
   (form nil :read-only t)
   (package nil :type package :read-only t)
@@ -33,8 +32,7 @@ operator whose argument PARAMETERS is, for errors."
         collect (list (list symbol value) value)))
 
 (defun experiment-for-subject (subject operator seed)
-  "Return an experiment that consists of trials of SUBJECT, with seeds that follow SEED. Errors name
-OPERATOR."
+  "Return an experiment of trials of SUBJECT, with seeds that follow SEED. Errors name OPERATOR."
   (let ((limit (subject-limit subject)))
     (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
     (unless (whole-p limit 1)
@@ -53,8 +51,7 @@ OPERATOR."
 ;;; Expanding the macros.
 
 (defun robot-names (operator robots form)
-  "Return a list of the names in ROBOTS, a name or a list of names. Signals MALFORMED-DEFINITION if
-there is no name."
+  "Return ROBOTS, a name or list of names, as a list. Signals MALFORMED-DEFINITION without a name."
   (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
                                 (second robots)
                                 robots))))
@@ -108,8 +105,7 @@ there is no name."
 (defun success-p (result) (string= "success" (result-outcome result)))
 
 (defun record-result (check result)
-  "Add RESULT, the result of the next trial of CHECK, to the results of CHECK. Return the verdict,
-or NIL."
+  "Add RESULT of the next trial to the results of CHECK. Return the verdict, or NIL."
   (push result (check-results check))
   (when (success-p result) (incf (check-successes check)))
   (setf (check-verdict check)
@@ -183,7 +179,6 @@ REPLAY-TRIAL, and MALFORMED-DEFINITION."
     (if (< (length line) 90) line text)))
 
 (defun literal-form (value)
-  "Return a form that evaluates to VALUE."
   (if (or (consp value) (and (symbolp value) (not (keywordp value)) (not (member value '(t nil)))))
       `',value
       value))

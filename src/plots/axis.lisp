@@ -4,8 +4,7 @@
 
 (defstruct (axis (:copier nil))
   "An axis from the number LOW to HIGH, between the pixels FROM and TO. If LOG-P, LOW and HIGH are
-logarithms. MARKS is a list of lists (value line...) with lines of text, which are vertical if
-UPWARD-P."
+logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWARD-P."
   (low 0 :type real)
   (high 1 :type real)
   (from 0 :type real)
@@ -15,8 +14,7 @@ UPWARD-P."
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return VALUE, or its logarithm to base 10 if LOG-P. Signals WRONG-ARGUMENT if VALUE has no
-logarithm."
+  "Return VALUE or, if LOG-P, its logarithm to base 10. Signals WRONG-ARGUMENT if there is none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
                            "a number above 0 on a logarithmic axis; leave :log-x out, or give the
@@ -48,8 +46,7 @@ equal, the limits are at least LEAST-MARK-STEP farther out on each side."
                (values (- low more) (+ high more)))))))
 
 (defun least-mark-step (values percent)
-  "Return the least step between marks for VALUES: 1 for counts, that is, integers that are not
-shown as PERCENT; else 0."
+  "Return the least step between marks for VALUES: 1 for integers not shown as PERCENT; else 0."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
 (defun padded-range (low high from to inset)
@@ -92,8 +89,7 @@ of a list are at least LEAST-MARK-STEP apart, and at most 10 of them are between
         collect (step-marks step start end percent)))
 
 (defun decade-marks (low high factors every)
-  "Return marks from LOW to HIGH, which are logarithms: at FACTORS times each power of ten whose
-exponent EVERY divides."
+  "Return marks from LOW to HIGH, logarithms: at FACTORS times each 10^n for which EVERY divides n."
   (loop for power from (floor low) to (ceiling high)
         when (zerop (mod power every))
           append (loop for factor in factors
@@ -113,8 +109,7 @@ logarithms. The longest list comes first."
 
 (defun numeric-x-axis (values from to log-p &key percent (least 0) (inset 16))
   "Return an axis for VALUES, logarithmic if LOG-P, from the pixel FROM to TO, with as many marks as
-fit, each at least LEAST pixels wide. The least and greatest of VALUES are INSET pixels from the
-ends."
+fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels from the ends."
   (let ((least-mark-step (if log-p 0 (least-mark-step values percent)))
         (spots (if log-p
                    (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))
@@ -131,8 +126,7 @@ ends."
 ;;; The axis upward. Its ends are marks.
 
 (defun numeric-y-axis (values percent range)
-  "Return a vertical axis for VALUES and the two numbers of RANGE, without its position on the
-page."
+  "Return a vertical axis for VALUES and the numbers of RANGE, without its position on the page."
   (multiple-value-bind (low high) (value-range (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            ;; 0 and 1 can be counts or shares.

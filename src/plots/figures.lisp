@@ -8,8 +8,7 @@
 ;;; give the same picture to the last byte.
 
 (defun as-rational (value)
-  "Return VALUE, a finite number, as a rational: 0.1 as 1/10. Return NIL for NIL. Signals
-WRONG-ARGUMENT."
+  "Return VALUE, a finite number, as a rational: 0.1 as 1/10; NIL for NIL. Signals WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a finite number, or NIL if there is none")
   ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.
@@ -19,8 +18,7 @@ WRONG-ARGUMENT."
            (rationalize value))))
 
 (defun decimal-exponent (value)
-  "Return the greatest integer N for which 10^N is at most the absolute value of VALUE, which is not
-0."
+  "Return the greatest integer N for which 10^N is at most the absolute value of VALUE (not 0)."
   (let* ((size (abs value))
          (bits (- (integer-length (numerator size)) (integer-length (denominator size)) 1)))
     (loop for power from (- (floor (* 3/10 bits)) (ceiling (max 0 (- bits)) 100) 1)
@@ -70,8 +68,7 @@ WRONG-ARGUMENT."
 ;;; Round numbers along an axis.
 
 (defun round-step (span most)
-  "Return the least step that divides SPAN into at most MOST parts. A step is 1, 2 or 5 times a
-power of ten."
+  "Return the least step, 10^n, 2*10^n or 5*10^n, that divides SPAN into at most MOST parts."
   (let ((least (/ span most)))
     (loop for power from (decimal-exponent least)
           thereis (loop for factor in '(1 2 5)

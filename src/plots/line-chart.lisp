@@ -34,8 +34,7 @@ text; Y, LOW and HIGH may be NIL."
         all))
 
 (defun checked-series (all)
-  "Return a list of series for ALL, a list of lists (name point...); and true if the X of points are
-words."
+  "Return a list of series for ALL, lists (name point...); and true if the X of points are words."
   (check-argument chart all (and (listp all) (every #'consp all))
                   "a list of series, each a list (name (x y low high) ...)")
   (let ((any-x-word-p (any-x-word-p all)))
@@ -59,8 +58,7 @@ words."
 ;;; Series are drawn side by side, so that their intervals do not hide each other.
 
 (defun least-gap (places)
-  "Return the least distance between two of the positions PLACES, in pixels; or 60 if there are less
-than two."
+  "Return the least distance between two of PLACES, in pixels; or 60 for fewer than two."
   (let ((sorted (sort (copy-list places) #'<)))
     (loop for (place next) on sorted
           while next
@@ -111,7 +109,6 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
         collect (make-series (series-name one) (series-index one) points)))
 
 (defun point-tooltip (series point words percent)
-  "Return the tooltip of POINT: its series, X, Y and interval."
   (flet ((text (value) (figure-text value :percent percent)))
     (format nil "~@[~A, ~]~A: ~A~:[~;~:* (~A to ~A)~]"
             (and (string/= "" (series-name series)) (series-name series))
@@ -168,8 +165,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
       (each (lambda (series shift) (draw-markers canvas series plot shift words percent))))))
 
 (defun lay-out-line-chart (all words values log-x upward options)
-  "Return the plane for the series in the list ALL. VALUES are their X. If there are WORDS, the X
-are positions in WORDS."
+  "Return the plane for the series ALL. VALUES are their X; if there are WORDS, positions in WORDS."
   (apply #'lay-out-plot
          (lambda (from to)
            (if words

@@ -6,8 +6,7 @@
 
 ;;; The colours are those of Okabe and Ito (Color Universal Design, 2008), which most colour-blind
 ;;; people can tell apart, except yellow, which is faint on white. Markers and dashes tell series
-;;; apart without colours. There are 7 colours, 10 markers and 6 dashes: so the first 210 series all
-;;; differ.
+;;; apart without colours. With 7 colours, 10 markers and 6 dashes, the first 210 series differ.
 
 (defconstant +text-color+ #x202020 "The colour of text.")
 (defconstant +faint-text-color+ #x505050 "The colour of text that is less important.")
@@ -33,7 +32,6 @@
   "An alist from names of markers to their outlines, polygons x y ... around the point 0, 0.")
 
 (defun series-color (index)
-  "Return the colour of the series INDEX."
   (nth-cyclic index *series-colors*))
 
 (defun call-with-series-look (function index width)
@@ -74,7 +72,6 @@
       (fill-marker canvas outline white* x y (- radius 8/5)))))
 
 (defun draw-vertical-interval (canvas x low high)
-  "Draw a vertical bar at X from the pixel LOW to HIGH, with caps."
   (draw-segments canvas draw-gcontext* (list x low x high
                                              (- x 3) low (+ x 3) low
                                              (- x 3) high (+ x 3) high)))
@@ -145,9 +142,8 @@ without such a character WORD is broken at COUNT."
 (defun space-p (character) (not (and (graphic-char-p character) (char/= #\Space character))))
 
 (defun wrap-text (text width &key (size +text-size+) bold-p)
-  "Return TEXT, a string or NIL, as a list of lines that fit in WIDTH pixels. TEXT is broken at
-newlines and between words. A word that is longer than a line is broken after a dash or a similar
-character, or anywhere if there is none."
+  "Return TEXT, a string or NIL, as lines that fit in WIDTH pixels. TEXT is broken at newlines and
+between words. A word longer than a line is broken after a dash or the like, else anywhere."
   (check-argument chart text (typep text '(or null string)) "a string, or NIL for none")
   (and text
        (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
@@ -162,8 +158,7 @@ character, or anywhere if there is none."
 (defun write-lines (canvas x y lines &key (anchor :start) (color +text-color+)
                                        (size +text-size+) bold-p
                                        (step +chart-line-height+))
-  "Write LINES of text below each other. Y is the base line of the first line. Return the base line
-for a further line."
+  "Write LINES of text from the base line Y down. Return the base line for a further line."
   (with-ink (color)
     (dolist (line lines y)
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)

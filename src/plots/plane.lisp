@@ -20,8 +20,7 @@ line...). If CONNECT is true, the samples of series have lines."
 
 (defun lay-out-legend (names title most connect)
   "Return the legend for series with NAMES, below TITLE, a string or NIL, and at most MOST pixels
-wide. If all names are empty, the legend is empty. If CONNECT is true, the samples of series have
-lines."
+wide. If all names are empty, the legend is empty. If CONNECT, the samples of series have lines."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))

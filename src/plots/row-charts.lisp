@@ -5,8 +5,7 @@
 (export '(difference-chart measure-chart))
 
 (defstruct (row (:constructor make-row (label words height)) (:copier nil))
-  "A row of a chart. LABEL and WORDS are lines of text to its left and right. TOP and HEIGHT are
-pixels."
+  "A row of a chart, between the lines of text LABEL and WORDS. TOP and HEIGHT are pixels."
   (label '() :type list :read-only t)
   (words '() :type list :read-only t)
   (height 0 :read-only t)
@@ -15,8 +14,7 @@ pixels."
 (defun row-middle (row) (+ (row-top row) (/ (row-height row) 2)))
 
 (defun lay-out-row (label words width least)
-  "Return a row that is at least LEAST pixels high on a page of WIDTH pixels. WORDS is a list of
-strings."
+  "Return a row, at least LEAST pixels high, on a page of WIDTH pixels. WORDS is a list of strings."
   (let ((label (wrap-text label (* 32/100 width)))
         (words (loop for text in words append (wrap-text text (* 34/100 width)))))
     (make-row label words
@@ -98,8 +96,7 @@ high words); all but the label may be NIL."
                (figure-text value :percent percent :digits 3)))
 
 (defun interval-text (value low high text)
-  "Return a text of VALUE and its interval from LOW to HIGH. The function TEXT returns the text of a
-number."
+  "Return a text of VALUE and its interval from LOW to HIGH. The function TEXT formats a number."
   (cond ((null value) "no data")
         ((and low high)
          (format nil "~A (~A to ~A)" (funcall text value) (funcall text low) (funcall text high)))
@@ -147,15 +144,13 @@ shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-AR
 
 ;;;; Distributions of many numbers, by group
 
-;;; The numbers of a group are a histogram with columns of four pixels. So ten numbers and ten
-;;; thousand are drawn alike.
+;;; The numbers of a group are a histogram with columns of four pixels, whether ten or ten thousand.
 
 (defconstant +column-width+ 4 "The width of a column of a histogram, in pixels.")
 (defconstant +column-height+ 28 "The height of the highest column of a group, in pixels.")
 
 (defun checked-group (row)
-  "Check ROW, an element of the argument ROWS of MEASURE-CHART. Return a list (label numbers middle
-low high)."
+  "Check ROW, one of the ROWS of MEASURE-CHART. Return a list (label numbers middle low high)."
   (check-argument measure-chart row
                   (and (consp row) (ignore-errors (<= 2 (length row) 5))
                        (typep (second row) 'sequence))
@@ -204,9 +199,8 @@ count of NUMBERS in each column."
   "Return a chart of the distributions of many numbers, by group, as an SVG document. ROWS are lists
 (label numbers middle low high). NUMBERS, a sequence in which NIL is ignored, are drawn as a
 histogram. Below the histogram is MIDDLE, such as their median, with the interval from LOW to HIGH;
-MIDDLE, LOW and HIGH may be NIL. MIDDLE-LABEL is the name of this statistic, by default \"median\".
-If LOG-X is true, the scale is logarithmic. The other arguments are those of LINE-CHART. Signals
-WRONG-ARGUMENT."
+MIDDLE, LOW and HIGH may be NIL. MIDDLE-LABEL names this statistic, by default \"median\". The scale
+is logarithmic if LOG-X. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (check-argument measure-chart rows (listp rows) "a list of rows")
   (let* ((groups (mapcar #'checked-group rows))
          (table (lay-out-table (mapcar (lambda (group) (group-entry group middle-label)) groups)

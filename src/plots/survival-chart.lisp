@@ -6,8 +6,7 @@
 
 (defstruct (curve (:constructor make-curve (name index steps censored times)) (:copier nil))
   "A survival curve. STEPS are lists (time survival low high), sorted by time; each is valid from
-its time on. CENSORED are the times of censored trials, TIMES the times at which trials ended, for
-any reason."
+its time on. CENSORED are the times of censored trials, TIMES those of the ends of all trials."
   (name "" :read-only t)
   (index 0 :read-only t)
   (steps '() :type list :read-only t)
@@ -51,7 +50,6 @@ any reason."
   (find time (curve-steps curve) :key #'first :test #'>= :from-end t))
 
 (defun has-data-p (curve)
-  "True if CURVE has data to show."
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
 (defun count-at-risk (time curve)
@@ -61,8 +59,7 @@ any reason."
 ;;; The curve.
 
 (defun step-line-points (steps end reader plot)
-  "Return a list of points x y ... along STEPS until the time END. READER returns the value of a
-step to draw."
+  "Return points x y ... along STEPS until the time END. READER returns the value of a step."
   (loop for (step next) on steps
         for y = (axis-pixel (funcall reader step) (plot-y-axis plot))
         collect (axis-pixel (first step) (plot-x-axis plot))
@@ -148,10 +145,9 @@ interval. END is the time until which the last of these steps is valid."
   "Return a chart of survival CURVES as an SVG document. Each curve is a list (name :steps steps
 :censored times :times times). A step is a list (time survival low high): the share that survives
 from that time on, from 0 to 1, and the bounds of its confidence band; before the first step the
-share is 1. TIMES are the times at which the trials ended, by the event or by censoring; CENSORED
-are the times of those that were censored. Below the chart are the numbers at risk, computed from
-TIMES, with the heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals
-WRONG-ARGUMENT."
+share is 1. TIMES are the times at which the trials ended, by the event or censoring; CENSORED are
+the times of those censored. Below the chart are the numbers at risk, computed from TIMES, with the
+heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument survival-chart risk-label (stringp risk-label) "a string")
   (let* ((curves (checked-curves curves))

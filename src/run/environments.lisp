@@ -86,8 +86,7 @@ the dice that SIMULATION was loaded with, if any."
             environment))))
 
 (defun restore-environment (simulation)
-  "Set the variables of SIMULATION, to which this thread returns, to the values that are stored in
-SIMULATION."
+  "Set the variables to the values stored in SIMULATION, to which this thread returns."
   (when (headless-p simulation)
     (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))

@@ -5,10 +5,9 @@
 (export '(definitions-of definition-entry))
 
 ;;; A journal has a list (kind name number) for each definition that the run depends on, where the
-;;; number is a digest of the form that was read. It has (:file name number) for each file that
-;;; contains these definitions, as the run may depend on other forms there too. Comments and layout
-;;; do not count. A definition made by a function has no form, so it has no number and is not
-;;; compared.
+;;; number is a digest of the form that was read. It has (:file name number) for each file with
+;;; these definitions, as the run may depend on other forms there too. Comments and layout do not
+;;; count. A definition made by a function has no form, so it has no number and is not compared.
 ;;;
 ;;; A run depends on what it uses: its map and robots; the kickers and attributes of its things; the
 ;;; place types, substances and users' map clauses in the map; the robots' parts of users' kinds;
@@ -40,8 +39,7 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
     names))
 
 (defun elements-at-indices (numbers elements)
-  "Return a list of the elements of the vector ELEMENTS whose indices are in NUMBERS. Index 0 is
-ignored."
+  "Return the elements of the vector ELEMENTS whose indices are in NUMBERS. Index 0 is ignored."
   (let ((used (make-array (length elements) :element-type 'bit :initial-element 0)))
     (loop for number across numbers do (setf (sbit used number) 1))
     (loop for index from 1 below (length elements)
@@ -210,8 +208,7 @@ number of a definition that has changed becomes :CHANGED."
               (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
-  "Return a text about how DEFINITION, (kind name number), differs from the definition of the same
-name in OTHERS, or NIL."
+  "Return how DEFINITION, (kind name number), differs from its namesake in OTHERS, a text or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
     (cond ((recorded-as-undefined-p definition)

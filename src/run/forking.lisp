@@ -26,8 +26,7 @@
       timeline))
 
 (defun copy-run (simulation copier)
-  "Return a copy of SIMULATION made by COPIER, with the participants in the options of COPIER and
-without a journal."
+  "Return a copy of SIMULATION by COPIER, with the participants in COPIER's options and no journal."
   (let ((copy (copying (copier)
                 (forked (simulation-world simulation) copier)
                 (let ((copy (forked simulation copier)))
@@ -126,8 +125,7 @@ Signals MISUSE after +FORK-ATTEMPTS+ attempts."
                              (simulation-name simulation))))
 
 (defun await-fork (simulation continuations decisions)
-  "Return a fork of SIMULATION as soon as it is between ticks and its participants are at rest. See
-FORK-NOW."
+  "Return a fork as FORK-NOW does, once SIMULATION is between ticks and its participants at rest."
   (flet ((try ()
            (asking (simulation)
              (call-through-participants #'participant-at-rest (simulation-participants simulation)
@@ -139,8 +137,7 @@ FORK-NOW."
                        (lambda () (keep-trying-to-fork simulation #'try)))
           fork))))
 
-;; The restarts are established here, in the thread that asked for the fork: another thread may own
-;; the run.
+;; The restarts are made in this thread, which asked for the fork: another may own the run.
 (defun ask-about-uncopiable-value (condition)
   "Signal CONDITION, a CANNOT-FORK, with restarts. Return the replacement in the fork for the value
 that cannot be copied, and true; or NIL and false if the user wants no fork."
@@ -163,8 +160,7 @@ that cannot be copied, and true; or NIL and false if the user wants no fork."
             (push (cons (cannot-fork-value condition) replacement) decisions)))))))
 
 (defun parse-fork-arguments (arguments)
-  "Parse ARGUMENTS, the arguments of FORK-SIMULATION. Return the simulation and the plist of
-options."
+  "Parse ARGUMENTS of FORK-SIMULATION. Return the simulation and the plist of options."
   (if (keywordp (first arguments))
       (values (current-simulation) arguments)
       (values (if arguments
@@ -284,9 +280,8 @@ task, a fluent or a valve"))))
 (defun counterpart (object &optional (fork (current-simulation)))
   "Return the copy of OBJECT in FORK, by default the current simulation. FORK is a direct or
 indirect fork of the run of OBJECT, or the run that replaced that run on REWIND. OBJECT may be a
-robot, a part, a thing, a designator, an odometer, a task, a fluent or a valve. The value is NIL if
-FORK has no such copy: the thing is destroyed there, the designator invalid, or the task over.
-Signals WRONG-ARGUMENT."
+robot, part, thing, designator, odometer, task, fluent or valve. Return NIL if FORK has no copy: the
+thing is destroyed there, the designator invalid, or the task over. Signals WRONG-ARGUMENT."
   (check-argument counterpart fork
                   (and (simulation-p fork) (or (fork-p fork) (simulation-line fork)))
                   "a fork, as FORK-SIMULATION returns, or a run that was rewound")

@@ -112,8 +112,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
                      (simulation-messages simulation)))))
 
 (define-event *rewound-end-hooks*
-  "Functions that are called when a headless run that was rewound has ended, with this run and its
-last successor.")
+  "Functions called at the end of a rewound headless run, with this run and its last successor.")
 
 (defun end-headless (simulation)
   "End SIMULATION or, if it was rewound, its successor."
@@ -153,12 +152,10 @@ of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION.
 ;;; The macro, and warnings about misspelt forms.
 
 (defun strip-quote (form)
-  "Return FORM without a leading quote."
   (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
 (defun robots-form-p (form environment)
-  "True if FORM, the robots argument of WITH-SIMULATION, is an expression that returns robots, not a
-name or a list of names."
+  "True if FORM, the robots of WITH-SIMULATION, is an expression, not a name or a list of names."
   (typecase form
     (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
     (cons (let ((head (first form)))
@@ -169,8 +166,6 @@ name or a list of names."
                      (known-function-p head environment)))))))
 
 (defun warn-of-used-command-values (body)
-  "Warn about each form in BODY, the body of a WITH-SIMULATION form, that uses the value of a
-command."
   (map-calls (lambda (form)
                (let ((call (find-if (lambda (used)
                                       (and (typep used '(cons symbol))
@@ -183,8 +178,7 @@ command."
              body))
 
 (defun unquoted-settings-p (form)
-  "True if FORM, which should evaluate to a list of settings, is itself a setting or a list of
-settings without a quote."
+  "True if FORM, which should return settings, is itself a setting or an unquoted list of settings."
   (and (consp form)
        (let ((head (first form)))
          (if (consp head)
@@ -192,8 +186,7 @@ settings without a quote."
              (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
 
 (defun settings-form (form)
-  "Return FORM, the value of the option :parameters. Signals MALFORMED-DEFINITION if FORM lacks a
-quote."
+  "Return FORM, the option :parameters. Signals MALFORMED-DEFINITION if FORM lacks a quote."
   (when (unquoted-settings-p form)
     (reject-clause "with-simulation" (list :parameters form)
                    (let ((*print-case* :downcase))

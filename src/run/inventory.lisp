@@ -32,14 +32,12 @@ finds it: a list (KIND argument...) of a keyword and plain data. Otherwise retur
          (list :double-float (double-to-bits number)))))
 
 (defun method-at (position name)
-  "Return the method at POSITION of the manipulation NAME."
   (check-type position unsigned-byte)
   (or (nth position (manipulation-methods (find-manipulation name)))
       (error "~(~A~) has fewer methods than that" name)))
 
 (defun external-object (kind argument &optional more)
-  "Return the object with the external name (KIND ARGUMENT [MORE]). Signals an error if there is no
-such object."
+  "Return the object with the external name (KIND ARGUMENT [MORE]). Signals an error without one."
   (or (typecase argument
         (string (case kind
                   (:map (find-map argument))
@@ -100,8 +98,7 @@ to :FOUND or :NUMBERED. At the end, :NUMBERED is replaced by the number of the o
 ;;; Objects that cannot be saved.
 
 (defun reject-object (object why inventory)
-  "Signal MISUSE: OBJECT, found in the current object of INVENTORY, cannot be saved for the reason
-WHY, a text."
+  "Signal MISUSE: OBJECT, in the current object of INVENTORY, cannot be saved for the reason WHY."
   (let ((field (inventory-field inventory)))
     (reject-use "The run cannot be saved: ~@[the slot ~(~A~) of ~]~A contains ~A. ~A."
                 (and field (kind-slot-name field)) (short-text (inventory-holder inventory))
@@ -185,8 +182,7 @@ was found before. Return true if it was found before."
     state))
 
 (defun mark-numbered (object inventory)
-  "Record OBJECT in INVENTORY and give it a number. If OBJECT belongs to the run, its contents are
-surveyed later."
+  "Give OBJECT a number in INVENTORY. The contents of an OBJECT of the run are surveyed later."
   (unless (gethash object (inventory-states inventory))
     (multiple-value-bind (name other-p) (checked-external-name object)
       (cond ((null name)
@@ -199,8 +195,7 @@ surveyed later."
                (push (cons object name) (inventory-external-objects inventory)))))))
 
 (defun reserve-room (characters inventory)
-  "Record that CHARACTERS more characters will be written for the current object of INVENTORY. True
-if there is room for them."
+  "Record CHARACTERS more characters for the current object of INVENTORY. True if there is room."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun record-string (text inventory)
@@ -252,7 +247,6 @@ if there is room for them."
       (record-value (row-major-aref array index) 0 inventory))))
 
 (defun record-contents (object inventory)
-  "Record the contents of OBJECT, which has a number, in INVENTORY."
   (setf (inventory-room inventory) +characters-per-object+
         (inventory-holder inventory) object
         (inventory-field inventory) nil)

@@ -69,8 +69,7 @@
       (error "~[the head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
 
 (defun read-data (in)
-  "Return a list of all data of the journal in the stream IN. Signals errors that name the damaged
-entry."
+  "Return all data of the journal in the stream IN. Signals errors that name the damaged entry."
   (loop with sum = 0
         for number from 0
         for line = (next-data-line in)
@@ -109,7 +108,6 @@ entry."
     (ars-magna-error (trouble) (one-line-text trouble))))
 
 (defun duplicates-p (names)
-  "True if the strings NAMES contain duplicates."
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
 (defun header-error-text (header)
@@ -148,8 +146,7 @@ entry."
                  (short-text (plain-name (second entry)))))))
 
 (defun checked-entries (data)
-  "Check the journal entries DATA and return them with symbols for the operators. Signals an error
-that names the wrong entry."
+  "Return the entries DATA with operators as symbols. Signals an error that names the wrong entry."
   (loop with tick = 0
         for entry in data
         for number from 1
@@ -176,8 +173,7 @@ that names the wrong entry."
     (error "the journal ends at tick ~D, before its last entry" (second end))))
 
 (defun journal-from-data (data)
-  "Return the journal made of DATA, a list of all data in its file. Signals an error if DATA are not
-a valid journal."
+  "Return the journal of DATA, all data in its file. Signals an error if DATA are no valid journal."
   (check-head (first data))
   (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
         (entries (checked-entries (butlast (rest data))))

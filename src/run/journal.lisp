@@ -70,8 +70,7 @@ Signals WRONG-ARGUMENT."
                        (journal-length journal) tick)))
 
 (defun room-left-p (journal)
-  "True if JOURNAL has room for another entry. If *JOURNAL-LIMIT* is not a number, there is no
-limit."
+  "True if JOURNAL has room for another entry, always if *JOURNAL-LIMIT* is not a number."
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
@@ -104,8 +103,7 @@ current tick, in the journal and the past of SIMULATION, if SIMULATION keeps the
       (record-act simulation operator arguments request))))
 
 (defun settings-by-name (settings)
-  "Return SETTINGS, lists (symbol value), as lists (name value) with the parameters' names as
-strings."
+  "Return SETTINGS, lists (symbol value), as lists (name value) with strings as names."
   (loop for (symbol value) in settings collect (list (string-downcase symbol) value)))
 
 (defun settings-by-symbol (settings)
@@ -157,8 +155,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                               (remove remark remarks :test #'eq))))))
 
 (defun add-error-remark (text)
-  "Add a remark about an error in users' code, with its text TEXT, to the journal of the current
-run, if any."
+  "Add a remark with the TEXT of an error in users' code to the journal of the current run, if any."
   (when *simulation*
     (let ((robots (simulation-robots *simulation*)))
       (add-remark *simulation* :error text (and (null (rest robots)) (first robots))))))
@@ -179,8 +176,7 @@ run, if any."
                             :definitions (definitions-of simulation)))))
 
 (defun set-initial-thinking (simulation mode)
-  "Set the thinking mode of SIMULATION to MODE, also in its journal. No tick of SIMULATION has
-passed yet."
+  "Set the thinking mode of SIMULATION, before its first tick, to MODE, also in its journal."
   (set-timeline-thinking (simulation-timeline simulation) mode)
   (when (simulation-journal simulation)
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
@@ -197,8 +193,7 @@ since the journal was begun. No tick of SIMULATION has passed yet."
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun journal-up-to-now (simulation)
-  "Return the journal of SIMULATION, extended to the current tick unless it is full. Signals MISUSE
-if SIMULATION keeps no journal."
+  "Return the journal of SIMULATION, extended to now unless full. Signals MISUSE without a journal."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Start it with a journal: ~
                                   (with-simulation (ROBOT :journal t) ...), or (simulator ROBOT) ~
@@ -221,8 +216,7 @@ if SIMULATION keeps no journal."
 ;;; a replay repeats them. Nor are changes of a world whose run is over.
 
 (defun check-not-of-past-run (timeline operator)
-  "Signal MISUSE if the run of TIMELINE is over, OPERATOR is to change its world, and this code
-works in another run."
+  "Signal MISUSE if OPERATOR, in another run, changes the world of TIMELINE, whose run is over."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
       (reject-finished-run "~(~A~): this object belongs to another run in ~(~A~), which is over: ~
@@ -247,8 +241,7 @@ between two runs and this code works in another run."
                               operator (timeline-name (world-timeline world))))))))
 
 (defun perform-change (world operator arguments)
-  "Call OPERATOR with ARGUMENTS to change WORLD, which this thread owns. OPERATOR checks ARGUMENTS
-again."
+  "Change WORLD, which this thread owns, by OPERATOR with ARGUMENTS, which OPERATOR checks again."
   (let ((*world* world)
         (*simulation* (world-simulation world)))
     (apply (operator-function (find-operator operator)) arguments)))

@@ -14,8 +14,7 @@
        (starts-with-subseq "Lisp" (note-text (request-asker request)))))
 
 (defun wrong-simulation-remedy (simulation)
-  "Return a text with a remedy if requests to SIMULATION were made inside another simulation since
-its last tick; or NIL."
+  "Return a remedy for requests to SIMULATION made in another run since its last tick, or NIL."
   (and (requested-elsewhere-p (simulation-world simulation))
        (one-line "That was asked for inside of another with-simulation, and only ticks of that one
 passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
@@ -49,8 +48,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
   "How to pass ticks at the prompt.")
 
 (defun undone-request-names (simulation)
-  "Return a list of the names of requests to SIMULATION and of plans that have not begun; and a list
-of the names of these plans alone."
+  "Return the names of requests to SIMULATION and plans not begun; and those of these plans alone."
   (let ((plans (unfinished-in-participants simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.
@@ -60,8 +58,7 @@ of the names of these plans alone."
             plans)))
 
 (defun undone-requests-text (simulation)
-  "Return a text, with a remedy, about requests to SIMULATION and plans that have not begun; or
-NIL."
+  "Return a text and remedy about requests to SIMULATION and plans that have not begun; or NIL."
   (multiple-value-bind (undone plans) (undone-request-names simulation)
     (when undone
       (format nil "~{~A~^, ~} did nothing. ~A" undone
@@ -89,8 +86,7 @@ has checked itself which work was in progress; checks made by a prompt do not co
               typed (simulation-tick simulation) cut-off (rest cut-off) typed *prompt-remedy*))))
 
 (defun warning-at-end-text (simulation)
-  "Return a text about requests to SIMULATION that had no effect or are cut off, because SIMULATION
-ends; or NIL."
+  "Return a text about requests to SIMULATION that had no effect or are cut off by its end; or NIL."
   (if (zerop (simulation-tick simulation))
       (let ((undone (undone-requests-text simulation)))
         (and undone (format nil "No ticks have passed~:[ in with-simulation~;~], so ~A"

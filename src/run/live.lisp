@@ -6,16 +6,14 @@
           *simulator-hook-options*))
 
 (define-event *simulator-hooks*
-  "Functions that are called when SIMULATOR has started a run, with the robot and the plist of
-SIMULATOR's options.")
+  "Functions called when SIMULATOR has started a run, with the robot and the plist of the options.")
 
 (defvar *simulator-hook-options* '()
   "The names of the options of SIMULATOR that its hooks use, as symbols that are no keywords.")
 
 (defun call-with-thread-bindings (simulation function)
   "Call FUNCTION with the bindings of the thread of SIMULATION. The bindings include the robots'
-names that were bound where SIMULATION was started, for example by WITH-SIMULATION around
-SIMULATOR."
+names bound where SIMULATION was started, for example by WITH-SIMULATION around SIMULATOR."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
@@ -31,8 +29,7 @@ SIMULATOR."
 (defun start-clock (simulation &key (rate *default-rate*) (real t) paused-p)
   "Run SIMULATION live, in a new thread, at RATE; if PAUSED-P is true, ticks pass only after RESUME.
 Plans also get a thread if REAL is true and thinking is not charged. Return SIMULATION. Signals
-MISUSE if SIMULATION is already live, WRONG-ARGUMENT for a rate that is neither a positive number
-nor :FREE."
+MISUSE if SIMULATION is already live, and WRONG-ARGUMENT unless RATE is a positive number or :FREE."
   (check-parameters)
   (let ((output (editor-output-stream))
         ;; Users' code there, and its debugger, read and print as in this thread.
@@ -70,8 +67,7 @@ successor. Return SIMULATION."
 ;;; Starting and stopping.
 
 (defun restart-world (world seed)
-  "Reset WORLD, which this thread owns, and its robots to their initial state, with a new timeline
-and run. Return the run."
+  "Reset WORLD, which this thread owns, and its robots, with a new timeline. Return the new run."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
     (deferring-interrupts
@@ -87,9 +83,8 @@ and run. Return the run."
        (or (not journal) (simulation-journal simulation))))
 
 (defun simulation-to-start (world seed journal)
-  "Return the simulation of WORLD to run live. Make a new simulation if ticks of the last simulation
-of WORLD have passed, or if JOURNAL is true and that simulation keeps no journal. SEED, if given,
-seeds the dice."
+  "Return the simulation of WORLD to run live: a new simulation if ticks of the last one have
+passed, or if JOURNAL is true and the last one keeps no journal. SEED, if given, seeds the dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (startable-p simulation journal))
            (end-simulation simulation "it has been started anew")
@@ -138,8 +133,7 @@ current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
 (defun start-world-of-robot (robot rate seed journal keep thinking)
-  "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT
-meanwhile."
+  "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
         (everywhere (and *simulation* (pacing-thread-p (simulation-timeline *simulation*)))))
@@ -157,8 +151,7 @@ meanwhile."
     (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
 
 (defun check-options-of-simulator (options)
-  "Signal MISUSE if the plist OPTIONS has a keyword that is an option of neither SIMULATOR nor its
-hooks."
+  "Signal MISUSE if the plist OPTIONS has an option of neither SIMULATOR nor its hooks."
   (unless (getf options :allow-other-keys)
     (let ((strange (wrong-keyword-text `(&key rate seed journal keep thinking
                                            ,@*simulator-hook-options*)

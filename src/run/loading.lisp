@@ -39,8 +39,7 @@
   (number 0 :type fixnum))
 
 (defun next-datum (reader)
-  "Return the datum in the next line of READER. Signals an error if the line is damaged or
-missing."
+  "Return the datum in the next line of READER. Signals an error for a damaged or missing line."
   (let ((line (or (next-data-line (line-reader-in reader))
                   (error "the end of the file is missing"))))
     (incf (line-reader-number reader))
@@ -97,8 +96,7 @@ missing."
       journal)))
 
 (defun read-saved-journal (reader head)
-  "Return the journal in READER, a saved run with the head HEAD, or NIL if the run keeps no
-journal."
+  "Return the journal in READER, a saved run with HEAD, or NIL if the run keeps no journal."
   (let ((first (and (getf head :journal) (next-datum reader)))
         (tick (getf head :tick)))
     (multiple-value-bind (entries end) (read-journal-entries reader)
@@ -116,8 +114,7 @@ journal."
 ;;; Putting the run together.
 
 (defun only-object (type loader)
-  "Return the only object of the kind TYPE in LOADER. Signals an error unless there is exactly one
-object of TYPE."
+  "Return the only object of TYPE in LOADER. Signals an error unless there is exactly one."
   (let ((objects (remove-if-not (lambda (object) (typep object type)) (loader-objects loader))))
     (unless (= 1 (length objects))
       (error "the file has ~R objects of the kind ~(~A~), but a run has one" (length objects) type))
@@ -151,13 +148,11 @@ Parameters that are not in SETTINGS get their defaults."
                    "a request belongs to another run")))))
 
 (defun occupied-resource (request)
-  "Return the resource that REQUEST occupies or frees: the resource of an operation, or the first
-argument of another request."
+  "Return the resource of REQUEST if REQUEST is an operation, otherwise its first argument."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
 (defun complete-loading (simulation head loader requests)
-  "Make SIMULATION, which is among the objects LOADER, ready to continue, with REQUESTS waiting.
-Return SIMULATION."
+  "Make SIMULATION of LOADER ready to continue, with REQUESTS waiting. Return SIMULATION."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (destructuring-bind (agenda tick . events) (loader-agenda loader)
       (unless (eq agenda (timeline-agenda timeline)) (error "the agenda does not belong to the ~

@@ -14,8 +14,7 @@
 ;;; it is of a kind (DEFINE-KIND), the roles of its slots determine how it is copied and digested.
 
 (defmacro define-participant-function (name lambda-list documentation &body otherwise)
-  "Define the generic function NAME, which participants may implement. OTHERWISE is the body of its
-default method."
+  "Define the generic function NAME for participants. OTHERWISE is the body of its default method."
   `(defgeneric ,name ,lambda-list
      (:documentation ,documentation)
      (:method ,lambda-list
@@ -23,8 +22,7 @@ default method."
        ,@otherwise)))
 
 (define-participant-function participant-after-tick (participant simulation)
-  "Let PARTICIPANT act after a tick of SIMULATION. The thread that owns the world calls this
-function."
+  "Let PARTICIPANT act after a tick of SIMULATION, in the thread that owns the world."
   (values))
 
 (define-participant-function participant-after-ticks (participant simulation)
@@ -32,8 +30,7 @@ function."
   (values))
 
 (define-participant-function participant-origin (participant)
-  "Return the name of PARTICIPANT for messages and restarts, in the form that CALL-USER-CODE
-requires."
+  "Return the name of PARTICIPANT for messages and restarts, in the form for CALL-USER-CODE."
   "a participant of the run")
 
 (define-participant-function participant-busy-p (participant simulation)
@@ -54,9 +51,8 @@ may call this function."
   (digest-state participant digest))
 
 (define-participant-function participant-copy (participant simulation copier)
-  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run that COPIER makes, or NIL if the
-fork needs no copy. By default, participants that DEFINE-KIND has defined are copied. See
-COPY-PLAN-VALUE."
+  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run by COPIER, or NIL if the fork
+needs no copy. By default, participants defined by DEFINE-KIND are copied. See COPY-PLAN-VALUE."
   (and (kind-of participant) (forked participant copier)))
 
 (define-participant-function participant-place (participant value)

@@ -56,8 +56,7 @@ allows. Meanwhile no other code, not even a continuation, can pass ticks of SIMU
       (setf (timeline-passing-p timeline) nil))))
 
 (defun warn-of-ticks-in-plan (operator simulation)
-  "Warn once if a step of a plan calls OPERATOR, which passes ticks of SIMULATION while the plan is
-stopped."
+  "Warn once that a step of a plan calls OPERATOR, which passes ticks while the plan is stopped."
   (when (some #'participant-around-p (simulation-participants simulation))
     (warn-once (list :in-plan operator) (simulation-world simulation)
                (format nil "~(~A~) was called inside of a step of a plan, so the plan is stopped ~
@@ -191,8 +190,7 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
          (settled-p simulation))))
 
 (defun wait-until-idle (simulation seconds)
-  "Wait at most SECONDS until the live SIMULATION, whose ticks another thread passes, is idle.
-Return true if it is idle."
+  "Wait at most SECONDS until SIMULATION, live in another thread, is idle. Return true if idle."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
              (when (settled-p simulation) (signal-semaphore idle))))

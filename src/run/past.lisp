@@ -27,8 +27,7 @@ ARGUMENTS; ARGUMENTS are memorized. ASKER is a note of who made the act, or NIL.
   (asker nil :read-only t))
 
 (defstruct (fork-record (:constructor make-fork-record (fork tick acts)) (:copier nil))
-  "A fork that a run keeps for rewinding. FORK was made at the end of TICK, after ACTS, the newest
-first."
+  "A fork kept for rewinding. FORK was made at the end of TICK, after ACTS, the newest first."
   (tick 0 :type fixnum :read-only t)
   (fork nil :type simulation :read-only t)
   (acts '() :type list :read-only t))
@@ -40,8 +39,7 @@ first."
 the newest first. The next fork is made at the tick NEXT or later, and not before the time DUE, in
 seconds. If DUE has not come at the tick NEXT, the clock is read again PACE ticks later. ROLLED is
 the last known state of the dice of programs, or NIL. COST is the average number of seconds that a
-fork takes. WANTED is the time, in seconds, since which a fork is postponed because the run is busy;
-or NIL."
+fork takes. WANTED is the time, in seconds, since which the busy run postpones a fork; or NIL."
   (limit 0 :type fixnum)
   (forks '() :type list)
   (acts '() :type t)
@@ -55,8 +53,7 @@ or NIL."
   (warned-p nil :type boolean))
 
 (defun repeated-by-forks-p (request)
-  "True if a fork makes REQUEST by itself, because the code that made REQUEST also runs in the
-fork."
+  "True if a fork makes REQUEST by itself, because the code that made REQUEST also runs in forks."
   (or (request-forked-p request) (requested-inside-tick-p request)))
 
 (defun request-act (request simulation operator arguments)
@@ -66,7 +63,6 @@ REQUEST; ARGUMENTS are externalized and memorized."
             (repeated-by-forks-p request) operator arguments (request-asker request)))
 
 (defun change-act (simulation operator arguments)
-  "Return the act for a change by OPERATOR with ARGUMENTS at the current tick and phase."
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-in-this-thread timeline)
               (timeline-moments timeline)
@@ -137,9 +133,8 @@ recorded. Return nothing."
            (notifying-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
-  "ACTS is a list with the newest act first. Return its tail of acts that were done before the end
-of the tick TICK; and a list, the newest first, of the requests that were made but not performed
-before that."
+  "ACTS is a list, the newest act first. Return its tail of acts done before the end of the tick
+TICK; and a list, the newest first, of the requests that were made but not performed before that."
   (let ((tail (member-if (lambda (act) (done-by-end-p act tick)) acts)))
     (values tail
             (remove-if-not (lambda (act) (requested-in-tick-p act tick)) (ldiff acts tail)))))
@@ -163,8 +158,7 @@ REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T."
 (defconstant +least-fork-seconds+ 1d-4 "The least seconds that a fork is taken to cost.")
 
 (defparameter *fork-time-share* 1/100
-  "The part of its time that a run may spend on keeping forks. With 1, a run keeps a fork at each
-tick.")
+  "The part of its time that a run may spend on forks: with 1, a run keeps a fork at each tick.")
 (defparameter *most-fork-octets* (expt 2 28)
   "The estimated number of octets that the kept forks of a run may take at most.")
 
@@ -187,7 +181,6 @@ whose removal leaves the smallest gap in proportion to its age."
         finally (return best)))
 
 (defun warn-of-unkept-fork (simulation past condition)
-  "Warn once that no fork of SIMULATION, which has PAST, can be kept because of CONDITION."
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
     (warn-notably (format nil "The state at tick ~D cannot be kept for REWIND: ~A."
@@ -195,8 +188,7 @@ whose removal leaves the smallest gap in proportion to its age."
                          (string-right-trim "." (brief-text condition))))))
 
 (defun make-fork-to-keep (simulation past)
-  "Return a fork of SIMULATION, which has PAST; :BUSY if a participant is busy; or NIL if no fork
-can be made."
+  "Return a fork of SIMULATION with PAST; :BUSY if a participant is busy; NIL if this fails."
   (handler-case (call-through-participants #'participant-at-rest
                                            (simulation-participants simulation)
                              (lambda () (fork-now simulation nil '())))
@@ -204,7 +196,6 @@ can be made."
     (error (condition) (warn-of-unkept-fork simulation past condition))))
 
 (defun discard-past-if-full (simulation past)
-  "Discard the forks and acts of SIMULATION, which has PAST, if there are too many acts."
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
     (warn-notably (format nil "This run has had so many requests that REWIND can go back only to ~
@@ -213,8 +204,7 @@ can be made."
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun update-fork-cost (past began)
-  "Update in PAST the average cost of a fork. The last fork was begun at the time BEGAN, in seconds,
-and has just been made."
+  "Update in PAST the average cost of a fork, by a fork just made, begun at BEGAN, in seconds."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *fork-time-share* 1)
@@ -240,13 +230,11 @@ participant is busy, try again at the end of the next tick."
       (update-fork-cost past began))))
 
 (defconstant +fork-checks+ 100
-  "The number of times that a thread waiting for a fork checks whether the fork was made, before it
-gives up.")
+  "How often a thread waiting for a fork checks whether the fork was made, before it gives up.")
 
 (defun await-postponed-fork (simulation)
-  "If keeping a fork of SIMULATION was postponed because this thread was busy, wait until the fork
-is made at the end of the next tick. Give up after +FORK-CHECKS+ checks, because the ticks may
-have stopped."
+  "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made
+at the end of the next tick. Give up after +FORK-CHECKS+ checks, as the ticks may have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
       (loop repeat +fork-checks+

@@ -17,8 +17,7 @@
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is a tree of conses that is not circular, has at most +LARGEST-DATUM+ conses and is
-at most +DEEPEST-NESTING+ levels deep."
+  "True if DATUM is an acyclic tree of up to +LARGEST-DATUM+ conses and +DEEPEST-NESTING+ levels."
   (let ((left +largest-datum+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
@@ -69,8 +68,7 @@ at most +DEEPEST-NESTING+ levels deep."
        (not (member name '("NIL" "T") :test #'string=))))
 
 (defun plain-char-p (char)
-  "True if CHAR, which is not a quote, can be written in a string as it is, without a character
-code."
+  "True if CHAR, not a quote, can be written in a string as it is, without a character code."
   (let ((code (char-code char)))
     (not (or (< code 32) (<= 127 code 159) (<= #xD800 code #xDFFF) (char= char #\\)))))
 
@@ -190,14 +188,12 @@ code."
   "A hash table from texts to the uninterned symbols that were made for them.")
 
 (defun uninterned-symbol (text name)
-  "Return the uninterned symbol NAME for TEXT, from *UNINTERNED-SYMBOLS*: the same
-symbol each time."
+  "Return the uninterned symbol NAME for TEXT from *UNINTERNED-SYMBOLS*, the same each time."
   (or (gethash text *uninterned-symbols*)
       (setf (gethash text *uninterned-symbols*) (make-symbol name))))
 
 (defun find-or-make-symbol (text)
-  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is no such symbol, an uninterned
-symbol."
+  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is none, an uninterned symbol."
   (let* ((colons (or (search "::" text) (error "a name has no package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
@@ -217,8 +213,7 @@ symbol."
         (error "no object has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
 (defun find-or-make-keyword (name word)
-  "Return the keyword NAME, which is written as WORD; if there is no such keyword, an uninterned
-symbol."
+  "Return the keyword NAME, written as WORD; if there is none, an uninterned symbol."
   (cond ((find-symbol name :keyword))
         (*numbered-objects* (make-keyword name))
         (t (uninterned-symbol word name))))
@@ -246,8 +241,7 @@ symbol."
        (char= #\Space (char-at text (1+ position)))))
 
 (defun read-tail (text start depth)
-  "Return the datum in TEXT from START on, which is the tail of a dotted list, and the position
-after it."
+  "Return the datum in TEXT from START on, the tail of a dotted list, and the position after it."
   (multiple-value-bind (tail end) (read-datum text start depth)
     (unless (char= #\) (char-at text end)) (error "a dotted list has something after its tail"))
     (values tail end)))
@@ -267,8 +261,7 @@ after it."
     (values (nreconc elements tail) (1+ position))))
 
 (defun read-datum (text &optional (start 0) (depth 0))
-  "Return the datum in TEXT from START on, and the position after the datum. Signals an error with
-the reason."
+  "Return the datum in TEXT from START on, and the position after it. Errors tell the reason."
   (case (char-at text start)
     (#\( (read-list text start (1+ depth)))
     (#\" (read-quoted text start))

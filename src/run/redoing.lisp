@@ -43,8 +43,7 @@ time, too. If ACT has an operator, an error is recorded as a divergence."
 
 (defun same-request-p (request act)
   "True if REQUEST is the same request as that of ACT. If REQUEST is not an event, only the first
-arguments are compared: which of its commands a plan withdraws is known only when the withdrawal is
-performed."
+arguments are compared: which of its commands a plan withdraws is known only on withdrawal."
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
@@ -52,8 +51,7 @@ performed."
            (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
 
 (defun repeat-request (act repetition)
-  "Post the same request that the fork itself has made, if there is one; otherwise repeat the
-request of ACT."
+  "Post the same request made by the fork itself, if any; otherwise repeat the request of ACT."
   (let* ((held (repetition-held repetition))
          (own (and (act-own-p act)
                    (find-if (lambda (request) (same-request-p request act)) held))))
@@ -73,8 +71,7 @@ request of ACT."
       (pop (repetition-acts repetition)))))
 
 (defun redo-in-tick (repetition)
-  "Repeat the acts that were done in the current tick after the world had changed, up to the current
-moment; see COUNT-MOMENT."
+  "Repeat acts of this tick after the change of the world, up to the current moment (COUNT-MOMENT)."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))

@@ -33,15 +33,13 @@
              tree)))))
 
 (defun externalize (datum)
-  "Return DATUM with each object of a run replaced by a reference. INTERNALIZE finds the counterpart
-of the object in another run by this reference. Other objects, circular lists and very large lists
-are unchanged."
+  "Return DATUM with each object of a run replaced by a reference, by which INTERNALIZE finds the
+counterpart in another run. Other objects, circular lists and very large lists are unchanged."
   (if (tree-p datum) (externalize-tree datum) datum))
 
 (defgeneric dereference (kind arguments simulation)
   (:documentation
-   "Return the object in SIMULATION that the reference with the symbol KIND and the list ARGUMENTS
-names.")
+   "Return the object in SIMULATION that the reference (KIND . ARGUMENTS), KIND a symbol, names.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
                  (find-kind-name kind 'part))

@@ -18,8 +18,7 @@
                      (different-definitions-file condition)
                      (different-definitions-differences condition)
                      (different-definitions-verb condition))))
-  (:documentation "The definitions recorded in a journal or saved run are not those that are
-loaded."))
+  (:documentation "The definitions recorded in a journal or saved run are not those loaded."))
 
 (defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
@@ -33,8 +32,7 @@ are those of the robots; a text says so if a robot is now in another map."
                                   (blueprint-name blueprint) (and other (map-name other))))))
 
 (defun check-definitions (header blueprints)
-  "Signal DIFFERENT-DEFINITIONS, with the restart REPLAY-ANYWAY, if the definitions in HEADER are
-not the current definitions."
+  "Signal DIFFERENT-DEFINITIONS (restart REPLAY-ANYWAY) if definitions in HEADER are not current."
   (let ((differences (header-differences header blueprints)))
     (when differences
       (restart-case (error 'different-definitions :differences differences)
@@ -47,12 +45,10 @@ not the current definitions."
     (and (header-differences header (mapcar #'find-blueprint (getf header :robots)))
          "The run is repeated with definitions that have changed since it was recorded.")))
 
-;;; A run may have passed very many ticks without requests. Their repetition takes long, so it must
-;;; be asked for.
+;;; To repeat very many ticks without requests takes long, so it must be asked for.
 
 (defconstant +most-empty-ticks+ 10000000
-  "The largest number of ticks without a journal entry that a replay passes if :UNTIL is not
-given.")
+  "The most ticks without a journal entry that a replay passes if :UNTIL is not given.")
 
 (defun check-empty-ticks (journal)
   "Signal MISUSE if more than +MOST-EMPTY-TICKS+ ticks pass between two entries of JOURNAL."
@@ -69,12 +65,10 @@ given.")
 ;;; Entries.
 
 (defun entry-text (entry number)
-  "Return a text that names the journal entry ENTRY, number NUMBER, for messages."
   (format nil "entry ~D, ~(~A~) at tick ~D" number (second entry) (first entry)))
 
 (defun perform-operator (name arguments simulation asker)
-  "Call the operator NAME with ARGUMENTS, which are externalized, on behalf of ASKER in SIMULATION,
-which is the current simulation."
+  "Call the operator NAME with the externalized ARGUMENTS, for ASKER, in the current SIMULATION."
   (let ((operator (find-operator name))
         (arguments (internalize arguments simulation))
         (*asker* asker))
@@ -82,8 +76,7 @@ which is the current simulation."
     (apply (operator-function operator) arguments)))
 
 (defun perform-entry (entry number simulation)
-  "Repeat the journal entry ENTRY, number NUMBER, in SIMULATION. Signals MISUSE if ENTRY cannot be
-repeated."
+  "Repeat the journal entry ENTRY, number NUMBER, in SIMULATION. Signals MISUSE if this fails."
   (destructuring-bind (tick name . arguments) entry
     (run-ticks (- tick (simulation-tick simulation)) simulation)
     (handler-case
@@ -109,16 +102,14 @@ repeated."
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
 (defun complete-settings (settings)
-  "Return a list (name value) for each parameter: from SETTINGS if it is there, else with the
-default."
+  "Return a list (name value) for each parameter, from SETTINGS or else with the default."
   (loop for parameter in (all-parameters)
         collect (or (find parameter settings :key (lambda (setting)
                                                     (find-parameter (first setting))))
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
 (defun read-journal-if-file (journal operator)
-  "Return JOURNAL, an argument of OPERATOR, or, if it is the name of a file, the journal in the
-file."
+  "Return JOURNAL, an argument of OPERATOR; or, for the name of a file, the journal in the file."
   (if (journal-p journal) journal (read-journal journal operator)))
 
 (defun call-with-replay (function journal &key until anyway keep observer
@@ -169,8 +160,7 @@ DIFFERENT-DEFINITIONS if definitions have changed since the recording, unless AN
     (funcall function)))
 
 (defmacro replaying ((anyway) &body body)
-  "Run BODY, which replays a journal. If ANYWAY is true, replay even if definitions have changed
-since the recording."
+  "Run BODY, which replays a journal; if ANYWAY, even if definitions have changed since recording."
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun resolve-journal (journal operator)
@@ -183,8 +173,7 @@ or NIL for the journal of the current simulation up to now."
 
 (addition replay)
 (defun replay (journal &key until anyway)
-  "Repeat JOURNAL in a fresh headless simulation, see WITH-REPLAY. Return the simulation and its
-STATE-DIGEST."
+  "Repeat JOURNAL as WITH-REPLAY does. Return the fresh headless simulation and its STATE-DIGEST."
   (with-replay ((read-journal-if-file journal 'replay) :until until :anyway anyway)
     (values (current-simulation) (state-digest))))
 

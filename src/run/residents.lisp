@@ -32,9 +32,8 @@
                          (and (symbolp (first designators)) (first designators)))))
 
 (defun robot-to-start (designator)
-  "Return the robot to run that DESIGNATOR means: a robot, a map with robots, or the name of a robot
-or map. If the map or definition of a robot has been replaced, the current robot of the same name is
-returned."
+  "Return the robot that DESIGNATOR means: a robot, a map with robots, or the name of a robot or
+map. If the map or definition of a robot has been replaced, return the current robot of this name."
   (let ((robot (cond ((map-p designator) (first-robot-in designator))
                      ((find-robot designator nil))
                      ((find-map designator nil) (first-robot-in (find-map designator)))
@@ -47,12 +46,10 @@ returned."
         robot)))
 
 (defun bind-robot-name (blueprint robot)
-  "Set the global value of the variable that has the name of BLUEPRINT to ROBOT."
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)
-  "Call ENSURE-RESIDENT-ROBOT for BLUEPRINT, set the variable of the robot to the result, and return
-the result."
+  "Return the ENSURE-RESIDENT-ROBOT of BLUEPRINT; also set the robot's variable to this robot."
   (loop
     (let ((robot (ensure-resident-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.

@@ -3,9 +3,8 @@
 (in-package :ars-magna.run)
 
 ;;; The first lines define the numbers, and empty objects of the right shapes are made. The other
-;;; lines fill them in order. A line that makes no sense is an error; so are more objects than the
-;;; file can have lines for, and arrays that exceed the memory. No code uses an object before it is
-;;; complete.
+;;; lines fill them in order. A senseless line is an error; so are more objects than the file can
+;;; have lines for, and arrays that exceed the memory. No code uses an object before it is complete.
 
 (defstruct (loader (:constructor make-loader (most-objects)) (:copier nil))
   "The objects of a saved run that is being read. SHAPES contains the shape and fields of the object
@@ -24,7 +23,6 @@ of each number, or NIL for an external object."
   (tables '() :type list))
 
 (defun make-empty-loader (octets)
-  "Return an empty LOADER structure for a file of OCTETS octets."
   (let ((loader (make-loader (floor octets 12))))
     (add-object nil nil loader)
     loader))
@@ -70,8 +68,7 @@ of each number, or NIL for an external object."
            (if (eq t element-type) '(:initial-element nil) '()))))
 
 (defun make-empty-object (shape fields loader)
-  "Return a new object of SHAPE, (kind argument ...), without contents. For a structure, FIELDS are
-its slots."
+  "Return a new empty object of SHAPE, (kind argument ...). FIELDS are the slots of a structure."
   (destructuring-bind (kind &optional first second third) shape
     (ecase kind
       (:object (blank-object first fields))
@@ -82,8 +79,7 @@ its slots."
       (:agenda (make-agenda)))))
 
 (defun saved-slots (type names)
-  "Return the slots of structures of TYPE. Signals an error unless the slots that are saved have the
-names NAMES."
+  "Return the slots of structures of TYPE. Signals an error unless the slots to save have NAMES."
   (unless (and (symbolp type)
                type
                (typep (find-class type nil) 'structure-class)
@@ -208,7 +204,6 @@ next object of LOADER."
               (loader-values loader) '())))))
 
 (defun all-objects-complete-p (loader)
-  "True if all objects of LOADER are complete."
   (= (loader-next loader) (length (loader-objects loader))))
 
 (defun fill-hash-tables (loader)

@@ -14,8 +14,7 @@
 
 ;;; Checks.
 
-;; The thread of a clock must not rewind other runs either: it would wait for their clocks, and
-;; these perhaps for it.
+;; A clock's thread must not rewind other runs either: it and their clocks might await each other.
 (defun run-paced-by-this-thread (simulation)
   "If this is the thread of the clock of SIMULATION, return SIMULATION. If it is the thread of the
 clock of the current simulation, return that. Otherwise return NIL."
@@ -23,8 +22,7 @@ clock of the current simulation, return that. Otherwise return NIL."
            (list simulation *simulation*)))
 
 (defun check-rewind-allowed-here (simulation)
-  "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not the current
-simulation."
+  "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not current."
   (cond ((continues-in-forks-p)
          (reject-use "rewind: a plan has made this call, and would undo itself. Use PROJECT or ~
                       TRY-BEST to look ahead."))
@@ -126,8 +124,7 @@ binding, the global value or both."
     (funcall setter '*world* (simulation-world new))))
 
 (defun make-resident (new)
-  "Make the world of NEW the world in which top-level code works, and set the variables of its
-robots."
+  "Make the world of NEW the world of top-level code, and set the variables of its robots."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
     (dolist (robot (world-robots world))
@@ -143,7 +140,6 @@ robots."
   (call-listeners *rewind-hooks* old new))
 
 (defun end-rewound (old new)
-  "End OLD, because NEW replaces OLD."
   (let ((reason (format nil "it was rewound to tick ~D, and a new run continues from there: the ~
                              value of *SIMULATION* where REWIND was called"
                         (simulation-tick new))))
@@ -192,8 +188,7 @@ the replacement."
                      :real (eq :real (simulation-thinking new)))))
 
 (defun replace-run (new old)
-  "Replace OLD by NEW, and run NEW live if OLD is live. Return NEW. If OLD is over, release NEW and
-signal MISUSE."
+  "Replace OLD by NEW, live if OLD is. Return NEW. If OLD is over, release NEW and signal MISUSE."
   (let* ((timeline (simulation-timeline old))
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
@@ -212,8 +207,7 @@ signal MISUSE."
 ;;; The journal.
 
 (defun record-rewind (from &optional (simulation (current-simulation)))
-  "Record in the journal of SIMULATION that the run was rewound from the tick FROM to the current
-tick."
+  "Record in the journal of SIMULATION a rewinding from the tick FROM to the current tick."
   (record-operation simulation 'rewound (list from)))
 
 (define-operator 'rewound '(integer) #'record-rewind)

@@ -11,8 +11,7 @@
 
 (addition simulation-p)
 (define-kind (simulation :constructor (%make-simulation (timeline world)))
-    "A run of a world: its timeline and world, with the journal, messages, observers and
-participants."
+    "A run of a world: its timeline and world, journal, messages, observers and participants."
   (:fixed
    (timeline nil (or null timeline) "the timeline of the simulation" :part :export)
    (world nil (or null world) "the world that the simulation changes" :part :addition))
@@ -28,8 +27,7 @@ participants."
    (environment '() list "the values of the variables, a list (symbol . value): in a fork the
 current values, else the values that a thread in the simulation has stored last")
    (dice nil (or null random-state)
-         "the random state for CL:RANDOM in the simulation's programs, if a saved run contained it,
-or NIL")
+         "the random state for CL:RANDOM in the simulation's programs, from a saved run, or NIL")
    (plans-dice-p nil boolean "true if the simulation's plans have their own random state for
 CL:RANDOM: the threads of a run that is or was live do not share one" :export)
    (past nil t "the forks and acts that the simulation keeps for rewinding, or NIL" :export)
@@ -62,8 +60,7 @@ altered, because forks share it"
 (addition simulation-tick)
 (declaim (inline simulation-tick))
 (defun simulation-tick (&optional (simulation (current-simulation)))
-  "Return the number of ticks of SIMULATION that have passed; inside a tick, the number of that
-tick."
+  "Return the number of passed ticks of SIMULATION; inside a tick, the number of that tick."
   (timeline-tick (simulation-timeline simulation)))
 
 (defmethod print-object ((simulation simulation) stream)
@@ -127,8 +124,7 @@ simulation of WORLD. PREPARE is called with the new simulation before other thre
     (setf (timeline-run timeline) simulation)))
 
 (defun headless-p (simulation)
-  "True if SIMULATION is headless: its world is not the resident world in which top-level code
-works."
+  "True if SIMULATION is headless: its world is not the resident one, where top-level code works."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
@@ -150,8 +146,7 @@ do not refer to each other, so all but the last can be garbage-collected."
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun resident-message-queue ()
-  "Return the message queue for runs of resident worlds: *MESSAGE-QUEUE*, or inside a headless run
-its global value."
+  "Return the message queue of resident runs: *MESSAGE-QUEUE*, in a headless run its global value."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
@@ -194,8 +189,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 
 (addition remove-observer)
 (defun remove-observer (function &optional (simulation (current-simulation)))
-  "Stop calling FUNCTION after the ticks of SIMULATION or, if SIMULATION has been rewound, of its
-successor."
+  "Stop calling FUNCTION after the ticks of SIMULATION or, if it was rewound, of its successor."
   (let ((simulation (latest-successor simulation)))
     (asking (simulation)
       (removef (simulation-observers simulation) function)))
@@ -221,8 +215,7 @@ successor."
 
 (addition idle-p)
 (defun settled-p (simulation)
-  "True if SIMULATION has nothing in progress or waiting to begin, except kickers and tracks, which
-never end."
+  "True if nothing is in progress or waiting in SIMULATION but kickers and tracks, which never end."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))
@@ -231,8 +224,7 @@ never end."
 
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until a request is made. In a live simulation at the
-rate :FREE, kickers wait for a request, too: otherwise millions of ticks would pass before a request
-is made."
+rate :FREE, kickers wait for a request, too: otherwise millions of ticks would pass before one."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-in-progress-p world))))
@@ -242,8 +234,7 @@ is made."
 
 (addition set-seed)
 (defun set-seed (seed &optional (simulation (current-simulation)))
-  "Seed all dice of SIMULATION and its plans with the integer SEED from now on. Return SEED. See
-reading 218."
+  "Seed all dice of SIMULATION and its plans with the integer SEED. Return SEED. See reading 218."
   (check-argument set-seed seed (integerp seed) "an integer")
   (changing ((simulation-world simulation) set-seed seed)
     (seed-world (simulation-world simulation) seed)

@@ -38,8 +38,7 @@ the first element and a space before each other element."
   (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
 
 (defun write-repeated-elements (array start inventory out)
-  "Write the number of equal elements of ARRAY from START on, and the element. Return the index of
-the next different element."
+  "Write how many elements of ARRAY from START on are equal, and one. Return the index after these."
   (let* ((element (row-major-aref array start))
          (end (or (loop for index from (1+ start) below (element-count array)
                         unless (eql element (row-major-aref array index)) return index)
@@ -61,8 +60,7 @@ the next different element."
            start)))
 
 (defun object-contents (object fields)
-  "Return the contents of OBJECT, which is neither an array nor a cons, as a list for
-LOADER-VALUES."
+  "Return the contents of OBJECT, neither an array nor a cons, as a list for LOADER-VALUES."
   (typecase object
     (dice (list (dice-state object)))
     (agenda (cons (agenda-tick object) (pending-events object)))
@@ -104,8 +102,7 @@ OBJECT is an array. Return what is left after this line, in the same form, or NI
   (mapcar (lambda (field) (symbol-name (kind-slot-name field))) fields))
 
 (defun batch-line (batch)
-  "Return the line that says how many objects of which shape BATCH has; so it defines their
-numbers."
+  "Return the line with the count and shape of the objects in BATCH, which defines their numbers."
   (destructuring-bind (kind . more) (batch-shape batch)
     (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
                        ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))

@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.run)
 
-;;; A saved run consists of lines of plain data like those of a journal, with check sums: a head;
-;;; the objects, see saved-values.lisp; the waiting requests; the journal, if the run keeps one; and
-;;; the end.
+;;; A saved run has lines of plain data like a journal's, with check sums: a head; the objects, see
+;;; saved-values.lisp; the waiting requests; the journal, if the run keeps one; and the end.
 
 (defconstant +saved-run-version+ 1)
 (define-constant +saved-title+ ";;;; A run of ARS MAGNA, saved." :test #'string=
@@ -26,8 +25,7 @@
                              plans and events are over, or use the restart SAVE-WITHOUT to leave ~
                              these parts out; a journal that has such parts is left out completely."
                      (unsavable-name condition) (unsavable-parts condition))))
-  (:documentation "A run cannot be saved completely, because it has parts such as plans in
-progress."))
+  (:documentation "A run cannot be saved completely, because of parts such as plans in progress."))
 
 (setf (documentation 'unsavable-parts 'function)
       "Return the parts that an UNSAVABLE condition names, a list of strings.")
@@ -62,7 +60,6 @@ progress."))
                (list "its journal has entries with functions in them, as those of PUT-KICKER"))))
 
 (defun copy-without-unsavable-parts (simulation)
-  "Return a copy of SIMULATION without the parts that cannot be saved."
   (let* ((copy (copy-without-participants simulation)) (timeline (simulation-timeline copy)))
     (dolist (event (waiting-events copy))
       (when (holds-function-p event) (cancel-event (timeline-agenda timeline) event)))
@@ -89,8 +86,7 @@ these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
         collect (list (parameter-name parameter) value)))
 
 (defun commands-under-way (simulation)
-  "Return the users' commands that are in progress or waiting in SIMULATION, in the form of
-definitions."
+  "Return the users' commands in progress or waiting in SIMULATION, in the form of definitions."
   (loop for request in (append (waiting-events simulation) (waiting-requests simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
@@ -107,8 +103,7 @@ each of its threads has its own."
            (and dice (list :dice (random-state-numbers dice))))))
 
 (defun saved-run-head (simulation programs journal)
-  "Return the head for the file in which SIMULATION is saved. PROGRAMS is a value of
-HEAD-FOR-PROGRAMS."
+  "Return the head of the file for SIMULATION. PROGRAMS is a value of HEAD-FOR-PROGRAMS."
   (let ((used (append (definitions-of simulation)
                       (current-definitions (commands-under-way simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
@@ -123,8 +118,7 @@ HEAD-FOR-PROGRAMS."
            programs)))
 
 (defun write-saved-run (simulation journal programs out)
-  "Write SIMULATION and JOURNAL, its journal or NIL, to OUT. PROGRAMS is a value of
-HEAD-FOR-PROGRAMS."
+  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is a value of HEAD-FOR-PROGRAMS."
   (let* ((requests (waiting-requests simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
@@ -143,8 +137,7 @@ HEAD-FOR-PROGRAMS."
         (dolist (entry (journal-entries journal)) (seal (datum-text (entry-datum entry)))))
       (seal (datum-text (list :end (simulation-tick simulation)))))))
 
-;;; Files. The new file is loaded on trial before it replaces another, so saving refuses what
-;;; loading would refuse.
+;;; Files. A new file is loaded on trial first, so saving refuses what loading would refuse.
 
 (defun check-loadable (path name)
   "Signal MISUSE unless the run NAME that is saved in the file PATH can be loaded."

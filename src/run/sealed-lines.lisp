@@ -16,12 +16,10 @@
   (:report (lambda (condition stream)
              (format stream "~A cannot be used: ~A." (file-name-text (damaged-file-name condition))
                      (damaged-file-reason condition))))
-  (:documentation "A file cannot be used, because it is damaged or was not saved by the
-simulator."))
+  (:documentation "A file cannot be used: it is damaged or was not saved by the simulator."))
 
 (defun report-damage (condition stream kind operator)
-  "Write to STREAM that the file of CONDITION is not a usable file of KIND, and that OPERATOR saves
-such a file."
+  "Report to STREAM that the file of CONDITION is no usable KIND, and that OPERATOR saves one."
   (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
           (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition)
           operator))
@@ -43,8 +41,7 @@ such a file."
 ;;; Writing.
 
 (defun write-checksummed-line (text sum out)
-  "Write TEXT to OUT as a line with its check sum, and return this check sum. SUM is the check sum
-of the previous line."
+  "Write TEXT as a line with its check sum to OUT. Return this sum. SUM is that of the line before."
   (when (<= (- +longest-line+ 10) (length text))
     (error "one entry takes ~D characters, more than a line can have" (length text)))
   (let ((sum (text-checksum text sum)))
@@ -56,8 +53,7 @@ of the previous line."
 ;;; Reading.
 
 (defun read-limited-line (in)
-  "Return the next line of IN, or NIL at the end. If the line is longer than +LONGEST-LINE+, return
-only its beginning."
+  "Return the next line of IN, or its beginning if longer than +LONGEST-LINE+, or NIL at the end."
   (let* ((last nil)
          (line (with-output-to-string (out)
                  (loop repeat +longest-line+
@@ -124,8 +120,7 @@ error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
                                            (one-line-text trouble))))))
 
 (defun damage-reason (trouble)
-  "Return the reason of the error TROUBLE, which READING-FILE has signalled, as a part of a
-sentence."
+  "Return the reason of the error TROUBLE, signalled by READING-FILE, as a part of a sentence."
   (if (typep trouble 'damaged-file)
       (damaged-file-reason trouble)
       (string-right-trim "." (one-line-text trouble))))

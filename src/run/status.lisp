@@ -8,8 +8,7 @@
 ;;; strings, as they print. Property lists can get more entries in the future.
 
 (defun view-without-effect (camera)
-  "Return the current view of CAMERA without an effect on the run: dice and last view are restored
-(reading 201)."
+  "Return the current view of CAMERA, but restore the dice and the last view (reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera))
@@ -24,8 +23,7 @@
   (and (part-location part) (location-name (part-location part))))
 
 (defun slots-of-own-kind (part)
-  "Return the descriptions of the slots that the kind of PART has in addition to the slots of all
-parts."
+  "Return the descriptions of the slots of the kind of PART that not all parts have."
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
 
@@ -81,8 +79,7 @@ slots with the roles :STATE and :MEMORY."))
   (if (robot-p resource) nil (princ-to-string resource)))
 
 (defun command-in-progress-status (resource)
-  "Return a list of one plist, which describes the command in progress on RESOURCE and who issued
-it; or NIL."
+  "Return a list of one plist about the command in progress on RESOURCE and who issued it; or NIL."
   (multiple-value-bind (name asker) (under-way resource)
     (when name (list (list :part (resource-part-name resource) :command name :for asker)))))
 

@@ -12,8 +12,7 @@
 
 (defmacro run-phases ((place) &body phases)
   "Run PHASES, lists (name form...), in order. PLACE holds the number of the last phase that has
-begun; skip the phases up to this number. PLACE is 0 before the first phase and after the last
-phase."
+begun; skip the phases up to this number. PLACE is 0 before the first phase and after the last."
   `(progn
      ,@(loop for (name . forms) in phases
              collect `(when (< ,place (phase-number ,name))
@@ -51,8 +50,7 @@ change is recorded at the same point of the new journal."
 (define-operator 'parameter '(name datum) #'set-parameter)
 
 (defun set-noise-to-restore (settings)
-  "Make DIRTY-SIMULATION restore SETTINGS, lists (name value). A replay calls this for an entry of
-the repeated journal."
+  "Make DIRTY-SIMULATION restore SETTINGS, lists (name value), for a replayed journal entry."
   (setf *noise-before-cleaning* (settings-by-symbol settings))
   (record-settings *simulation*))
 
@@ -105,7 +103,6 @@ the repeated journal."
 
 (declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)
-  "At the end of a tick, keep a fork of SIMULATION if it keeps forks and the next fork is due."
   (let ((past (simulation-past simulation)))
     (when past
       ;; Forks repeat what plans have rolled, so this is not recorded.

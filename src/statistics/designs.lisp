@@ -46,8 +46,7 @@ polynomial with DEGREE and COEFFICIENTS."
       (coerce (reverse directions) 'simple-vector))))
 
 (defun sobol-numbers (count dimension)
-  "Return the first COUNT numbers of Sobol's sequence in DIMENSION, in Gray code order, as integers
-below 2^32."
+  "Return the first COUNT Sobol numbers in DIMENSION, in Gray code order, as integers below 2^32."
   (loop with directions = (direction-numbers dimension) and number = 0
         for index from 1 to count
         collect number
@@ -60,8 +59,7 @@ below 2^32."
 ;;; :RANDOM or :SOBOL design begins with the points of a smaller one; a Latin hypercube does not.
 
 (defun latin-hypercube-numbers (count dice)
-  "Return COUNT random numbers drawn from DICE, one in each of COUNT equal parts of [0, 1), in
-random order."
+  "Return COUNT numbers from DICE, one in each of COUNT equal parts of [0, 1), in random order."
   (let ((places (make-array count)))
     (dotimes (place count) (setf (aref places place) place))
     (loop for last from (1- count) above 0

@@ -49,8 +49,7 @@ for X from 1/2: for X from 16 by DLMF 5.11.1, below by the recurrence of Guderma
       (+ rest (/ (- 1/12 (* y (- 1/360 (* y (- 1/1260 (* y (- 1/1680 (* y 1/1188)))))))) x)))))
 
 (defun deviance (x mean)
-  "Return X log(X/MEAN) + MEAN - X, which is never negative, without loss of digits where X is near
-MEAN (Loader 2000)."
+  "Return X log(X/MEAN) + MEAN - X, never negative, without loss of digits near MEAN (Loader 2000)."
   (declare (type double-float x mean))
   (let ((v (/ (- x mean) (+ x mean))))
     (cond ((< (abs v) .3d0) (+ (* v (- x mean)) (* 2 x v (artanh-remainder v))))
@@ -109,8 +108,7 @@ above X, 0 or more (Abramowitz and Stegun 26.4.19)."
         (- 1 (/ (upper-gamma .5d0 half) 2)))))
 
 (defmacro ratio-of-polynomials (x above below)
-  "Return the ratio of two polynomials of X. ABOVE and BELOW are the lists of their coefficients,
-from X^0 on."
+  "Return the ratio of two polynomials of X, with the coefficients ABOVE and BELOW, from X^0 on."
   (flet ((horner (coefficients)
            (reduce (lambda (coefficient form) `(+ ,coefficient (* ,x ,form)))
                    coefficients :from-end t)))
@@ -163,8 +161,7 @@ from X^0 on."
           (if (minusp q) (- size) size)))))
 
 (defun normal-critical-value (confidence)
-  "Return the z for which a standard normal variable is between -z and z with the probability
-CONFIDENCE."
+  "Return the z for which a standard normal variable is in [-z, z] with the probability CONFIDENCE."
   (declare (type double-float confidence))
   (- (normal-quantile (/ (- 1 confidence) 2))))
 
@@ -181,8 +178,7 @@ CONFIDENCE."
 
 (defun log-binomial-density (a b x y)
   "Return the logarithm of gamma(A+B+1) / (gamma(A+1) gamma(B+1)) X^A Y^B (Loader 2000). For
-integers, this is the logarithm of the probability of A successes and B failures. A and B are 0 or
-at least 1/2."
+integers, this is the log probability of A successes and B failures. A and B are 0 or at least 1/2."
   (declare (type double-float a b x y))
   (let ((n (+ a b)))
     (cond ((zerop n) 0d0)
@@ -199,8 +195,7 @@ at least 1/2."
 
 (defun beta-fraction (a b x y)
   "Return I_X(A, B), the regularised incomplete beta function, divided by X^A Y^B / beta(A, B), for
-X up to about A/(A+B) (by the continued fraction of Didonato and Morris 1992, whose terms are all
-positive for such X)."
+X up to about A/(A+B) (Didonato and Morris 1992: a continued fraction with positive terms)."
   (declare (type double-float a b x y) #.*hot*)
   (flet ((lower-part (m)
            (declare (type double-float m))
@@ -228,8 +223,7 @@ positive for such X)."
         (t (- 1 (* (exponential (log-beta-prefactor b a y x)) (beta-fraction b a y x))))))
 
 (defun beta-quantile (p a b)
-  "Return the X for which I_X(A, B), the regularised incomplete beta function, is P, between 0 and
-1; and 1 - X."
+  "Return the X for which the INCOMPLETE-BETA I_X(A, B) is P, between 0 and 1; and 1 - X."
   (declare (type double-float p a b))
   (if (> p .5d0)
       (multiple-value-bind (y x) (lower-beta-quantile (- 1 p) b a) (values x y))
@@ -255,8 +249,7 @@ positive for such X)."
           finally (return (values (share odds) (share (- odds)))))))
 
 (defun fair-coin-cdf (count trials)
-  "Return the probability of at most COUNT heads in TRIALS throws of a fair coin. COUNT is an
-integer from -1 to TRIALS."
+  "Return the probability of at most COUNT (-1 to TRIALS) heads in TRIALS throws of a fair coin."
   (let ((count (double count)) (trials (double trials)))
     (cond ((minusp count) 0d0)
           ((= count trials) 1d0)

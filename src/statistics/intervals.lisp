@@ -52,8 +52,7 @@ bounds without trials, successes or failures, and for errors, see WILSON-INTERVA
             (nth-value 1 (exact-low (- trials successes) trials tail)))))
 
 (defun corrected-correlation (both first second neither)
-  "Return the correlation of paired outcomes, with the continuity correction (Newcombe 1998, method
-10)."
+  "Return the correlation of paired outcomes, continuity-corrected (Newcombe 1998, method 10)."
   (let* ((trials (+ both first second neither))
          (excess (- (* both neither) (* first second)))
          (margins (* (+ both first) (+ second neither) (+ both second) (+ first neither))))
@@ -63,14 +62,12 @@ bounds without trials, successes or failures, and for errors, see WILSON-INTERVA
            (sqrt (double margins))))))
 
 (defun third-side (a b correlation)
-  "Return the third side of a triangle whose sides A and B meet at an angle with the cosine
-CORRELATION."
+  "Return the third side of a triangle with sides A and B at an angle with the cosine CORRELATION."
   (declare (type double-float a b correlation))
   (sqrt (max 0d0 (+ (* a a) (* b b) (* -2 correlation a b)))))
 
 (defun paired-bounds (p q bounds-of-p bounds-of-q correlation)
-  "Return the bounds for the difference P - Q, from the bounds for P and for Q, and their
-CORRELATION."
+  "Return the bounds for P - Q, from the bounds for P and for Q, and their CORRELATION."
   (destructuring-bind (low-p high-p low-q high-q) (append bounds-of-p bounds-of-q)
     (values (- (- p q) (third-side (- p low-p) (- high-q q) correlation))
             (+ (- p q) (third-side (- high-p p) (- q low-q) correlation)))))
@@ -113,17 +110,15 @@ unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is be
   "Return the bounds, low and high, of the interval for the mean of the distribution from which
 NUMBERS, a list or vector, are a sample (Student 1908). For a normal distribution, the interval
 contains the mean as often as CONFIDENCE says. For a skewed distribution it contains the mean less
-often: for an exponential distribution and .95, in 89 of 100 samples of 5 numbers, in 93 of 100
-samples of 30, and in 94 of 100 samples of 50. BOOTSTRAP-INTERVAL is no better for skewed
-distributions. If all numbers are equal, both bounds are that number; for fewer than two numbers,
-both bounds are NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE
-between 0 and 1."
+often: for an exponential distribution and .95, in 89 % of samples of 5 numbers, 93 % of samples of
+30, and 94 % of samples of 50. BOOTSTRAP-INTERVAL is no better for skewed distributions. If all
+numbers are equal, both bounds are that number; for fewer than two numbers, both bounds are NIL.
+Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let ((confidence (check-unit-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
 (defun check-same-length (operator name seconds firsts)
-  "Signal WRONG-ARGUMENT unless SECONDS and FIRSTS have the same length. SECONDS is the argument
-NAME of OPERATOR."
+  "Signal WRONG-ARGUMENT unless SECONDS, the argument NAME of OPERATOR, has the length of FIRSTS."
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
                      (format nil "a sequence of as many numbers as the first, ~D"

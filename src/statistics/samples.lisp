@@ -81,8 +81,7 @@ is exact to the last digits; the mean of equal numbers is exactly that number."
              (incf rest deviation))
     (/ (max 0d0 (- squares (/ (* rest rest) size))) (- size 1))))
 
-;;; Squares and cubes of very small numbers would be 0, so these are first multiplied by a power of
-;;; two, which loses nothing.
+;;; Very small numbers, whose cubes would be 0, are first multiplied exactly by a power of two.
 
 (defun magnification (sample)
   "Return the power of two by which the numbers of SAMPLE are multiplied before they are squared or

@@ -21,8 +21,7 @@ EVENTS-NAME are their names as arguments of OPERATOR."
         #'< :key #'first))
 
 (defun next-time-start (dated start)
-  "Return the index of the first element of DATED whose time is later than that of the element at
-START."
+  "Return the index of the first element of DATED that is later than the element at START."
   (or (position (first (aref dated start)) dated :key #'first :test #'/= :start start)
       (length dated)))
 

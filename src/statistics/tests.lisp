@@ -32,8 +32,7 @@ integers from 0 to 1e9."
 ;;; confidence intervals using importance sampling").
 
 (defun negative-sign-probability (x)
-  "Return the probability of a negative sign if the odds of a positive sign are e^(2X), with X >=
-0."
+  "Return the probability of a negative sign if the odds of a positive sign are e^(2X), X >= 0."
   (declare (type double-float x))
   (let ((odds (exponential (* -2 (min x 300d0)))))
     (/ odds (+ 1 odds))))
@@ -44,8 +43,7 @@ integers from 0 to 1e9."
         sum (* size (- 1 (* 2 (negative-sign-probability (* size tilt))))) of-type double-float))
 
 (defun find-tilt (sizes sum)
-  "Return the tilt of random signs for which the mean of the sum of SIZES, of which the largest is
-1, is SUM."
+  "Return the tilt of random signs for which the mean sum of SIZES, the largest of them 1, is SUM."
   (declare (type doubles sizes) (type double-float sum))
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
     (loop repeat 40
@@ -94,8 +92,7 @@ estimated by importance sampling, for small probabilities."
 ;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
 (defparameter *most-exact-sums* (expt 2 18)
-  "The largest product of the number of sums and the number of differences left, for the exact
-test.")
+  "The largest product of the numbers of sums and of differences left, for the exact test.")
 
 (deftype sums ()
   "A cons of a vector of sums, sorted, and a vector of their probabilities."
@@ -189,11 +186,10 @@ for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES a
 
 (addition holm-adjusted)
 (defun holm-adjusted (p-values)
-  "Return a list of the p values in P-VALUES, a list or vector, adjusted for the number of tests
-(Holm 1979; Wright 1992 for the adjustment). If you call all adjusted values of at most .05
-significant, the probability that any of these results is wrong is at most .05. The order is kept,
-and equal p values have equal results. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to
-1."
+  "Return a list of the P-VALUES, a list or vector, adjusted for the number of tests (Holm 1979;
+Wright 1992 for the adjustment). If you call all adjusted values of at most .05 significant, the
+probability that any of these results is wrong is at most .05. The order is kept, and equal p values
+have equal results. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
   (check-argument holm-adjusted p-values (every-element-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
   (let ((shares (map 'doubles #'as-written p-values)))
@@ -209,12 +205,11 @@ and equal p values have equal results. Signals WRONG-ARGUMENT unless P-VALUES ar
 
 (addition sequential-level)
 (defun sequential-level (look &key (level .05d0))
-  "Return the level to use when you look at growing results for the LOOK-th time: LEVEL / (LOOK
-(LOOK + 1)). The levels of all looks add up to LEVEL. So you may look again and again: if each time
-you take an interval with a confidence of 1 minus the returned level, the probability that any of
-these intervals is wrong is at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets
-1983). Signals WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and
-1."
+  "Return the level for the LOOK-th look at growing results: LEVEL / (LOOK (LOOK + 1)). The levels
+of all looks add up to LEVEL. So you may look again and again: if each time you take an interval
+with a confidence of 1 minus the returned level, the probability that any of these intervals is
+wrong is at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals
+WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
   (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
   (/ (check-unit-share sequential-level level) (* look (1+ look))))
 

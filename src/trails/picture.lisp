@@ -9,8 +9,7 @@
     ("failure" 1 #xC22418 5/2 nil "failed")
     ("error" 3 #x000000 5/2 (2 3) "broke off with an error"))
   "How to draw ways, by outcome: lists (outcome marker color width dashes words), in the order of
-the legend. Ways are drawn in this order, too, so that failed trials, which matter most, are drawn
-above others.")
+the legend. Ways are drawn in this order, too: failed trials, which matter most, above others.")
 
 (defun outcome-look (way)
   (rest (assoc (way-outcome way) *outcome-looks* :test #'string=)))
@@ -44,7 +43,6 @@ above others.")
                                                    :color (second (outcome-look way))))))
 
 (defun robot-at-p (snapshot x y)
-  "True if a robot in SNAPSHOT is at X, Y."
   (find-if (lambda (robot)
              (and (< (abs (- x (robot-image-x robot))) 1/10)
                   (< (abs (- y (robot-image-y robot))) 1/10)))
@@ -90,8 +88,7 @@ points at which SNAPSHOT shows a robot."
     (with-opacity (canvas +end-opacity+) (draw-end-marker canvas look (+ x 4) y))))
 
 (defun outcome-legend-entries (ways what)
-  "Return the entries of the legend for the outcomes of WAYS. WHAT is the noun for a trial, such as
-\"trial\"."
+  "Return legend entries for the outcomes of WAYS. WHAT is the noun for a trial, such as \"trial\"."
   (loop for (outcome . look) in *outcome-looks*
         for ended = (ways-of-outcome outcome ways)
         for count = (length (remove-duplicates (mapcar #'way-trial ended)))
@@ -101,8 +98,7 @@ points at which SNAPSHOT shows a robot."
                                                 count what count))))
 
 (defun ways-legend-entries (snapshot ways what)
-  "Return the entries of the legend for WAYS in the world of SNAPSHOT. For WHAT see
-OUTCOME-LEGEND-ENTRIES."
+  "Return legend entries for WAYS in the world of SNAPSHOT. For WHAT see OUTCOME-LEGEND-ENTRIES."
   (append (outcome-legend-entries ways what)
           (and (start-points ways snapshot)
                (list (entry-with-sample (canvas x y) "start of a way"
@@ -137,8 +133,7 @@ and for LOOK see FRAMED-TEXT."
          :legend (list :opacity (map-opacity in-color)) look))
 
 (defun ways-in-part (part ways)
-  "Return a list of the WAYS that touch the part of the map PART (left top right bottom), in cells;
-or all WAYS if PART is NIL."
+  "Return the WAYS that touch the map's PART (left top right bottom), in cells; all if PART is NIL."
   (if part
       (let ((graphics-scale* 8))
         (remove-if-not (lambda (way)

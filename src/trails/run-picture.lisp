@@ -26,8 +26,7 @@ position of its robot, if the robot is known."
                      (robot-x robot) (robot-y robot) (robot-name robot)))))
 
 (defun check-moment-robots (moments simulation)
-  "Signal WRONG-ARGUMENT unless the robots named in MOMENTS, an argument of SAVE-RUN-PICTURE, are in
-SIMULATION."
+  "Signal WRONG-ARGUMENT of SAVE-RUN-PICTURE unless the robots named in MOMENTS are in SIMULATION."
   (dolist (moment moments)
     (when (and (moment-robot moment) (not (robot-of-moment moment simulation)))
       (reject-argument 'save-run-picture :moments (moment-robot moment)
@@ -94,8 +93,7 @@ robot in the list of robots of its world."
     (draw-way-sample canvas (list (- x 10) y (+ x 26) y) (nth-ink position) position)))
 
 (defun robot-entries-with-ways (snapshot ways)
-  "Return the entries of the legend for the robots that are visible in SNAPSHOT or whose WAYS are
-visible."
+  "Return legend entries for the robots that are visible in SNAPSHOT or whose WAYS are visible."
   (loop with box = (pixels-of (shown-part snapshot))
         for way in ways
         for position from 0
@@ -125,7 +123,6 @@ visible."
 ;;; The whole.
 
 (defun draw-run (canvas snapshot ways spots layers)
-  "Draw the map of SNAPSHOT and the run on it: WAYS, SPOTS, and the layers in the list LAYERS."
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-robot-ways canvas ways)
   (draw-movers canvas snapshot (remove :names layers))
@@ -168,8 +165,7 @@ the other moments."
               (append notes (not-shown-note "Not shown, outside of this part" others))))))
 
 (defun run-picture-svg (snapshot ways moments &key limit title subtitle layers in-color scale)
-  "Return an SVG document that shows a run with WAYS and MOMENTS. SNAPSHOT shows the end of the
-run."
+  "Return an SVG document of a run with WAYS and MOMENTS. SNAPSHOT shows the end of the run."
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
                           (and (rest ways) t)
@@ -188,8 +184,7 @@ run."
                                   (- width left 16))))))))))
 
 (defun check-run-picture-arguments (journal moments until &key kinds limit title layers scale)
-  "Check the arguments of SAVE-RUN-PICTURE. Return MOMENTS as a list of moments. Signals
-WRONG-ARGUMENT."
+  "Check the arguments of SAVE-RUN-PICTURE. Return MOMENTS as moments. Signals WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
                   "a whole number, the most lines below the map, or NIL for all")
   (check-moment-kinds 'save-run-picture kinds)

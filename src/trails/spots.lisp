@@ -3,8 +3,7 @@
 (in-package :ars-magna.trails)
 
 ;;; Spots are numbered, not moments: so numbers stay short. Moments at one spot with the same text
-;;; are a group and share a note. If there are too many notes, the least important are left out, and
-;;; counted.
+;;; are a group and share a note. Of too many notes, the least important are left out and counted.
 
 (defstruct (spot (:constructor make-spot (x y)) (:copier nil))
   "A point of the map, in metres, at which events happened, with its NUMBER in the picture."
@@ -13,8 +12,7 @@
   (number 0 :type fixnum))
 
 (defstruct (moment-group (:constructor make-moment-group (spot words weight)) (:copier nil))
-  "A group of MOMENTS, the latest first, with the same text WORDS at the same SPOT, which is NIL if
-unknown."
+  "A group of MOMENTS, latest first, with the same text WORDS at the same SPOT, NIL if unknown."
   (spot nil :type (or null spot) :read-only t)
   (words "" :type string :read-only t)
   (weight 0 :type fixnum :read-only t)
@@ -79,8 +77,7 @@ ticks, or with all ticks if MOST is NIL."
   "Lists (kind singular plural) of the words for moments of each kind.")
 
 (defun not-shown-note (words moments)
-  "Return a list of one note, whose text is WORDS and the counts of MOMENTS by kind; or an empty
-list if there are no MOMENTS."
+  "Return a list of one note, WORDS and the counts of MOMENTS by kind; or NIL without MOMENTS."
   (when moments
     (list (list nil (format nil "~A: ~{~A~^, ~}."
                             words
@@ -190,8 +187,7 @@ ring of RADIUS could be drawn."
                      collect (point-at-distance x y angle (+ radius distance)))))
 
 (defun free-position-p (place shown taken)
-  "True if a number at PLACE, a point (x y), is inside the box SHOWN and does not overlap any of the
-boxes TAKEN."
+  "True if a number at PLACE (x y) is inside the box SHOWN and does not overlap any box of TAKEN."
   (destructuring-bind (x y) place
     (let ((box (box-around x y (1+ +number-radius+))))
       (and (every #'<= (subseq shown 0 2) box)
@@ -210,16 +206,14 @@ is too small, return its middle."
 
 (defun number-position (shown x y radius taken rather-not)
   "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS. The number is
-inside the box SHOWN and, if possible, does not overlap the boxes TAKEN and RATHER-NOT; TAKEN are
-more important."
+inside the box SHOWN and, if possible, outside the boxes TAKEN and RATHER-NOT; TAKEN matter more."
   (let ((places (number-positions-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-position-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
           (nearest-position-inside shown (first places))))))
 
 (defun draw-spot (canvas x y radius place text)
-  "Draw a ring of RADIUS around the spot at X, Y, its number TEXT at PLACE, and a line between
-them."
+  "Draw a ring of RADIUS around X, Y, the number TEXT at PLACE, and a line between them."
   (let* ((angle (arctangent (- (second place) y) (- (first place) x)))
          (edge (point-at-distance x y angle radius)))
     (with-halo (black*)

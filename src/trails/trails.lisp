@@ -22,13 +22,11 @@ or NIL" :writable)
 the latest point first" :writable))
 
 (defun extend-trail (trail x y)
-  "Extend the last piece of TRAIL to X, Y."
   (unless (equal (cons x y) (first (first (trail-pieces trail))))
     (push (cons x y) (first (trail-pieces trail)))))
 
 (defun begin-trail-piece (trail)
-  "Begin a new piece of TRAIL at the point where its robot has been put. The robot may have driven
-on since then."
+  "Begin a new piece of TRAIL where its robot was put, from where the robot may have driven on."
   (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
     (setf (trail-placements trail) (robot-placements robot))
     (push '() (trail-pieces trail))
@@ -61,8 +59,7 @@ trial is counted."
 ;;; A way has a point for each tick. Nearly straight parts need only their ends.
 
 (defun distance-from-line (point start end)
-  "Return the distance of POINT from the line between START and END, or from START if START and END
-are equal."
+  "Return the distance of POINT from the line between START and END, which may be equal."
   (destructuring-bind ((x . y) (x1 . y1) (x2 . y2)) (list point start end)
     (let* ((dx (- x2 x1)) (dy (- y2 y1)) (square (+ (* dx dx) (* dy dy)))
            (share (if (zerop square)
@@ -123,8 +120,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
                   (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
 (defun write-rows (simulation names out)
-  "Write a row for each robot of SIMULATION to OUT. If NAMES is not NIL, write rows only for the
-robots with these names."
+  "Write a row to OUT for each robot of SIMULATION; unless NAMES is NIL, only for the robots NAMES."
   (dolist (robot (simulation-robots simulation))
     (when (or (null names) (member (robot-name robot) names :test #'same-name-p))
       (write-string (csv-line (trajectory-row robot (simulation-tick simulation))) out))))
