@@ -36,8 +36,7 @@ colours. The colours differ for any colour vision and in grey: tests/palette.lis
 (defstruct (scale (:constructor make-scale (start end &optional (left +greatest-label-width+)
                                                           (width +greatest-chart-width+)))
                   (:copier nil))
-  "A horizontal axis: the ticks from START to END begin LEFT pixels from the left and take WIDTH
-pixels."
+  "A horizontal axis: the ticks from START to END begin at LEFT pixels and take WIDTH pixels."
   (start 0 :type real :read-only t)
   (end 0 :type real :read-only t)
   (left 0 :type real :read-only t)
@@ -52,8 +51,7 @@ pixels."
      (* (scale-width scale) (/ (- tick (scale-start scale)) (scale-span scale)))))
 
 (defun tick-at (x scale)
-  "Return the tick, a whole number, at the x coordinate X on SCALE. Return NIL if SCALE has no tick
-at X."
+  "Return the tick, a whole number, at the x coordinate X on SCALE, or NIL if there is no tick."
   (let ((tick (+ (scale-start scale)
                  (round (* (scale-span scale) (- x (scale-left scale))) (scale-width scale)))))
     (and (<= (scale-left scale) x) (<= (scale-start scale) tick (scale-end scale))

@@ -13,8 +13,7 @@
   '((:running #x1E8232 "runs") (:waiting #x3C64B4 "waits") (:blocked #x6E6E78 "is blocked")
     (:cleaning #xAF6400 "cleans up") (:ending #xC8281E "ends")
     (:stepped #x8C3CB4 "stops at each expression"))
-  "Lists (look color text): the colour of the mark for each state of a task, and its text in the
-legend.")
+  "Lists (look color text): the colour and the legend text of the mark for each state of a task.")
 
 (define-record (fold-mark (:constructor make-fold-mark (serial folded-p)))
   "The triangle on which a click folds or unfolds the parts of a task."
@@ -67,8 +66,7 @@ right if the parts are folded."
           (and (task-image-folded-p image) (task-image-parts image))))
 
 (defun task-condition-text (image)
-  "Return a text about what the task of IMAGE waits for, or about its state. Return NIL if the mark
-of the task says enough."
+  "Return a text about the wait or the state of the task of IMAGE, or NIL if its mark says enough."
   (cond ((task-image-awaits image)
          (format nil "waits for ~A since tick ~D~:[, ~A~;~]" (task-image-awaits image)
                  (task-image-since image)

@@ -158,8 +158,7 @@ WIDTH pixels, and the height of all lines."
 (defconstant +title-line+ 17 "The distance between lines of the title, in pixels.")
 
 (defun title-lines (canvas page title width)
-  "Return TITLE as lines of at most WIDTH pixels. If TITLE is NIL, the title is the range of ticks
-of PAGE."
+  "Return TITLE, by default the range of ticks of PAGE, as lines of at most WIDTH pixels."
   (wrap-text-to-width (or title (format nil "Plans from tick ~D to ~D" (page-start page)
                                           (page-end page)))
                       width (character-width canvas +title-size+)))
@@ -241,15 +240,11 @@ the y coordinate of the end of PAGE, in pixels."
   "Save a timeline of the plans that have run in FILE, replacing an older file. The name ends in
 .svg or, if the program rsvg-convert is installed, in .png. Each task is a bar over ticks, below the
 bar of its parent task, with its waits, its commands while they were in progress, and its end. Turns
-of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.
-  RUNNER: the plan runner, by default the plan runner in use. RUNNER must have a trace: see
-*TRACE-PLANS*.
-  MOST: the largest number of rows to draw.
-  IN-COLOR: false for black and white.
-  TITLE: a string above the picture, instead of the ticks.
-  SCALE: from 1 to 10, the size of everything, text included.
-On a page of a paper, 174 mm wide, a picture of up to 820 pixels is readable. Such a picture has
-room for some 70 ticks."
+of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE. RUNNER: the
+plan runner, by default the plan runner in use. RUNNER must have a trace: see *TRACE-PLANS*. MOST:
+the largest number of rows to draw. IN-COLOR: false for black and white. TITLE: a string above the
+picture, instead of the ticks. SCALE: from 1 to 10, the size of everything, text included. On a page
+of a paper, 174 mm wide, a picture of up to 820 pixels (some 70 ticks) is readable."
   (check-argument save-plan-timeline title (typep title '(or null string)) "a string or NIL")
   (check-argument save-plan-timeline scale (and (finite-p scale) (<= 1 scale 10))
                   "a number from 1 to 10, the magnification of the picture")

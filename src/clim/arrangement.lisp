@@ -74,8 +74,7 @@ wider if it shows plans, because plans have long lines."
     (clamp (round wanted) 120 (max 120 (- width 160)))))
 
 (defun plan-width (preferences width)
-  "Return the width in pixels of the column of plans in a window WIDTH pixels wide. Return 0 if the
-window has no such column."
+  "Return the width in pixels of the column of plans, or 0 if a window WIDTH pixels wide has none."
   (let ((details (details-width preferences width)))
     (if (plan-column-p preferences width)
         (clamp (round (or (preferences-plan-width preferences) (+ details 60)))

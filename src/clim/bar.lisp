@@ -90,8 +90,7 @@ function of the window that returns true while the button is on."
                 (and snapshot (snapshot-tick snapshot))))))
 
 (defun waiting-answers-text (window)
-  "Return a text that says how many programs wait for an answer at the prompt of WINDOW. Return NIL
-if no program waits."
+  "Return a text on how many programs wait for an answer at the prompt of WINDOW, or NIL if none."
   (let ((count (length (ars-magna.cli:waiting-break-texts (window-session window)))))
     (when (plusp count)
       (format nil "the prompt asks how to continue ~:[~R programs~;a program~]"

@@ -13,8 +13,7 @@
    (reach :initform nil :accessor canvas-reach)
    ;; How many screen pixels wide one of its pixels is.
    (magnification :initarg :magnification :initform 1 :reader canvas-magnification)
-   ;; The height of what it paints on, in pixels, if text that would be cut there is left out; or
-   ;; NIL.
+   ;; The height of what it paints on, in pixels, if text cut there is left out; or NIL.
    (bottom :initarg :bottom :initform nil :reader canvas-bottom)
    ;; The visible box (left top right bottom) of what it paints on, or NIL: all.
    (seen :initform nil :accessor canvas-seen)
@@ -37,8 +36,7 @@
   (* (canvas-magnification canvas) (max 1 (gcontext-line-width gcontext))))
 
 (defun clim-line-dashes (canvas gcontext)
-  "Return the lengths of dashes and gaps of GCONTEXT in screen pixels, as a list. Return NIL if its
-lines are solid."
+  "Return a list of the dashes and gaps of GCONTEXT in screen pixels, or NIL for solid lines."
   (let ((dashes (gcontext-dashes gcontext)))
     (unless (eq :solid (gcontext-line-style gcontext))
       (loop for length in (if (listp dashes) dashes (list dashes dashes))
@@ -131,8 +129,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
   (coerce (loop for magnification from 1 to +greatest-magnification+
                 collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
           'vector)
-  "CLIM text styles by magnification. In the style for magnification N, letters are N times
-+CHARACTER-WIDTH+ wide.")
+  "CLIM text styles by magnification. For magnification N, letters are N x +CHARACTER-WIDTH+ wide.")
 
 (defun text-uncut-p (canvas y)
   "True if text with its base line at Y is not cut off at the upper or lower edge of CANVAS."

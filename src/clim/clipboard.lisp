@@ -73,8 +73,7 @@ if a piece does not come or the text is too long."
                  (reject-paste "The text is too long to be pasted")) (write-string piece out)))))
 
 (defun fetch-selection-as (type selection display mailbox)
-  "Return the text of SELECTION in the X type TYPE, as a string of octets. Return NIL if SELECTION
-has no such text."
+  "Return the text of SELECTION in the X type TYPE, as a string of octets, or NIL if there is none."
   (xlib:convert-selection selection type mailbox :mcclim nil)
   (ecase (await-answer display)
     ((nil) (reject-paste "The program with the text to be pasted does not answer"))
@@ -131,8 +130,7 @@ empty piece ends the text."
         (when (= start end) (removef (offered-text-transfers offered) transfer))))))
 
 (defun send-offered-text (offered window target property)
-  "Put the text of OFFERED into PROPERTY of WINDOW as the X type TARGET. Return true if the text is
-available as TARGET."
+  "Put OFFERED into PROPERTY of WINDOW as the X type TARGET. Return true if TARGET is available."
   (case target
     (:targets (xlib:change-property window property '(:targets :utf8_string :string) :atom 32
                                     :transform (lambda (name)

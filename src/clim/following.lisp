@@ -9,8 +9,7 @@
 ;;; the window looks at the effects of each line before the next is read.
 
 (defun follows-prompt-p (window old)
-  "True if WINDOW follows the prompt of this thread to another run. OLD is the run that the prompt
-has left."
+  "True if WINDOW follows this thread's prompt, which has left the run OLD, to another run."
   (let ((thread (conversation-thread (window-conversation window))))
     (if thread
         (eq thread (current-thread))

@@ -35,8 +35,7 @@ about the waiting breaks. Return NIL if ANSWERS is empty."
             (and (rest answers) (length (rest answers))) (first answers))))
 
 (defun text-above-input (conversation text)
-  "Return a list of the text to show above the input line, or NIL, and its ink. TEXT is the text of
-the input line."
+  "Return a list of the text above the input line, or NIL, and its ink. TEXT is in the input line."
   (let ((reading (line-awaiting-input conversation))
         (asked (waiting-breaks-text
                 (ars-magna.cli:waiting-break-texts (conversation-session conversation))))
@@ -134,8 +133,7 @@ above it and its ink. Return NIL if PANE is empty."
 ;;; The window handles copy, paste and scrolling back itself.
 
 (defun copy-text (window)
-  "Copy the text selected in the transcript of WINDOW. If nothing is selected, copy the whole
-transcript."
+  "Copy the text selected in the transcript of WINDOW, or the whole transcript if none is selected."
   (let ((pane (pane-named window 'transcript)))
     (share-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
     (unless (selection-bounds pane)

@@ -10,8 +10,7 @@
   (focus-and-repaint (pane-named window 'interactor)))
 
 (defun focus-clicked-pane (pane)
-  "Direct keys to PANE, which was clicked, from now on; or to the prompt, if PANE is the
-transcript."
+  "From now on direct keys to PANE, which was clicked, or to the prompt if PANE is the transcript."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -37,8 +36,7 @@ Return NIL for other keys than arrows."
     (:down (values 0 +arrow-step+))))
 
 (defun handle-key (window key-name character)
-  "Handle the key KEY-NAME in WINDOW. CHARACTER is its character, or NIL. Return true if the key has
-an effect."
+  "Handle the key KEY-NAME, with CHARACTER or NIL, in WINDOW. Return true if the key has an effect."
   (let ((button (and character (find character *buttons* :key #'button-key)))
         (shown (shown-input-line (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow-key-offset key-name)
@@ -103,8 +101,7 @@ of the key to the symbol."
         ((< #x1000000 symbol #x1110000) (code-char (- symbol #x1000000)))))
 
 (defun mcclim-key-function (name)
-  "Return the symbol of McCLIM's internal function NAME for X keys. Return NIL if this version of
-McCLIM has no such function."
+  "Return the symbol of McCLIM's internal function NAME for X keys, or NIL if McCLIM has none."
   (let* ((package (find-package "CLIM-XCOMMON"))
          (symbol (and package (find-symbol name package))))
     (and symbol (fboundp symbol) symbol)))
@@ -143,12 +140,10 @@ the event, a press or a release, and STATE the X keyboard state."
     (:dead-caron #\^ "cčeěnňrřsšzžCČEĚNŇRŘSŠZŽ")
     (:dead-abovering #\* "aåuůAÅUŮ"))
   "Lists (name character pairs). NAME is McCLIM's name of a dead key. CHARACTER is the result of the
-dead key and a space. PAIRS is a string of pairs: a letter and the result of the dead key and that
-letter.")
+dead key and a space. PAIRS is a string of pairs: a letter and its result with the dead key.")
 
 (defun compose-after-dead-key (dead character)
-  "Return, as a string, the result of typing CHARACTER after a dead key. DEAD is the element of
-*DEAD-KEYS* for that key."
+  "Return, as a string, the result of CHARACTER typed after DEAD, an element of *DEAD-KEYS*."
   (destructuring-bind (own pairs) (rest dead)
     (let ((letter (loop for index from 0 below (length pairs) by 2
                         when (char= character (char pairs index))
@@ -158,8 +153,7 @@ letter.")
             (t (format nil "~C~C" own character))))))
 
 (defvar *dead-key* nil
-  "The element of *DEAD-KEYS* for the dead key that waits for a character, or NIL. All windows share
-one keyboard.")
+  "The element of *DEAD-KEYS* that waits for a character, or NIL. All windows share one keyboard.")
 
 (defun make-key-press (character event)
   "Return an event like EVENT, a key press, that types CHARACTER."
@@ -170,8 +164,7 @@ one keyboard.")
 
 (defun update-dead-key (name character)
   "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
-Return two elements of *DEAD-KEYS*, each of which may be NIL: that of the dead key that was waiting,
-and that of the key NAME."
+Return two elements of *DEAD-KEYS*, or NIL: for the key that was waiting, and for the key NAME."
   (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)

@@ -39,8 +39,7 @@ them.")
        :min-height 240 :max-height clim:+fill+))))
 
 (defun place-pane (pane left top width height)
-  "Move PANE to LEFT, TOP, make it WIDTH x HEIGHT pixels large, and show it. Hide PANE if WIDTH or
-HEIGHT is 0."
+  "Show PANE at LEFT, TOP, WIDTH x HEIGHT pixels large. Hide PANE if WIDTH or HEIGHT is 0."
   (let ((there-p (and (plusp width) (plusp height))))
     ;; Move it before it is shown, so that it never appears at the old place.
     (when there-p (move-and-resize-pane pane left top width height))
@@ -64,8 +63,7 @@ HEIGHT is 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
 (defun arrange-layout (layout needs)
-  "Return the places of all parts of LAYOUT. NEEDS are lists (section pixels): the height that each
-section needs."
+  "Return the places of all parts of LAYOUT. NEEDS are lists (section pixels) of needed heights."
   (multiple-value-call #'arrange (pane-preferences layout) (need-function needs) (pane-size layout)
     (input-line-rows layout)))
 
@@ -85,8 +83,7 @@ section of plans is ignored, because it takes any height."
 
 (defun lasting-needs (layout)
   "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
-section has needed so far. If these heights do not fit but the present needs do, it is what each
-section needs now."
+section has needed so far, or what it needs now if only the present needs fit."
   (let* ((now (current-needs layout))
          (before (need-function (pane-needed layout)))
          (most (loop for (section pixels) in now
@@ -97,8 +94,7 @@ section needs now."
           most))))
 
 (defun places-of-parts (layout)
-  "Return the places of all parts of LAYOUT by the user's preferences and the needs of the
-sections."
+  "Return the places of all parts of LAYOUT by the user's preferences and the sections' needs."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -119,8 +115,7 @@ sections."
   (place-parts layout (places-of-parts layout)))
 
 (defun child-holding (layout pane)
-  "Return the child of LAYOUT that is PANE or contains PANE, since CLIM may put borders around
-panes."
+  "Return the child of LAYOUT that is or contains PANE, since CLIM may put borders around panes."
   (loop for sheet = pane then (clim:sheet-parent sheet)
         while sheet
         when (eq layout (clim:sheet-parent sheet)) return sheet))

@@ -13,12 +13,10 @@
   '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
     (:manipulating "Manipulating") (:seeing "Seeing") (:planning "Plans") (:running "Running")
     (:general "Prompt"))
-  "Lists (family title): the title of the menu for each family of prompt lines, in the order of the
-menus.")
+  "Lists (family title), in the order of menus: the menu title for each family of prompt lines.")
 
 (defun prompt-menu-title (line)
-  "Return the title of the menu for the prompt line LINE. It is the menu Prompt if the family of
-LINE has no menu."
+  "Return the title of the menu for the prompt line LINE: Prompt if the family of LINE has none."
   (second (or (assoc (ars-magna.cli:line-family line) *prompt-menu-titles*)
               (assoc :general *prompt-menu-titles*))))
 
@@ -30,8 +28,7 @@ LINE has no menu."
                     (list name (lambda () (choose-prompt-line clim:*application-frame* name))))))
 
 (defun choose-prompt-line (window name)
-  "Run the prompt line NAME if it has no parameters. Otherwise start it in the input line, for the
-user to add arguments."
+  "Run the prompt line NAME if it has no parameters, else put it in the input line for arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
     (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
            (replace-input-line conversation (format nil "~A " text))
@@ -109,8 +106,7 @@ and NIL for a gap."
   (list (multiple-value-list (pane-size pane)) (popup-opener (window-of pane))))
 
 (defun draw-menu-title (canvas menu x open-p)
-  "Draw the title of MENU in the menu bar from X on, highlighted if OPEN-P. Return the x coordinate
-of its end."
+  "Draw the title of MENU from X on, highlighted if OPEN-P. Return the x coordinate of its end."
   (let ((width (+ 14 (* +character-width+ (length (menu-title menu))))))
     (with-subject (canvas menu)
       (with-gcontext (draw-gcontext* :foreground (if open-p
@@ -155,9 +151,8 @@ of its end."
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
 (defun highlight-further-row (popup step)
-  "Highlight the row of POPUP that is STEP rows after the highlighted one. Without a highlighted
-row, highlight the first row, or the last if STEP is negative. Return true if POPUP has rows to
-choose."
+  "Highlight the row of POPUP STEP rows after the highlighted one. Without a highlight, highlight
+the first row, or the last if STEP is negative. Return true if POPUP has rows to choose."
   (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))
@@ -170,8 +165,7 @@ choose."
       t)))
 
 (defun open-neighbouring-menu (window step)
-  "If a menu of the menu bar is open in WINDOW, open the menu STEP places to its right, and return
-true."
+  "If a menu of WINDOW's menu bar is open, open the menu STEP places to its right and return true."
   (let ((place (position (popup-opener window) *menus*)))
     (when place
       (open-bar-menu (pane-named window 'menus)

@@ -30,8 +30,7 @@ format string for the camera's number, and LINE is one for the number and ARGUME
 ;;; Looking into.
 
 (defun inspection-offers (form)
-  "Return the menu entries to describe the value of FORM, a string, and to inspect it in an editor
-if one is connected."
+  "Return entries to describe the value of FORM, a string, and to inspect it in a connected editor."
   (cons (list "Describe its Lisp object" (format nil "(describe ~A)" form))
         (and (editor-server)
              (list (list "Inspect in the editor" (format nil "(inspect-in-editor ~A)" form))))))
@@ -133,8 +132,7 @@ for the numbers of hand and bin."
                            "Put hand ~D, which holds it, into storage bin ~D"))))
 
 (defun held-offers (image window)
-  "Return the menu entries for the thing of IMAGE if the robot of WINDOW holds it or has it in a
-bin."
+  "Return the menu entries for the thing of IMAGE if WINDOW's robot holds it or has it in a bin."
   (let* ((robot (window-robot window))
          (hand (hand-image-holding image window))
          (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
@@ -243,8 +241,7 @@ Y of WINDOW."
                                       (open-offers-menu window turned x y))))))
 
 (defun open-offers-menu (window subjects x y)
-  "Open the context menu of the first of SUBJECTS at X, Y of WINDOW. Further rows open the menus of
-the other SUBJECTS."
+  "Open the context menu of the first of SUBJECTS, with rows for the others, at X, Y of WINDOW."
   (open-popup window
               (append (offer-rows window (first subjects))
                       (rows-for-other-subjects window subjects x y))

@@ -7,8 +7,7 @@
 
 (defvar *last-settings-lock* (make-lock "settings"))
 (defvar *last-settings* '()
-  "The settings of the window that was closed last: a list of its layers, whether it had colours,
-and its preferences; or NIL.")
+  "The settings of the window closed last, a list (layers colored-p preferences), or NIL.")
 
 (defstruct (window-state (:copier nil))
   "The state of a closed window for the next window of its robot. LINES are the lines of the
@@ -46,8 +45,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give WINDOW, which is new, the settings of the window closed last, and the state of the last
-window of its robot."
+  "Give the new WINDOW the settings of the window closed last and its robot's last window's state."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
         (list *last-settings* (rest (assoc (shown-robot window) *window-states*))))
@@ -182,8 +180,7 @@ window shows that robot. Return NIL if there is none."
                        (shown-robot window) reason))))
 
 (defun leave-finished-run (window reason)
-  "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows
-show all robots of that run."
+  "Because of REASON, show another run in WINDOW, or close it if other windows show all its robots."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
@@ -195,9 +192,8 @@ show all robots of that run."
           (t (report-run-over window reason)))))
 
 (defun match-window-and-prompt (window)
-  "Make WINDOW and its prompt agree on the robot. The prompt enters the run that WINDOW shows. If
-its user has chosen another robot of the same run, WINDOW shows that robot. Only the thread of the
-prompt calls this."
+  "Make WINDOW and its prompt agree on the robot. The prompt enters the run of WINDOW. If the user
+has chosen another robot of it, WINDOW shows that robot. Only the prompt's thread calls this."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
       (when reason (leave-finished-run window reason)))
@@ -310,9 +306,8 @@ comes first. Other windows are left out while their prompts are in a trial or fo
       (ars-magna.cli:announce-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window and raise the window. It is the window of ROBOT, a window that shows its
-trial or fork, a window whose run is over, or else a new one. Return the window. Signals MISUSE if
-there is no X server."
+  "Show ROBOT in a window and raise it: the window of ROBOT, a window of its trial or fork, a window
+whose run is over, or else a new one. Return the window. Signals MISUSE if there is no X server."
   (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))

@@ -233,8 +233,7 @@ SCROLL-STATE.")
 
 (defgeneric limit-offset (pane)
   (:documentation
-   "Scroll PANE back if it is scrolled beyond the end of its contents. Return true if PANE has been
-scrolled.")
+   "Scroll PANE back if it is scrolled beyond its contents. Return true if PANE was scrolled back.")
   (:method (pane)
     (let ((room (max 0 (- (pane-extent pane) (nth-value 1 (pane-size pane))))))
       (when (> (pane-offset pane) room)
@@ -248,8 +247,7 @@ scrolled.")
 ;;; The bar.
 
 (defun thumb-bounds (pane)
-  "Return the top and the bottom of the thumb, the movable part of the scroll bar of PANE, in
-pixels."
+  "Return the top and bottom, in pixels, of the thumb, the movable part of PANE's scroll bar."
   (multiple-value-bind (position page total) (scroll-state pane)
     (let* ((height (nth-value 1 (pane-size pane)))
            (length (clamp (round (* height page) (max 1 total)) (min 12 height) height))

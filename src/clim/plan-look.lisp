@@ -18,8 +18,7 @@
 :TREE or :TIMELINE. SHOWN-P is a function that returns true while the display is visible. FOLDED
 lists the numbers of the tasks whose parts are folded. MARK is the value of PLANS-STATE-MARK at the
 last look. DUE is the time of the next look, in seconds. TREE is an image of the tasks, or NIL. PAGE
-is a timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text that says how the last plan ended, or
-NIL."
+is a timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text on how the last plan ended, or NIL."
   (simulation nil)
   (view :tree :type (member :tree :timeline))
   (shown-p (constantly nil) :type function)
@@ -37,8 +36,7 @@ NIL."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
 (defun plans-traced-p (interface)
-  "True if the running plans of INTERFACE are traced. If no plan is running, true if the next plans
-will be traced."
+  "True if the running plans of INTERFACE, or the next plans if none is running, are traced."
   (let ((runner (and interface (interface-runner interface))))
     (and (or (and runner (runner-trace runner))
              (and *trace-plans* (not (and runner (plan-runner-tasks runner)))))
@@ -113,8 +111,7 @@ Return NIL if the plans are busy, else true."
       t)))
 
 (defun update-look-if-changed (look)
-  "Update LOOK if its display is visible and its plans have changed. Return true if LOOK was
-updated."
+  "Update LOOK if it is visible and its plans have changed. Return true if LOOK was updated."
   (when (and (funcall (plan-look-shown-p look))
              (plan-look-simulation look)
              (>= (seconds-now) (plan-look-due look)))
@@ -126,8 +123,7 @@ updated."
           (misuse () nil))))))
 
 (defun update-look-of-own-plans (look)
-  "Update LOOK at once if this thread runs the reactions of its plans. Return true if LOOK was
-updated."
+  "Update LOOK at once if this thread runs its plans' reactions. Return true if LOOK was updated."
   (let* ((simulation (plan-look-simulation look)) (interface (plan-interface-of simulation)))
     (and interface
          (holding-p interface)

@@ -66,8 +66,7 @@
 ;;; If there is nothing to show, it says how to change that.
 
 (defun draw-plan-lines (canvas y &rest lines)
-  "Draw LINES, strings and buttons, below each other from Y down. Return the y coordinate of their
-end."
+  "Draw LINES, strings and buttons, from Y down. Return the y coordinate of their end."
   (dolist (line lines y)
     (cond ((null line))
           ((button-p line) (draw-plan-button canvas line 8 (+ y 2)) (incf y 24))
@@ -79,8 +78,7 @@ end."
          (wrapped-text text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
 
 (defun draw-plan-ending (canvas pane y)
-  "Draw a text that says how the last plan ended, if one has ended, from Y down. Return the y
-coordinate of its end."
+  "Write from Y down how the last plan, if any, ended. Return the y coordinate of the text's end."
   (let ((ended (plan-look-ended (plan-look-of pane))))
     (if ended
         (draw-plan-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))

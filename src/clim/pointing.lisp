@@ -18,8 +18,7 @@
 
 ;; If the strip shows something else meanwhile, that stays until the mouse moves.
 (defun update-description (pane)
-  "Update the description in the status strip if it is about an object in PANE, which has been
-painted."
+  "Update the description in the status strip if it is about an object in the painted PANE."
   (let ((window (window-of pane)))
     (destructuring-bind (&optional pointed x y text) (window-pointed window)
       (when (and (eq pane pointed) (eq text (window-hint window)))
@@ -121,8 +120,7 @@ selected one of the subjects there, select the next subject."
           (t :middle))))
 
 (defun route-press (pane button x y)
-  "Handle a press of the mouse BUTTON at X, Y of PANE, either on the scroll bar of PANE or on its
-contents."
+  "Handle a press of the mouse BUTTON at X, Y of PANE, on its scroll bar or on its contents."
   (cond ((on-scroll-bar-p pane x)
          (setf (pane-drag pane) :scroll-bar)
          (drag-scroll-bar pane y))
@@ -141,8 +139,7 @@ popup. OPENER is the command or menu that had opened the popup.")
         (route-press pane button x y)))))
 
 (defun handle-any-press (pane button x y)
-  "Handle a press of the mouse BUTTON at X, Y of PANE. If a popup is open and PANE is not the popup,
-close the popup."
+  "Handle a press of the mouse BUTTON at X, Y of PANE. Close the open popup unless it is PANE."
   (focus-clicked-pane pane)
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
     (if opener
@@ -166,8 +163,7 @@ close the popup."
 
 ;; Panels that open or close under the mouse make events of a mouse that rests.
 (defun record-mouse-position (pane event)
-  "Record the position of the mouse, from EVENT, in the window of PANE. Return true if the mouse has
-moved."
+  "Record the mouse's position from EVENT in PANE's window. Return true if the mouse has moved."
   (let* ((window (window-of pane))
          (place (multiple-value-list
                  (clim:transform-position

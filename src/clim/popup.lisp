@@ -77,8 +77,7 @@ or NIL if the row has no box to tick."
 ;;; Opening and closing.
 
 (defun place-popup (popup x y)
-  "Move POPUP to X, Y of the window and make it as large as its rows need, but keep it inside the
-window."
+  "Move POPUP to X, Y and make it as large as its rows need, but keep it inside the window."
   (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
     (let* ((rows (pane-rows popup))
            (columns (loop for row in rows maximize (length (row-text row))))
@@ -105,8 +104,7 @@ opens the popup, a symbol, or the menu that is shown, or T."
   (and (popup-open-p window) (pane-opener (window-popup window))))
 
 (defun close-popup (window)
-  "Close the popup of WINDOW. Return the command or menu that had opened the popup, or NIL if no
-popup was open."
+  "Close the popup of WINDOW. Return the command or menu that opened it, or NIL if none was open."
   (let ((opener (popup-opener window)))
     (when opener
       (setf (clim:sheet-enabled-p (window-popup window)) nil)
@@ -135,8 +133,7 @@ popup was open."
   (setf (pane-pointed pane) (row-at pane y))
   (repaint-if-changed pane))
 
-;;; A click on a row may replace the rows. The second click of a double click is not meant for
-;;; these.
+;;; A click on a row may replace the rows. A double click's second click is not meant for these.
 
 (defconstant +double-click-time+ 500
   "The longest time between the two clicks of a double click, in milliseconds.")
@@ -180,8 +177,7 @@ popup was open."
     (repaint-if-changed (pane-named window 'world))))
 
 (defun layer-row-text (layer)
-  "Return the text for LAYER in the panel of layers: its title, and its names at the prompt if they
-differ."
+  "Return the text for LAYER in the panel: its title, and its names at the prompt if they differ."
   (let ((title (layer-title layer)) (words (layer-prompt-names layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 

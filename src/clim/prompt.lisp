@@ -59,8 +59,7 @@ line."))
 ;;; A prompt at work.
 
 (defstruct (conversation (:constructor make-conversation (session console over)) (:copier nil))
-  "The prompt of a window. OVER is a function that is called, with no arguments, when the user has
-left the prompt."
+  "The prompt of a window. OVER is a function called with no arguments when the user has left it."
   (session nil :read-only t)
   (console nil :type window-console :read-only t)
   (over nil :type function :read-only t)
@@ -83,8 +82,7 @@ line, and OVER when the user leaves the prompt."
                        console over)))
 
 (defun run-conversation (conversation simulation robot-name)
-  "Read and run lines until the user leaves the prompt. Record in CONVERSATION if its thread ends
-for another reason."
+  "Read and run lines until the user leaves. Record in CONVERSATION if its thread ends otherwise."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
@@ -109,8 +107,7 @@ for another reason."
     (start-conversation conversation simulation robot-name)))
 
 (defun text-in-input-line (conversation)
-  "Return the text in the input line of CONVERSATION that has not been entered yet, or NIL if the
-line is empty."
+  "Return the text in the input line of CONVERSATION, not entered yet, or NIL if the line is empty."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line
          (not (running-line conversation))
@@ -135,8 +132,7 @@ answer. Print a message in this case."
     t))
 
 (defun run-line-at-prompt (conversation line)
-  "Make the prompt run LINE, a string, as if the user had entered it. The input line does not
-change."
+  "Make the prompt run LINE, a string, as if the user had entered it, but keep the input line."
   (unless (refuse-line-at-break-p conversation line)
     (ars-magna.cli:enter-line (conversation-session conversation) line)
     (notify-window (conversation-console conversation))))

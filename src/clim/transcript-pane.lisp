@@ -124,8 +124,7 @@ are dark, because the transcript is white.")
       (and (= (first place) (first other)) (< (second place) (second other)))))
 
 (defun selection-bounds (pane)
-  "Return the start and the end of the selection in PANE, each a list (number column), or NIL if
-nothing is selected."
+  "Return start and end of the selection in PANE, lists (number column), or NIL if there is none."
   (let ((mark (pane-mark pane)) (point (pane-point pane)))
     (cond ((or (null mark) (null point) (equal mark point)) nil)
           ((position-before-p mark point) (values mark point))
@@ -143,8 +142,7 @@ and TO, lists (number column)."
                   (t stop)))))
 
 (defun paint-selection-in-row (canvas row y from to)
-  "Paint the background of the selected part of ROW. The selection is between FROM and TO, lists
-(number column)."
+  "Paint the background of the part of ROW selected between FROM and TO, lists (number column)."
   (multiple-value-bind (start stop) (selected-columns row from to)
     (when (< start stop)
       (with-gcontext (draw-gcontext* :foreground +selection-color+)
@@ -198,8 +196,7 @@ and TO, lists (number column)."
 ;;; Selecting.
 
 (defun transcript-position-at (pane x y)
-  "Return the line and column of the transcript at X, Y of PANE, as a list (number column). Return
-NIL if PANE shows no text."
+  "Return the position at X, Y of PANE, a list (number column), or NIL if PANE shows no text."
   (let* ((rows (pane-rows pane))
          (row (and rows (nth (clamp (floor (- y 2) +line-height+) 0 (1- (length rows))) rows))))
     (and row

@@ -13,8 +13,7 @@ the measured rate in ticks per second, or NIL if it is unknown."
 
 (defstruct (sample (:copier nil))
   "What was observed at the last look at a run. LAST-TICK is its tick and CALLS its number of calls
-of user code. Measuring the rate began at TICK and SECONDS. REACHED is the measured rate in ticks
-per second, or NIL."
+of user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
   (last-tick 0 :type fixnum)
   (calls nil :type (or null fixnum))
   (tick 0 :type fixnum)
@@ -49,16 +48,14 @@ per second, or NIL."
 ;;; Looking.
 
 (defun blocking-code-text (simulation sample)
-  "Return a text about the user code that has blocked SIMULATION since the last look, or NIL if no
-code has."
+  "Return a text about the user code that has blocked SIMULATION since the last look, or NIL."
   (multiple-value-bind (text calls) (users-code-in-progress simulation)
     (and (eql calls (shiftf (sample-calls sample) calls))
          (= (simulation-tick simulation) (sample-last-tick sample))
          text)))
 
 (defun chosen-rate (simulation)
-  "Return the tick rate that was set for SIMULATION: ticks per second or :FREE. Return NIL if
-SIMULATION has no rate."
+  "Return the tick rate set for SIMULATION: ticks per second, :FREE, or NIL if it has no rate."
   (if (live-p simulation)
       (simulation-rate simulation)
       (nth-value 1 (ars-magna.cli:simulation-pace simulation))))
@@ -109,8 +106,7 @@ present tick and time."
     (sample-reached sample)))
 
 (defun measure-progress (simulation sample)
-  "Return a PROGRESS object for SIMULATION. SAMPLE has the results of the last look, and is
-updated."
+  "Return a PROGRESS object for SIMULATION. Update SAMPLE, which has the results of the last look."
   (multiple-value-bind (state more) (time-state simulation sample)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
       (setf (sample-last-tick sample) tick)
@@ -283,8 +279,7 @@ itself, do nothing, because the next tick makes the snapshot."
   watcher)
 
 (defun pace-pictures (watcher)
-  "Run the pacer of WATCHER until the window closes. Report to the window if this thread is ended
-for another reason."
+  "Run the pacer of WATCHER until the window closes. Report an earlier end to the window."
   (unwind-protect (run-pacer watcher)
     (unless (watcher-over-p watcher)
       (setf (watcher-unpaced-p watcher) t)

@@ -128,8 +128,7 @@ frames, and :layers, :color-p and :usual-magnification."
   (funcall (function-to-call event) (clim:pane-frame sheet)))
 
 (defun call-in-window (function window)
-  "Make the thread of WINDOW call FUNCTION with WINDOW, if WINDOW is open. Any thread may call
-this."
+  "Make the thread of WINDOW call FUNCTION with WINDOW, if it is open. Any thread may call this."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (when sheet
       (clim:queue-event sheet (make-instance 'call-event :sheet sheet :function function)))

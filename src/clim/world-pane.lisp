@@ -27,20 +27,17 @@
 (defun view-map (pane) (window-map (window-of pane)))
 
 (defun pane-edges (pane)
-  "Return the widths in pixels of the coordinates and the scale bar at the left, top and bottom of
-PANE, as a list."
+  "Return the pixels that coordinates and scale bar take at PANE's left, top and bottom, as a list."
   (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
-  "Return the box (left top right bottom) of PANE that shows the map, without coordinates and scale
-bar."
+  "Return the box (left top right bottom) of the map in PANE, without coordinates and scale bar."
   (multiple-value-bind (width height) (pane-size pane)
     (destructuring-bind (left top bottom) (pane-edges pane)
       (list left top (max left width) (max top (- height bottom))))))
 
 (defun in-view-p (pane x y)
-  "True if X, Y of PANE is inside the box that shows the map, not in the coordinates or the scale
-bar."
+  "True if X, Y of PANE is in the box of the map, not in the coordinates or the scale bar."
   (destructuring-bind (left top right bottom) (view-box pane)
     (and (<= left x) (< x right) (<= top y) (< y bottom))))
 
@@ -59,8 +56,7 @@ bar."
   "The text in the strip if the robot is to be followed but the view shows the whole map.")
 
 (defun stop-fitting-map (pane)
-  "Record that the user has changed the view of PANE, so that it no longer fits the map
-automatically."
+  "Record that the user has changed the view of PANE, so that it no longer fits the map by itself."
   (setf (pane-fitting-p pane) nil)
   (when (equal *whole-map-hint* (window-hint (window-of pane)))
     (setf (window-hint (window-of pane)) "")
@@ -83,8 +79,7 @@ automatically."
 ;;; Fitting.
 
 (defun fitting-scale (map width height)
-  "Return the largest scale, in pixels per cell, with which the whole MAP fits into WIDTH x HEIGHT
-pixels."
+  "Return the largest scale, in pixels per cell, with which MAP fits into WIDTH x HEIGHT pixels."
   (let* ((scale (min (/ width (map-width map)) (/ height (map-height map))))
          (step (cond ((< scale 1) +least-scale+) ((< scale 4) 1/4) (t 1))))
     (clamp (* step (floor scale step)) +least-scale+ 64)))
@@ -107,8 +102,7 @@ pixels."
 ;;; The robot.
 
 (defun robot-position-in-pane (pane)
-  "Return the pixel coordinates in PANE of the window's robot, as two values, or NIL if there is
-none."
+  "Return the pixel coordinates in PANE of the window's robot, two values, or NIL if there is none."
   (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
     (and robot
          (values (- (* scale (robot-image-x robot)) (pane-left pane))

@@ -130,8 +130,7 @@ which keys are down: this answer has 40 bytes."
     (error () nil)))
 
 (defun library-fault-message (condition clx-fails-p)
-  "Return the message about CONDITION, an error of McCLIM, or of CLX if CLX-FAILS-P, while the X
-server answers."
+  "Return the message on CONDITION, an error of McCLIM (or CLX if CLX-FAILS-P) while X answers."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)
@@ -140,8 +139,7 @@ server answers."
           (and clx-fails-p ars-magna.clx:*clx-remedy*)))
 
 (defun connection-failure-message (condition)
-  "Return the message about CONDITION, an error that occurred when the connection to the X server
-was opened."
+  "Return the message about CONDITION, an error in opening the connection to the X server."
   (typecase condition
     (program-fault (library-fault-message condition (clx-fails-p)))
     (xlib:connection-failure
@@ -169,8 +167,7 @@ was opened."
 ;;; once more when no other thread reads.
 
 (defvar *input-arrived-p* (constantly nil)
-  "A function that returns true if the input for which this thread reads from the X server has
-arrived.")
+  "A function that is true if the input that this thread awaits from the X server has arrived.")
 
 (defun read-x-server-input (read display timeout force-output-p come-p &rest arguments)
   "Call READ, CLX's function, with the other arguments. COME-P is a function that returns true of

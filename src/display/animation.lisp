@@ -47,8 +47,7 @@ FUNCTION are signalled after the replay."
                       +most-frames+))))
 
 (defun write-frame (canvas index count seconds function)
-  "Write frame INDEX, of COUNT frames, as an SVG group that FUNCTION draws. The animation lasts
-SECONDS."
+  "Write frame INDEX of COUNT, in an animation of SECONDS, as an SVG group that FUNCTION draws."
   (write-svg canvas "<g" (if (zerop index) "" " visibility=\"hidden\"") ">
 <animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"" seconds
              "s\" repeatCount=\"indefinite\" values=\"")
@@ -87,8 +86,7 @@ SECONDS."
                           (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)
-  "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
-that says so."
+  "Return TITLE, a string or NIL, and a remark if JOURNAL is replayed ANYWAY with new definitions."
   (let ((words (and anyway (typep title '(or null string)) (changed-definitions-sentence journal))))
     (if words
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)
@@ -191,8 +189,7 @@ Signals the errors of REPLAY."
   (check-map-options 'save-animation :title title :layers layers :scale scale))
 
 (defun file-names-text (files)
-  "Return a text with the first and the last name of FILES, a list of numbered files in reverse
-order."
+  "Return a text with the first and last names of FILES, numbered files in reverse order."
   (format nil "~A~@[ to ~A~]" (file-name-text (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
 

@@ -85,8 +85,7 @@ attribute of GCONTEXT."
 (public with-color)
 (defmacro with-color (color &body body)
   "Run BODY, which draws in COLOR. COLOR is an element of the manual's vectors of colours or any
-integer #xRRGGBB. If the display has no colours, BODY draws in black (manual B.1). Signals
-WRONG-ARGUMENT."
+integer #xRRGGBB. Without colours, BODY draws in black (manual B.1). Signals WRONG-ARGUMENT."
   (with-gensyms (value)
     `(let ((,value ,color))
        (with-gcontext (draw-gcontext* :foreground (if in-color* ,value black*)) ,@body))))
@@ -191,6 +190,5 @@ GRAPHICS-SCALE* bound to SCALE."
     (funcall function)))
 
 (defmacro with-canvas ((canvas &rest options) &body body)
-  "Run BODY with DRAW-GCONTEXT* and IN-COLOR* bound for CANVAS. The option :scale binds
-GRAPHICS-SCALE*."
+  "Run BODY with DRAW-GCONTEXT*, IN-COLOR* and, given :scale, GRAPHICS-SCALE* bound for CANVAS."
   `(call-on-canvas (lambda () ,@body) ,canvas ,@options))

@@ -37,8 +37,7 @@
 (defconstant +plain-shade+ 9 "The index of the plain colour in a vector of 12 shades.")
 
 (defun shades-around (dark plain light)
-  "Return a vector of 12 colours from DARK through PLAIN to LIGHT. PLAIN is at the index
-+PLAIN-SHADE+."
+  "Return a vector of 12 colours from DARK to LIGHT, with PLAIN at the index +PLAIN-SHADE+."
   (concatenate 'simple-vector
                (shades (1+ +plain-shade+) dark plain)
                (subseq (shades (- 12 +plain-shade+) plain light) 1)))
@@ -103,8 +102,7 @@ attribute. Return NIL if NAME is not a colour."
   (loop for position in '(16 8 0) collect (linear-light (ldb (byte 8 position) color))))
 
 (defun color-of-primaries (primaries)
-  "Return the colour with PRIMARIES, a list of the linear light of red, green and blue, from 0 to
-1."
+  "Return the colour with PRIMARIES, a list of the linear red, green and blue light from 0 to 1."
   (reduce (lambda (color light) (logior (ash color 8) (byte-of-light light)))
           primaries :initial-value 0))
 
@@ -152,13 +150,11 @@ luminance of GREY, so it is printed in the same grey."
 (:across Y), (:down X), (:rising), (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
 (defun tile-edges (low high tile)
-  "Return the coordinates where the tiles begin that overlap the range from LOW to HIGH. TILE is the
-size of tiles."
+  "Return the coordinates where tiles of size TILE begin that overlap the range from LOW to HIGH."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun tile-levels (low high tile part)
-  "Return the coordinates from LOW up to HIGH at the fraction PART, from 0 to 1, of each tile. TILE
-is the size of tiles."
+  "Return the coordinates from LOW to HIGH at the fraction PART, 0 to 1, of each tile of size TILE."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
@@ -187,8 +183,7 @@ a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
                                       (cut-to top (+ y (* y2 tile)) bottom)))))))
 
 (defun mark-segments (mark left top right bottom tile)
-  "Return the lines x1 y1 x2 y2 ... that MARK, a mark of a texture but not a box, draws in the
-rectangle."
+  "Return the lines x1 y1 x2 y2 ... that MARK, a texture's mark but no box, draws in the rectangle."
   (ecase (first mark)
     (:across (loop for y in (tile-levels top bottom tile (second mark))
                    append (list left y right y)))

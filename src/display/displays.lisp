@@ -5,8 +5,7 @@
 (export '(draw-display display-title +displays+))
 
 ;;; The function of a display (manual B) gets the image of the robot and the width. It draws from 0,
-;;; 0 and returns its height. (In the loops, Y steps before the parts run out, and so ends below the
-;;; last part.)
+;;; 0 and returns its height. (In the loops, Y steps before the parts run out, ending below it.)
 
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
@@ -53,8 +52,7 @@
 robot, so that their widths are in proportion.")
 
 (defun size-unit (robot)
-  "Return the width in pixels of a thing of size 1 with which the largest thing in the displays of
-ROBOT fits."
+  "Return the width in pixels of a thing of size 1 so that the largest thing fits ROBOT's displays."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
                          :initial-value 0)))
     (if (< (* largest +greatest-size-unit+) +object-width+)
@@ -67,8 +65,7 @@ of the thing, but at least 2."
   (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
-  "Draw a frame in the current colour, with a black outline so that light colours are visible on
-white."
+  "Draw a frame in the current colour, with a black outline that shows light colours on white."
   (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
     (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
     (when (and in-color* (<= 4 width))
@@ -98,15 +95,13 @@ out if the thing obstructs view."
         (draw-segments canvas draw-gcontext* (list x y right bottom x bottom right y))))))
 
 (defun report-undrawable (image value trouble)
-  "Report once that VALUE, the :draw-function of the thing of IMAGE, cannot be used because of
-TROUBLE, a text."
+  "Report once that VALUE, the :draw-function of IMAGE, cannot be used because of TROUBLE, a text."
   (unless (gethash value *broken-graphics*)
     (setf (gethash value *broken-graphics*) t)
     (error-set (subject-title image) " is drawn plainly: " trouble)))
 
 (defun draw-by-draw-function (canvas image x y)
-  "Draw the thing of IMAGE by its :draw-function (reading 211). Return true if the thing has a
-:draw-function that works."
+  "Draw the thing of IMAGE by its :draw-function (reading 211). Return true if that function works."
   (let ((value (thing-image-draw-function image)))
     (multiple-value-bind (function trouble) (resolve-draw-function value)
       (when trouble (report-undrawable image value trouble))
@@ -201,8 +196,7 @@ display takes no new view, so that it shows only what the robot knows."
       "View: none requested yet"))
 
 (defun draw-track-line (canvas track x y width)
-  "Write the type and distance of TRACK, the image of a tracked designator, and draw what TRACK
-denotes."
+  "Write type and distance of TRACK, the image of a tracked designator, and draw what it denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
     (draw-line-of-text canvas x y width text)
@@ -273,8 +267,7 @@ cameras, hands and storage bins.")
   (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-detail (canvas display robot width)
-  "Draw DISPLAY, one of the displays of ROBOT except the world, WIDTH pixels wide. Return its height
-in pixels."
+  "Draw DISPLAY of ROBOT, any but the world, WIDTH pixels wide. Return its height in pixels."
   (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
     (let ((*size-unit* (size-unit robot)))
       (if parts
@@ -283,8 +276,7 @@ in pixels."
           (funcall draw canvas robot width)))))
 
 (defun draw-titled-display (canvas display robot x y)
-  "Draw DISPLAY of ROBOT with its title and a frame, and with its upper left corner at X, Y. Return
-its height in pixels."
+  "Draw DISPLAY of ROBOT with title and frame, from X, Y down. Return its height in pixels."
   (let ((height 0) (top (+ +line-height+ 2)))
     (with-origin (canvas x (+ y top))
       (setf height (draw-detail canvas display robot +detail-width+)))

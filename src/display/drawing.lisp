@@ -75,8 +75,7 @@ slice."
                       (list x1 y1 x2 y2))))
 
 (defun absolute-points (points)
-  "Return absolute coordinates, as a list x y ..., for POINTS, x y ..., each relative to the point
-before."
+  "Return a list of the absolute coordinates of POINTS, x y ..., each relative to the point before."
   (loop with x = 0 and y = 0
         for (dx dy) on (coerce points 'list) by #'cddr
         collect (incf x dx)

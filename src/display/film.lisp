@@ -40,8 +40,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
     lines))
 
 (defun changes-in (frame before)
-  "Return the differences between the frames BEFORE and FRAME, vectors of equal length, as a list
-index number ... of lines."
+  "Return a list index number ... of the lines of FRAME that differ from the equally long BEFORE."
   (loop for number across frame
         for old across before
         for place from 0
@@ -50,8 +49,7 @@ index number ... of lines."
 ;;; The data of a film, in JSON, which is also JavaScript.
 
 (defun write-array (writer items out)
-  "Write the sequence ITEMS to OUT as a JSON array. WRITER is a function that writes an item to a
-stream."
+  "Write the sequence ITEMS to OUT as a JSON array. The function WRITER writes an item to a stream."
   (write-char #\[ out)
   (let ((first-p t))
     (cl:map nil (lambda (item)
@@ -138,8 +136,7 @@ list items. If SEVERAL-P, name the robots of MOMENTS."
 (defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
   "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of the first frame, whose
 group `movers' the other frames replace. LAST-PICTURE, an SVG document of the last frame, is for
-browsers that run no scripts. LEGEND is a text of HTML list items. If SEVERAL-P, name the robots of
-MOMENTS."
+browsers without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-text title out)
@@ -164,8 +161,7 @@ MOMENTS."
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
 (defun still-svg (snapshot movers layers in-color scale)
-  "Return an SVG document of the map of SNAPSHOT with LAYERS. Above the map is the SVG text MOVERS,
-in a group called `movers'."
+  "Return as SVG the map of SNAPSHOT with LAYERS and, above it, MOVERS in a group called `movers'."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
@@ -228,8 +224,7 @@ to their images. ROBOTS are images of robots, and LINES legend entries of lines,
 
 (defun record-film (journal every until watch part layers in-color scale)
   "Replay JOURNAL and record a film. Call WATCH with the simulation after each tick. Return five
-values: the reel, the ticks of its frames, SVG documents of the first and the last frame, and the
-contents."
+values: the reel, its ticks, SVG documents of the first and last frames, and the contents."
   (let ((reel (make-reel)) (ticks '()) (contents nil) (first nil) (last nil)
         ;; The legend and the title of a page are HTML.
         (shown (set-difference layers '(:legend :title))))

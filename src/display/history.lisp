@@ -23,8 +23,7 @@ two points, the robot was put elsewhere between them."
   (ends '() :type list :read-only t))
 
 (defstruct (history (:copier nil))
-  "The views of the cameras in a simulation, recorded for pictures. Trails are recorded in the
-simulation itself."
+  "The camera views in a simulation, recorded for pictures. The simulation itself records trails."
   ;; An association list by camera: there are few cameras.
   (looks '() :type list))
 
@@ -78,8 +77,7 @@ where ROBOT was put, because ROBOT may have moved away from there by TICK."
         (make-trail points count))))
 
 (defun record-position (simulation robot)
-  "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. This function is called
-in every tick."
+  "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. Called in every tick."
   (declare #.*hot* (type robot robot))
   (let* ((name (robot-name robot)) (trail (trail-of-robot-named name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
@@ -173,8 +171,7 @@ rays of the cameras' last views. Return the history."
 
 (defun copy-history-after-rewind (old new)
   "Copy the trails of the simulation OLD, up to the present tick of NEW, to the simulation NEW,
-which replaces OLD after a rewind. If a history of OLD is recorded, record a history of NEW
-instead."
+which replaces OLD after a rewind. If a history of OLD is recorded, record NEW's instead."
   (setf (simulation-trails new)
         (loop for (name . trail) in (simulation-trails old)
               collect (cons name (trail-until (simulation-tick new) trail))))

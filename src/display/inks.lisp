@@ -16,14 +16,12 @@
       (funcall function))))
 
 (defmacro with-halo ((color &key (width 1) dashes) &body body)
-  "Run BODY, which draws lines, twice: first for a white halo, then in the dark colour COLOR, WIDTH
-pixels wide, with DASHES."
+  "Run BODY, which draws lines WIDTH wide with DASHES, for a white halo, then in the dark COLOR."
   `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Each of several robots or ways has a colour and dashes by its position. There are 8 colours and
 ;;; 5 dashes: so 40 can be told apart, and 5 without colours. Any two colours are at least 20 apart
-;;; in CIE Lab, with full colour vision and without one kind of cones; tests/palette.lisp measures
-;;; it.
+;;; in CIE Lab, with full colour vision and without one kind of cones(tests/palette.lisp).
 
 (define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
@@ -124,8 +122,7 @@ the first follows.")
 the first follows.")
 
 (defun substance-position (name)
-  "Return the number of substances that were defined before the substance called NAME. Return NIL if
-there is no such substance."
+  "Return the number of substances defined before the one called NAME, or NIL if there is none."
   (position name (all-substances) :key #'substance-name :test #'same-name-p))
 
 (defun substance-ink (name)
@@ -142,8 +139,7 @@ there is no such substance."
   "The parameter whose shade is halfway between +SHADE-OF-ZERO+ and +GREATEST-SHADE+.")
 
 (defun wall-shade (parameter)
-  "Return the index in GREY* of the shade of walls with PARAMETER. The shade is the same in each
-map."
+  "Return the index in GREY* of the shade of walls with PARAMETER, the same in each map."
   (let ((part (/ parameter (+ (abs parameter) +middle-parameter+))))
     (+ +shade-of-zero+
        (round (* part (if (minusp part)
@@ -181,8 +177,7 @@ definitions of these substances."
           collect (list name (first (push (choose-texture name taken) taken))))))
 
 (defun materials-of (map)
-  "Return a vector of the materials of the substances of MAP, indexed by the number of the
-substance."
+  "Return a vector of the materials of the substances of MAP, indexed by their numbers."
   (let ((textures (textures-for (remove nil (coerce (map-substance-types map) 'list)))))
     (cl:map 'vector (lambda (name)
                       (make-material (and name (getf +tints+ (substance-ink name)))

@@ -20,8 +20,7 @@
 ;;; the argument SHOWN, or NIL. The legend calls it too, and so lists exactly what is drawn.
 
 (defstruct (layer (:copier nil) (:conc-name %layer-))
-  "A layer of pictures: something that they can show besides walls, things and robots. See
-DEFINE-LAYER."
+  "A layer of pictures: what they can show besides walls, things and robots. See DEFINE-LAYER."
   (name nil :type keyword) (title "" :type string) (sentence "" :type string)
   (default-p nil) (depth :robots :type keyword) (shown nil) (draw nil) (note nil) (boxes nil)
   (ink nil) (dashes '() :type list) (width 1) (legend nil) (entries nil) (last-p nil)
@@ -49,8 +48,7 @@ DEFINE-LAYER."
                                      (%layer-sentence layer)))))))
 
 (defun add-layer (layer)
-  "Add LAYER to *LAYERS*, at the end or in place of a layer of the same name. Return the name of
-LAYER."
+  "Add LAYER to *LAYERS*, at the end or in place of one of the same name. Return the name of LAYER."
   (let* ((name (%layer-name layer)) (old (find name *layers* :key #'%layer-name)))
     (cond (old (setf *layers* (substitute layer old *layers*)))
           (t (setf *layers* (append *layers* (list layer)))
@@ -98,8 +96,7 @@ the colour of the first robot."
 (defun layer-dashes (name) (%layer-dashes (find-layer name)))
 
 (defun layers-at-depth (depth &optional (names (picture-layers)))
-  "Return the layers that are drawn at DEPTH and whose names are in the list NAMES, in the order of
-menus."
+  "Return the layers drawn at DEPTH whose names are in the list NAMES, in the order of menus."
   (remove-if-not (lambda (layer)
                    (and (eq depth (%layer-depth layer)) (member (%layer-name layer) names)))
                  *layers*))
@@ -111,14 +108,12 @@ menus."
   (remove nil (mapcar #'%layer-text-name *layers*)))
 
 (defun picture-layer-name (name)
-  "Return the name in pictures of a layer. NAME, a keyword, is its name in pictures or in text
-maps."
+  "Return a layer's name in pictures. NAME, a keyword, is its name in pictures or in text maps."
   (let ((layer (find name *layers* :key #'%layer-text-name)))
     (if layer (%layer-name layer) name)))
 
 (defun text-layer-name (name)
-  "Return the name in text maps of a layer. NAME, a keyword, is its name in pictures or in text
-maps."
+  "Return a layer's name in text maps. NAME, a keyword, is its name in pictures or in text maps."
   (let ((layer (find name *layers* :key #'%layer-name)))
     (or (and layer (%layer-text-name layer)) name)))
 

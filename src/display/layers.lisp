@@ -17,8 +17,7 @@ of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a r
         when shown collect (list* layer shown more)))
 
 (defun shown-below-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT below things, as a list like that of SHOWN-AT-DEPTH, from the
-lowest layer up."
+  "Return what LAYERS show of SNAPSHOT below things, lowest first, as a list like SHOWN-AT-DEPTH's."
   (append (shown-at-depth :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
@@ -41,8 +40,7 @@ lowest layer up."
         do (apply (%layer-draw layer) canvas arguments)))
 
 (defconstant +robot-overhang+ 8
-  "The distance in pixels to which robots are drawn beyond the edges of the map. No margin is
-narrower.")
+  "The least margin in pixels, because robots are drawn this far beyond the edges of the map.")
 
 (defun draw-movers (canvas snapshot layers)
   "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them."

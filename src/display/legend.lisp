@@ -11,8 +11,7 @@
 
 (defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
                   (:copier nil))
-  "An entry of a legend: TEXT beside a sample that is WIDTH pixels wide. WHOLE is the full text if
-TEXT is abridged, else NIL."
+  "A legend entry: TEXT beside a sample WIDTH pixels wide. WHOLE is TEXT before abridging, or NIL."
   (width +sample-width+ :type real :read-only t)
   (text "" :type string :read-only t)
   (sample (constantly nil) :type function :read-only t)
@@ -36,8 +35,7 @@ MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the samp
                 ,@more-and-width))
 
 (defun group-by (objects key)
-  "Return the list OBJECTS divided into lists of the objects for which KEY returns equal values. The
-order of objects is kept."
+  "Return the list OBJECTS divided, in order, into lists of objects with equal values of KEY."
   (let ((groups '()))
     (dolist (object objects (mapcar #'reverse (mapcar #'rest (reverse groups))))
       (let* ((value (funcall key object)) (group (assoc value groups :test #'cl:equal)))
@@ -70,8 +68,7 @@ of two strings. SAMPLE is a function that draws the sample."
 ;;; Robots.
 
 (defun robot-entry (name position)
-  "Return the legend entry for the robot called NAME, a string. POSITION is its position in the list
-of robots of its world."
+  "Return the legend entry for the robot called NAME, at POSITION in its world's list of robots."
   (named-entry-with-sample (canvas x y) (name) (draw-ring canvas x y 6 0 position)))
 
 (defun robot-entries (snapshot)
@@ -170,8 +167,7 @@ if a line of the legend has room for that."
     (thing-half-width image)))
 
 (defun thing-look (image)
-  "Return the look of the thing of IMAGE as a list. Things with equal looks can hardly be
-distinguished in a picture."
+  "Return the look of the thing of IMAGE, a list. Things with equal looks are hard to distinguish."
   (list (thing-image-color image) (thing-shape image) (round (sample-half-width image))
         (thing-image-container-p image) (thing-image-obsview-p image)))
 
@@ -218,8 +214,7 @@ number of things if several have the same name, else an empty text."
 
 (defun jump-entries (ways snapshot color)
   "Return a list with the legend entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump in WAYS.
-A jump is where a robot was put elsewhere. Each of WAYS is a list of pieces, lists x y ... in
-pixels."
+A jump is where a robot was put elsewhere. WAYS are lists of pieces, x y ... in pixels."
   (and (jump-visible-p ways (pixels-of (shown-part snapshot)))
        (list (entry-with-sample (canvas x y) "put elsewhere"
                (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))

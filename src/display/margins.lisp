@@ -41,8 +41,7 @@ SUBTITLE are lists of lines."
   (title '()) (subtitle '()) (width 0) (height 0))
 
 (defun margins-for-layers (layers)
-  "Return a list of the margins at the left, top, right and bottom of the map that LAYERS need,
-without a legend."
+  "Return a list of the left, top, right and bottom margins that LAYERS need, without a legend."
   (flet ((shown-p (layer) (member layer layers)))
     (if (layers-at-depth :margin layers)
         (list (if (shown-p :coordinates) 36 8)
@@ -117,8 +116,7 @@ wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than su
   (* +line-height+ (length (first columns))))
 
 (defun columns-below (entries width)
-  "Return ENTRIES divided into columns that together are at most WIDTH pixels wide and as low as
-possible."
+  "Return ENTRIES divided into columns, together at most WIDTH pixels wide and as low as possible."
   (loop for rows from 1
         for columns = (columns-of entries rows)
         when (or (null (rest columns)) (<= (columns-width columns) width))
@@ -239,8 +237,7 @@ PER-PIXEL times the height of its font."
     (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))
 
 (defun draw-entry (canvas entry x y width)
-  "Draw the legend entry ENTRY with its upper left corner at X, Y. WIDTH is the width in pixels of
-the samples in its column."
+  "Draw ENTRY with its upper left corner at X, Y. Samples in its column are WIDTH pixels wide."
   (let ((middle (+ y (/ +line-height+ 2))))
     (flet ((words () (draw-text canvas (+ x width 4) (+ middle 4) (entry-text entry))))
       (funcall (entry-sample entry) canvas (+ x -1 (/ width 2)) middle)

@@ -14,8 +14,7 @@
 
 (addition moment-p)
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
-  "A notable event of a run. At TICK it happened to the robot named ROBOT, which was at X, Y. TEXT
-describes the event."
+  "A notable event of a run, told by TEXT. It happened at TICK to the robot named ROBOT, at X, Y."
   (tick 0 real "the tick of the event" :addition)
   (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN
 that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;
@@ -44,13 +43,11 @@ the contents of each bin. FAILURE is the last failure of a command."
                     (robot-failure robot)))
 
 (defun initial-observation (new)
-  "Return the observation to compare NEW, the first one, with. It has empty hands, as at the
-beginning of a run."
+  "Return the observation to compare NEW, the first one, with: empty hands, as when a run begins."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
 
 (defun changes-of-hands (old new)
-  "Return lists (kind text) for the things that hands have grasped or released between the
-observations OLD and NEW."
+  "Return lists (kind text) for the things that hands grasped or released between OLD and NEW."
   (loop for before in (observation-held old)
         for after in (observation-held new)
         unless (eq before after)
@@ -94,8 +91,7 @@ without arguments, returns the moments found so far, the earliest first."
 ;;; A journal itself records the ends of plans, and errors in users' code.
 
 (defun moments-in-remarks (journal until)
-  "Return the moments in the remarks of JOURNAL, up to the tick UNTIL, or to the end of JOURNAL if
-UNTIL is NIL."
+  "Return the moments in the remarks of JOURNAL, up to the tick UNTIL, or all if UNTIL is NIL."
   (loop for (tick kind text robot x y) in (reverse (journal-remarks journal))
         for blueprint = (and robot (find-blueprint robot nil))
         when (or (null until) (<= tick until))
@@ -104,8 +100,7 @@ UNTIL is NIL."
 ;;; Users' own moments.
 
 (defun parse-moment (object)
-  "Return the moment for OBJECT, a moment or a list (tick text [robot]). Return NIL for other
-objects."
+  "Return the moment for OBJECT, a moment or a list (tick text [robot]), or NIL for other objects."
   (cond ((moment-p object) object)
         ((typep object '(cons integer (cons string (or null (cons symbol null)))))
          (make-moment (first object) :note (second object) nil nil (third object)))))
@@ -133,8 +128,7 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
                      (format nil "T for all, or a list of some of ~{~(~S~)~^, ~}" +moment-kinds+))))
 
 (defun moments-of-kinds (kinds moments)
-  "Return the moments in MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return
-all."
+  "Return those of MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return all."
   (if (eq kinds t)
       moments
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))

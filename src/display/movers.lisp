@@ -79,8 +79,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  "Draw the small vertical line that denotes a thing in the manual's figure. A halo makes the line
-visible on walls."
+  "Draw the small vertical line of things in the manual's figure, with a halo visible on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
     (flet ((upright (more)
@@ -110,9 +109,8 @@ visible on walls."
 
 ;;; Robots.
 
-;;; A robot is drawn hollow and below things, so that it does not hide what it is about to grasp.
-;;; Each of several has a colour and dashes by its position. Without colours, the heads of every
-;;; second five are hollow.
+;;; Several have colours and dashes by position. Without colours, every second five have hollow
+;;; heads.
 
 (defun robot-radius ()
   "Return the radius of the ring of a robot, in pixels. It is nearly a cell, but half a cell where
@@ -151,8 +149,7 @@ earlier ROBOTS on the same spot."
                 :fill-p fill-p)))
 
 (defun hollow-head-p (position)
-  "True if the arrowhead of a robot is drawn hollow. POSITION is the position of the robot in the
-list of robots of its world."
+  "True if the arrowhead of the robot at POSITION in its world's list of robots is drawn hollow."
   (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
 (defun camera-lines (image radius)
@@ -183,8 +180,7 @@ robot in the list of robots of its world."
       (with-halo ((layer-ink :tracks) :width 2) (draw-segments canvas draw-gcontext* line)))))
 
 (defun draw-robots (canvas robots)
-  "Draw ROBOTS, the images of all robots. Wide rings are drawn first, so that they hide no other
-rings."
+  "Draw ROBOTS, the images of all robots. Wide rings come first, so that they hide no other rings."
   (loop for (image radius)
           in (stable-sort (loop for image in robots
                                 collect (list image (ring-radius image robots)))
@@ -193,15 +189,13 @@ rings."
 
 ;;;; Senses and beliefs
 
-;;; Fields of view end at walls and at things that obstruct view. They are computed when drawn, from
-;;; the snapshot alone.
+;;; Fields of view, ended by walls and opaque things, are computed from the snapshot when drawn.
 
 (defconstant +sight-spacing+ 0.015d0
   "The angle between rays that find the edge of a field of view, in radians.")
 
 (defun opaque-cells (snapshot)
-  "Return a function of the index of a cell that returns true if the cell blocks the view in
-SNAPSHOT."
+  "Return a function of a cell's index that returns true if the cell blocks the view in SNAPSHOT."
   (let* ((map (snapshot-map snapshot)) (flags (map-flags map))
          (hidden (loop for image across (snapshot-things snapshot)
                        when (thing-image-obsview-p image)
@@ -268,8 +262,7 @@ to the real position of ROBOT."
 (defun track-radius () (max 4 (* 1/2 graphics-scale*)))
 
 (defun draw-track (canvas designator robot snapshot)
-  "Draw a line from ROBOT to the believed position of the object of DESIGNATOR, which a camera
-tracks."
+  "Draw a line from ROBOT to the believed position of the object of the tracked DESIGNATOR."
   (declare (ignore snapshot))
   (let ((target (pixels-of (believed-place robot designator))))
     (with-halo ((layer-ink :tracks) :dashes (layer-dashes :tracks))
@@ -280,8 +273,7 @@ tracks."
       (draw-circle canvas (first target) (second target) (track-radius) nil))))
 
 (defun track-boxes (designator robot snapshot)
-  "Return a list of the box, in pixels, of the ring at the believed position of the object of
-DESIGNATOR."
+  "Return a list of the box, in pixels, of the ring where DESIGNATOR's object is believed to be."
   (declare (ignore snapshot))
   (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (list (box-around x y (+ 2 (track-radius))))))
@@ -324,8 +316,7 @@ from the cross to the real position of the object."
           collect (+ (odometer-image-y odometer) (* sin dx) (* cos dy)))))
 
 (defun draw-odometer (canvas odometer robot snapshot)
-  "Draw the estimate of ODOMETER: a box of possible positions, and two lines from its middle for the
-bounds of the heading."
+  "Draw the estimate of ODOMETER: a box of positions, with two lines for the bounds of the heading."
   (declare (ignore robot snapshot))
   (let* ((x (odometer-image-x odometer)) (y (odometer-image-y odometer))
          (heading (odometer-image-heading odometer))

@@ -72,8 +72,7 @@ pixels around X, Y. ROBOT is the image of a robot, or NIL for a thing."
 (defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
 (defun name-boxes (x y half width)
-  "Return boxes for a name WIDTH pixels wide beside a spot that reaches HALF pixels from X, Y. The
-best box comes first."
+  "Return boxes, best first, for a name WIDTH pixels wide beside a spot of HALF pixels around X, Y."
   (let ((gap (+ half 2)) (high +name-height+))
     (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
                                   (list (- x gap width) (- y (/ high 2)))
@@ -95,9 +94,8 @@ best box comes first."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes as NAME-BOXES does. If a box of the index MARKS, such as the ring of a track,
-overlaps the spot, add boxes beside such a ring. Without a ring, names at this distance would be
-ambiguous."
+  "Return boxes like NAME-BOXES. If a box of the index MARKS, such as the ring of a track, overlaps
+the spot, add boxes beside such a ring. Without a ring, names so far away would be ambiguous."
   (append (name-boxes x y half width)
           (and (find-overlapping-item (box-around x y half) marks)
                (name-boxes x y (max half (+ 2 (track-radius))) width))))

@@ -35,8 +35,7 @@ already has lower-case letters."
 ;;; Of things in one place the small ones are drawn last. A thing hides those of its own size.
 
 (defun pile-key (image)
-  "Return a list for the image of a thing. The lists of two images are EQUALP if one thing hides the
-other."
+  "Return a list for IMAGE, of a thing. Two lists are EQUALP if one of the things hides the other."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-spot (image hidden)
@@ -95,19 +94,16 @@ with the name of SPOT."
   (sqrt (+ (expt (- to-x x) 2) (expt (- to-y y) 2))))
 
 (defun distance-from-ring (image x y)
-  "Return the distance in pixels of X, Y from the ring of the robot of IMAGE. It is negative inside
-the ring."
+  "Return the distance in pixels of X, Y from the ring of the robot of IMAGE, negative if inside."
   (- (pixel-distance x y (to-pixels (robot-image-x image)) (to-pixels (robot-image-y image)))
      (robot-radius)))
 
 (defconstant +robot-margin+ 6
-  "The least difference between a name's distances to another robot and to its own robot, in
-pixels.")
+  "The least difference in pixels between a name's distances to another robot and to its own.")
 (defconstant +thing-margin+ 3 "The value of +ROBOT-MARGIN+ if one of the two is a thing.")
 
 (defun spot-distance (spot box)
-  "Return the distance in pixels of BOX from SPOT, a ring or a square. It is 0 or less if they
-overlap."
+  "Return the distance in pixels of BOX from SPOT, a ring or a square: 0 or less for an overlap."
   (let ((x (spot-x spot)) (y (spot-y spot)) (half (spot-half spot)))
     (flet ((off (x y)
              (multiple-value-call #'pixel-distance x y (nearest-point-in-box box x y))))
@@ -118,8 +114,7 @@ overlap."
                  (clamp (clamp y top bottom) (- y half) (+ y half))))))))
 
 (defun unambiguous-p (spot box rivals)
-  "True if a name in BOX clearly belongs to SPOT and not to one of RIVALS, spots with confusable
-names."
+  "True if a name in BOX clearly belongs to SPOT not to RIVALS, spots with confusable names."
   (loop with own = (spot-distance spot box)
         for rival in rivals
         for robots-p = (and (spot-robot spot) (spot-robot rival))
@@ -147,8 +142,7 @@ belong to them."
 used.")
 
 (defun name-box-at-line-end (x y angle width)
-  "Return the box of a name WIDTH pixels wide at the end of a line that ends at X, Y in direction
-ANGLE."
+  "Return the box of a name WIDTH pixels wide at the end X, Y of a line in direction ANGLE."
   (flet ((before (share size)
            (cond ((< share -1/3) size) ((< 1/3 share) 0) (t (/ size 2)))))
     (let ((left (- x (before (cosine angle) width)))
@@ -156,8 +150,7 @@ ANGLE."
       (list left top (+ left width) (+ top +name-height+)))))
 
 (defun leader-boxes (spot width)
-  "Return boxes for the name of SPOT, WIDTH pixels wide, at the ends of lines. The nearest box comes
-first."
+  "Return boxes, nearest first, for the name of SPOT, WIDTH pixels wide, at the ends of lines."
   (loop for length in +leader-lengths+
         append (loop for turn below 16
                      for angle = (* turn (/ pi 8))
@@ -201,8 +194,7 @@ TAKEN except the box of SPOT."
 
 (defun leader-box (snapshot layers spot width taken rivals)
   "Return the box at the end of a line where the name of SPOT, WIDTH pixels wide, hides least, or
-NIL. The line crosses nothing, if possible. If SPOT is a thing and each line crosses something,
-return NIL."
+NIL. The line crosses nothing, if possible, and always if SPOT is a thing."
   (let ((boxes (leader-boxes spot width)))
     (flet ((best (own-p)
              (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))

@@ -16,8 +16,7 @@
           (with-canvas (canvas :scale (suitable-scale scale snapshot layers)) (draw canvas))))))
 
 (defun check-map-options (operator &key title layers scale)
-  "Signal WRONG-ARGUMENT unless TITLE, LAYERS and SCALE are valid options of OPERATOR, a function
-that draws a map."
+  "Signal WRONG-ARGUMENT unless TITLE, LAYERS and SCALE are valid for OPERATOR, which draws a map."
   (unless (typep title '(or null string))
     (reject-argument operator :title title "a string or NIL"))
   (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
@@ -90,8 +89,7 @@ OUT. FILE is the name of the file for messages."
 
 (defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
   "Return the element of KINDS that is the type of the file name FILE. Signals WRONG-ARGUMENT for
-OPERATOR if FILE has another type or cannot be written. The message lists ENDINGS, a text with the
-possible types."
+OPERATOR if FILE has another type or cannot be written. The message lists ENDINGS, a text of types."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (when (wildcard-name-p file)
@@ -102,8 +100,7 @@ possible types."
         (reject (format nil "a name that ends in ~A" endings)))))
 
 (defun save-svg (svg file kind)
-  "Write the SVG document SVG to FILE, as it is or as PNG if KIND is :PNG. Return the truename of
-FILE."
+  "Write the document SVG to FILE, as it is or as PNG if KIND is :PNG. Return the truename of FILE."
   (ecase kind
     (:svg (write-picture-file svg file))
     (:png (let ((file (merge-pathnames file)))
@@ -188,8 +185,7 @@ way")
                             (draw-way-end canvas x y black*))))))
 
 (defun snapshot-of-map (map)
-  "Return a snapshot of the current world if its map is MAP, else a snapshot of MAP without robots
-and things."
+  "Return a snapshot of the current world if its map is MAP, else of MAP without robots and things."
   (let ((simulation *simulation*))
     (if (and simulation (eq map (world-map (simulation-world simulation))))
         (asking (simulation) (take-snapshot (simulation-world simulation)))

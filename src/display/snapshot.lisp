@@ -95,8 +95,7 @@ NIL" :export)
   (y nil t "the y coordinate in metres of what the designator denotes"))
 
 (define-record odometer-image
-  "The image of an odometer: its estimate in coordinates of the map, and the uncertainty of the
-estimate."
+  "The image of an odometer: its estimate in map coordinates and the estimate's uncertainty."
   (x 0d0 t)
   (y 0d0 t)
   (heading 0d0 t)
@@ -110,8 +109,7 @@ estimate."
 (defun has-kickers-p (thing) (and (thing-kickers thing) t))
 
 (defun image-of-thing (thing &optional old)
-  "Return the image of THING. OLD is an earlier image of THING or NIL. If OLD is still valid, return
-OLD."
+  "Return an image of THING: OLD, an earlier image or NIL, if OLD is still valid, else a new one."
   (let ((attributes (thing-attributes thing)))
     (if (and old
              (eq attributes (thing-image-attributes old))
@@ -155,8 +153,7 @@ so that one pass finds the old image of each thing."
 ;;; Robots.
 
 (defun image-of-location (location)
-  "Return an image or a string for LOCATION, the container that a part of a robot is in. Return NIL
-if LOCATION is NIL."
+  "Return an image or a string for LOCATION, the container of a part of a robot, or NIL for NIL."
   (cond ((null location) nil)
         ((thing-p location) (image-of-thing location))
         (t (location-name location))))
@@ -166,8 +163,7 @@ if LOCATION is NIL."
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
 (defun place-of-denotation (denotation)
-  "Return the coordinates of DENOTATION, a thing or a place, as a list (x y). Return NIL if
-DENOTATION is NIL."
+  "Return the coordinates of DENOTATION, a thing or a place, as a list (x y), or NIL for NIL."
   (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
          (let ((cell (place-cell denotation)))
@@ -258,8 +254,7 @@ WORLD, is given, unchanged images are reused, which is faster."
   (asking ((robot-simulation robot)) (take-snapshot (robot-world robot))))
 
 (defun snapshot-robot (snapshot name)
-  "Return the image of the robot called NAME in SNAPSHOT. If there is no such robot, return the
-image of the first robot."
+  "Return the image of the robot called NAME in SNAPSHOT, or else of the first robot."
   (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
       (first (snapshot-robots snapshot))))
 
@@ -287,8 +282,7 @@ image of the first robot."
 
 (defun snapshot-of-part (snapshot part operator)
   "Return a snapshot of PART of the map of SNAPSHOT. PART is a list (left top right bottom) in
-cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is not a part of the
-map."
+cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is invalid."
   (check-part operator part (snapshot-map snapshot))
   (flet ((within-p (x y)
            (destructuring-bind (left top right bottom) part

@@ -20,16 +20,14 @@ most 180. Radians are never reduced (reading 50), so they can be several turns."
             (< (+ pi 0.01d0) (abs angle)))))
 
 (defun attribute-value-text (value)
-  "Return VALUE, the value of an attribute, as a text in lower case. Numbers are decimals without
-exponents."
+  "Return VALUE, of an attribute, as a lower-case text. Numbers are decimals without exponents."
   (typecase value
     (float (if (sane-number-p value) (number-text value) (princ-to-string value)))
     (cons (format nil "(~{~A~^ ~})" (mapcar #'attribute-value-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 
 (defun denoted-object-text (image)
-  "Return a text that names what the designator of IMAGE denotes, or FALSE if it denotes nothing
-(manual B)."
+  "Return a text that names what the designator of IMAGE denotes, or FALSE if nothing (manual B)."
   (let ((denotation (designator-image-denotation image)))
     (cond ((null denotation) "FALSE")
           ((stringp denotation) denotation)
@@ -75,8 +73,7 @@ lines.")
 ;;;; Contents
 
 ;;; If two contents of a display are EQUAL, the display looks the same. Images are new in each
-;;; snapshot, so contents are made of their slots. Things, maps and vectors of images are compared
-;;; themselves.
+;;; snapshot, so contents are their slots. Things, maps and image vectors are compared themselves.
 
 (defgeneric visible-content (object)
   (:documentation "Return an object that represents what is visible of OBJECT, an image or a list of

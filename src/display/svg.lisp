@@ -6,8 +6,7 @@
           write-text))
 
 ;;; Elements are written as they are drawn, numbers with at most two decimals. What is drawn with
-;;; clipping is collected first. It gets a clipping element only if it reaches beyond its box, which
-;;; is rare.
+;;; clipping is collected first. Only if it reaches beyond its box, it gets a clipping element.
 
 (defclass svg-canvas (canvas)
   ((stream :initarg :stream :accessor svg-stream)
@@ -38,8 +37,7 @@
         (unless (zerop hundredths) (write-natural hundredths stream))))))
 
 (defun write-number (number stream)
-  "Write NUMBER to STREAM with at most two decimals. Numbers beyond 10^9 or -10^9 are written as
-these limits."
+  "Write NUMBER, limited to between -10^9 and 10^9, to STREAM with at most two decimals."
   (if (typep number '(integer 0 4095))
       (write-natural number stream)
       (write-hundredths (round (* 100 (clamp number -1000000000 1000000000))) stream)))
@@ -145,8 +143,7 @@ these limits."
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
 (defun write-ellipse (canvas x y width height pen)
-  "Write the beginning of an ellipse element that fits into the box with its line, which reaches PEN
-pixels beyond its path."
+  "Write the start of an ellipse element that fits into the box with its line of half width PEN."
   (extend-svg-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
              "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))

@@ -5,8 +5,7 @@
 (export '(with-broken-graphics-reported draw-terrain))
 
 ;;; If users' drawing code fails or does not end, this is reported once, and the code is not called
-;;; again. The caller then draws something else. Code that is redefined is a new function and is
-;;; called.
+;;; again. The caller then draws something else. Redefined code is a new function and is called.
 
 (defconstant +drawing-seconds+ 2
   "The time limit, in seconds, for users' code that draws one thing or cell.")
@@ -14,17 +13,14 @@
   "The largest number of calls of drawing functions by users' code for one thing or cell.")
 
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
-  "A table of the drawing functions that have signalled an error, and of names that name no
-function.")
+  "A table of drawing functions that have signalled an error, and of names without functions.")
 
 (defmacro with-broken-graphics-reported (&body body)
-  "Run BODY, which draws a picture for a file. Broken graphics are reported in BODY even if they
-have been reported before."
+  "Run BODY, which draws a picture for a file. Broken graphics are reported again in BODY."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun signal-drawing-timeout ()
-  "Signal MISUSE because users' code has drawn for too long. Do nothing while the code waits in a
-debugger."
+  "Signal MISUSE because users' code has drawn too long, unless the code waits in a debugger."
   (unless (user-calls-waiting-p *user-calls*)
     (reject-use "The drawing code had not ended after ~D seconds. Correct its endless loop."
                 +drawing-seconds+)))
@@ -32,8 +28,7 @@ debugger."
 (defun draw-by-user-code (canvas function origin x y width height &rest arguments)
   "Call FUNCTION, a user's function, with CANVAS and ARGUMENTS, to draw in the box X, Y, WIDTH,
 HEIGHT. ORIGIN, an item or a list of items, names FUNCTION in messages (reading 214). Return true if
-FUNCTION succeeds. Otherwise an error message has been queued, and the caller must draw over the
-box."
+FUNCTION succeeds. Otherwise an error message is queued, and the caller must draw over the box."
   (flet ((draw ()
            (let ((*drawing-calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
              (call-with-limit (lambda () (apply function canvas arguments))
@@ -151,8 +146,7 @@ the wall is visible."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)
-  "Return lists (look x y width height ...), in pixels: the rectangles in RUNS, wall runs, for each
-look."
+  "Return lists (look x y width height ...), in pixels: the rectangles of the wall RUNS by look."
   (let ((lists '()))
     (dolist (run runs lists)
       (let ((list (or (assoc (wall-run-look run) lists :test #'eq)
@@ -182,8 +176,7 @@ look."
   (and type (place-type-graphics type) (not (place-type-invisible-p type))))
 
 (defun draw-places (canvas map window)
-  "Draw the marks of all places in the part WINDOW of MAP whose types are visible and have graphics
-(manual B)."
+  "Draw the marks of places in WINDOW of MAP whose types are visible and have graphics (manual B)."
   (let ((types (map-place-types map)) (places (map-places map)) (width (map-width map)))
     (loop for y from (second window) below (fourth window)
           do (loop for x from (first window) below (third window)
@@ -202,14 +195,12 @@ look."
         append (remove-if (lambda (number) (< limit number)) (list unit (* 2 unit) (* 5 unit)))))
 
 (defun step-for-distance (pixels)
-  "Return the least of the numbers 1, 2, 5, 10, 20 and so on for which that many cells are at least
-PIXELS wide."
+  "Return the least of 1, 2, 5, 10, 20 ... such that this many cells are at least PIXELS wide."
   (find-if (lambda (step) (<= pixels (to-pixels step)))
            (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
-  "Return the coordinates from START to END, in metres, to mark on an axis. The marks are at least
-PIXELS apart."
+  "Return the coordinates from START to END, in metres, to mark on an axis at least PIXELS apart."
   (loop with step = (step-for-distance pixels)
         for metres from (* step (ceiling start step)) to end by step collect metres))
 
@@ -228,8 +219,7 @@ PIXELS apart."
   "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels per cell (manual B), and the layers
 in LAYERS that are drawn below and on walls, such as :GRID and :PLACES. Walls are black on canvases
 without colours. Otherwise they have a grey by their parameter, and a tint and a texture by their
-substance. LEFT, TOP, RIGHT and BOTTOM, columns and rows of cells, are the part of MAP to draw, by
-default the whole map."
+substance. LEFT, TOP, RIGHT and BOTTOM, in cells, are the part to draw, by default the whole MAP."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)
              (dolist (layer (layers-at-depth depth layers))
