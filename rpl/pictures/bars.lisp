@@ -46,7 +46,6 @@ colours. The colours differ for any colour vision and in grey: tests/palette.lis
   (max 1 (- (scale-end scale) (scale-start scale))))
 
 (defun x-of-tick (tick scale)
-  "Return the x coordinate of TICK on SCALE, in pixels."
   (+ (scale-left scale)
      (* (scale-width scale) (/ (- tick (scale-start scale)) (scale-span scale)))))
 

@@ -114,7 +114,6 @@ WIDTH pixels, and the height of all lines."
          least most))
 
 (defun cut-row-label (row width)
-  "Return the label of ROW, cut to fit into WIDTH pixels."
   (cut-to-width (row-label-for-width row width) width))
 
 (defun draw-row (canvas row y scale)

@@ -53,7 +53,6 @@ for what suits the screen."
   (intern (format nil "~A-TITLE" (symbol-name section)) :ars-magna.clim))
 
 (defun plan-column-p (preferences width)
-  "True if plans have a separate column in a window WIDTH pixels wide."
   (and (>= width +least-width-for-plan-column+)
        (not (member 'plan (preferences-folded preferences)))))
 
@@ -82,7 +81,6 @@ wider if it shows plans, because plans have long lines."
         0)))
 
 (defun transcript-height (preferences height)
-  "Return the height in pixels of the transcript and its title in a window HEIGHT pixels high."
   (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
         (fixed (+ +menus-height+ +bar-height+ +splitter-width+ +prompt-height+ +strip-height+)))
     (clamp (round wanted) 40 (max 40 (- height fixed 120)))))

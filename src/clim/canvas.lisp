@@ -132,7 +132,6 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
   "CLIM text styles by magnification. For magnification N, letters are N x +CHARACTER-WIDTH+ wide.")
 
 (defun text-uncut-p (canvas y)
-  "True if text with its base line at Y is not cut off at the upper or lower edge of CANVAS."
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
     (or (null bottom) (<= 10 y (- bottom 3)))))
 
@@ -146,7 +145,6 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
 ;;; Where.
 
 (defun box-on-medium (canvas left top right bottom)
-  "Return the box LEFT, TOP, RIGHT, BOTTOM of CANVAS in the coordinates of its medium."
   (let ((dx (canvas-dx canvas)) (dy (canvas-dy canvas)))
     (list (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))))
 

@@ -18,7 +18,6 @@
   (format nil "~@? -- Control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
 (defun waiting-label (count)
-  "Return the label of the input line while COUNT entered lines wait to be run."
   (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; Backspace removes the last line. ~]Next> "
           count))
 
@@ -62,7 +61,6 @@ above it and its ink. Return NIL if PANE is empty."
                         (running-line-text "Running ~A" busy) :red))))))
 
 (defun needed-rows (pane)
-  "Return the number of rows that PANE needs for the input line and the text above it."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink)
       (interactor-contents pane)
     (declare (ignore ink))

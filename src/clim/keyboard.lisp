@@ -156,7 +156,6 @@ dead key and a space. PAIRS is a string of pairs: a letter and its result with t
   "The element of *DEAD-KEYS* that waits for a character, or NIL. All windows share one keyboard.")
 
 (defun make-key-press (character event)
-  "Return an event like EVENT, a key press, that types CHARACTER."
   (make-instance 'clim:key-press-event
                  :sheet (clim:event-sheet event) :key-name (make-keyword (string character))
                  :key-character character :modifier-state 0

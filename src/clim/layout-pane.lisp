@@ -68,7 +68,6 @@ them.")
     (input-line-rows layout)))
 
 (defun input-line-rows (layout)
-  "Return the number of rows that the window of LAYOUT needs for the input line."
   (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
     (if (and interactor (window-conversation (clim:pane-frame layout)))
         (needed-rows interactor)

@@ -39,7 +39,6 @@ is visible.")
       (clim:allocate-space pane (on-screen width) (on-screen height)))))
 
 (defun position-in-parent (pane x y)
-  "Return X, Y of PANE in the coordinates of its parent."
   (let ((magnification (magnification pane)))
     (multiple-value-bind (left top) (clim:transform-position (clim:sheet-transformation pane) 0 0)
       (values (+ x (floor left magnification)) (+ y (floor top magnification))))))

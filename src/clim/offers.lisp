@@ -143,7 +143,6 @@ for the numbers of hand and bin."
                                       (list bin) "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
-  "True if the thing of IMAGE is on the floor, not in a hand, a bin or another thing."
   (find (thing-image-thing image) (snapshot-things (window-snapshot window))
         :key #'thing-image-thing))
 

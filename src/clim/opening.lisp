@@ -155,7 +155,6 @@ message says whether the run continues, and how to open another window."
        (eq simulation (window-simulation window))))
 
 (defun shown-in-other-window-p (window name simulation)
-  "True if a window other than WINDOW shows the robot called NAME of SIMULATION."
   (some (lambda (other) (window-shows-p other name simulation))
         (remove window (open-windows))))
 

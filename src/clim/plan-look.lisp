@@ -32,7 +32,6 @@ is a timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text on how the last plan
   (ended nil :type (or null string)))
 
 (defun plan-interface-of (simulation)
-  "Return the interface that runs the plans of SIMULATION, or NIL."
   (and simulation (find-if #'interface-p (simulation-participants simulation))))
 
 (defun plans-traced-p (interface)

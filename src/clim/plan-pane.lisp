@@ -33,7 +33,6 @@
     (request-new-look pane)))
 
 (defun line-button (pane label line help &optional lit-p)
-  "Return a button with LABEL that makes the prompt of the window of PANE run LINE."
   (make-button label nil
                (lambda () (run-line-at-prompt (window-conversation (window-of pane)) line)) help
                lit-p))
@@ -224,7 +223,6 @@ point of the timeline. Return NIL if there is none."
 (defmethod hover-text ((pane plan-pane) x y) (subject-description (plan-subject-at pane x y)))
 
 (defun rewind-pane-to-tick (pane tick)
-  "Make the prompt rewind the run of PANE to TICK."
   (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
       (run-line-at-prompt (window-conversation (window-of pane)) (rewind-line tick))
       (show-hint (window-of pane) "The run is at this tick now.")))

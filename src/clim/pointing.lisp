@@ -46,7 +46,6 @@ pane. Return NIL if the position of the mouse is unknown."
                               (floor y (magnification pane)))))))))))
 
 (defun show-description-at-mouse (window)
-  "Describe in the status strip of WINDOW what is under the mouse now."
   (multiple-value-bind (pane x y) (pane-at-mouse window)
     (when pane (handle-hover pane x y))))
 

@@ -199,7 +199,6 @@ window has a title and the mouse shows what things are."
 ;;; Robots.
 
 (defun shown-robot (window)
-  "Return the name of the robot whose details WINDOW shows."
   (watcher-robot (window-watcher window)))
 
 (defun window-robots (window)

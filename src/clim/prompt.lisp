@@ -143,7 +143,6 @@ answer. Print a message in this case."
   (notify-window (conversation-console conversation)))
 
 (defun replace-input-line (conversation text)
-  "Replace the input line by TEXT, for the user to complete."
   (unless (refuse-line-at-break-p conversation text)
     (mapc (lambda (key) (pass-key conversation key))
           (list :control-e :control-u text))))

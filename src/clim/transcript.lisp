@@ -78,7 +78,6 @@ arguments, after each change."
           (transcript-count transcript) +transcript-length+)))
 
 (defun call-changing-transcript (transcript function)
-  "Call FUNCTION, which changes TRANSCRIPT, and report the change to the window."
   (with-lock ((transcript-lock transcript))
     (funcall function)
     (incf (transcript-total transcript))
@@ -89,7 +88,6 @@ arguments, after each change."
   (call-changing-transcript transcript (lambda () (add-text transcript text))))
 
 (defun write-in-window (window &rest arguments)
-  "Format ARGUMENTS, as FORMAT does, and add the text to the transcript of WINDOW."
   (write-to-transcript (window-transcript window) (apply #'format nil arguments)))
 
 (defun write-entered-line (transcript text)

@@ -253,7 +253,6 @@ itself, do nothing, because the next tick makes the snapshot."
 ;;; Beginning and ending.
 
 (defun stop-observing (simulation observer)
-  "Remove OBSERVER from SIMULATION, unless SIMULATION is NIL."
   (when simulation
     (asking (simulation) (remove-observer observer simulation))))
 

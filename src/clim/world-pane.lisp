@@ -221,7 +221,6 @@
     (pane-terrain pane)))
 
 (defun copy-terrain-to-pane (pane pixmap)
-  "Copy PIXMAP to PANE, which has the same size."
   (clim:with-identity-transformation (pane)
     (multiple-value-bind (width height) (size-on-screen pane)
       (clim:copy-from-pixmap pixmap 0 0 width height pane 0 0))))

@@ -34,7 +34,6 @@
 ;;; Things.
 
 (defun images-shown (robot)
-  "Return a list of the images of all things that the displays of ROBOT show."
   (remove-if-not #'thing-image-p
                  (append (mapcar #'designator-image-denotation (robot-image-designators robot))
                          (loop for camera in (robot-image-cameras robot)

@@ -21,7 +21,6 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
   (frames '() :type list))
 
 (defun lines-with-newlines (text)
-  "Return a list of the lines of TEXT, each with its newline. TEXT ends in a newline."
   (loop for start = 0 then (1+ end)
         for end = (position #\Newline text :start start)
         while end collect (subseq text start (1+ end))))
@@ -34,7 +33,6 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
       (push (cl:map 'vector #'number-of (lines-with-newlines text)) (reel-frames reel)))))
 
 (defun reel-lines (reel)
-  "Return a vector of the texts of the lines of REEL, by number."
   (let ((lines (make-array (hash-table-count (reel-numbers reel)))))
     (maphash (lambda (line number) (setf (aref lines number) line)) (reel-numbers reel))
     lines))
@@ -185,7 +183,6 @@ to their images. ROBOTS are images of robots, and LINES legend entries of lines,
   (lines '() :type list))
 
 (defun add-film-contents (snapshot layers contents)
-  "Add the things, robots and lines that SNAPSHOT shows with LAYERS to CONTENTS."
   (let ((things (film-contents-things contents)))
     (loop for image across (snapshot-things snapshot)
           do (unless (gethash (thing-image-thing image) things)

@@ -31,7 +31,6 @@ two points, the robot was put elsewhere between them."
 (defconstant +trail-step+ 0.1d0 "The least distance between the points of a trail, in metres.")
 
 (defun trail-of-robot-named (name simulation)
-  "Return the trail of the robot called NAME in SIMULATION, or NIL."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
 (defmacro do-trail ((points &rest variables) &body body)
@@ -59,7 +58,6 @@ where ROBOT was put, because ROBOT may have moved away from there by TICK."
       points))
 
 (defun add-present-position (robot tick points)
-  "Return POINTS of a trail with a new point for the position of ROBOT at TICK."
   (list* (robot-x robot) (robot-y robot) tick (robot-placements robot)
          (add-position-of-placement robot tick points)))
 
@@ -153,7 +151,6 @@ index of a cell that returns true if the cell ends a ray."
   "A table from simulations to pairs of the history and the observer that records this history.")
 
 (defun history-of (simulation)
-  "Return the history of SIMULATION, or NIL."
   (car (gethash simulation *histories*)))
 
 (addition keep-history)

@@ -77,7 +77,6 @@ pixels from X, Y."
   (draw-glyphs canvas draw-gcontext* x y text))
 
 (defun monospaced-width (text)
-  "Return the width of TEXT in pixels."
   (* +character-width+ (length text)))
 
 (defun fill-with-white (canvas x y width height)

@@ -27,12 +27,10 @@ of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a r
           (shown-at-depth :things layers snapshot)))
 
 (defun shown-above-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT above things, as a list like that of SHOWN-AT-DEPTH."
   (loop for robot in (snapshot-robots snapshot)
         append (shown-at-depth :labels layers robot robot snapshot)))
 
 (defun all-shown (snapshot layers)
-  "Return all that LAYERS show of SNAPSHOT, as a list like that of SHOWN-AT-DEPTH."
   (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
 
 (defun draw-shown-layers (canvas shown)

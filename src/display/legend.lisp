@@ -239,12 +239,10 @@ A jump is where a robot was put elsewhere. WAYS are lists of pieces, x y ... in 
         (draw-segments canvas draw-gcontext* (list (- x 8) y (+ x 7) y))))))
 
 (defun entries-of-layers (layers snapshot)
-  "Return the legend entries that the functions :ENTRIES of LAYERS return for SNAPSHOT."
   (loop for layer in layers
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
 (defun line-entries (snapshot layers)
-  "Return the legend entries for the lines that LAYERS draw of SNAPSHOT."
   (let* ((shown (mapcar #'first (all-shown snapshot layers)))
          (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*))
          (drawn (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))

@@ -101,11 +101,9 @@ wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than su
         collect (loop repeat rows while entries collect (pop entries))))
 
 (defun samples-width (column)
-  "Return the width in pixels of the widest sample in COLUMN, a list of legend entries."
   (reduce #'max column :key #'entry-width))
 
 (defun column-width (column)
-  "Return the width in pixels of COLUMN, a list of legend entries."
   (+ 18 (samples-width column)
      (loop for entry in column maximize (monospaced-width (entry-text entry)))))
 
@@ -246,7 +244,6 @@ PER-PIXEL times the height of its font."
           (words)))))
 
 (defun draw-legend (canvas arrangement x y)
-  "Draw the legend of ARRANGEMENT with its upper left corner at X, Y."
   (dolist (column (arrangement-columns arrangement))
     (loop for entry in column for row from 0
           do (draw-entry canvas entry x (+ y (* row +line-height+)) (samples-width column)))

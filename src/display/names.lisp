@@ -12,7 +12,6 @@
 (defconstant +longest-name+ 24 "The most characters of a name on the map or beside a sample.")
 
 (defun short-name (name)
-  "Return the string NAME, cut to its beginning if it is long."
   (cut name +longest-name+))
 
 (defun drawn-name (name)
@@ -86,7 +85,6 @@ with the name of SPOT."
                    spots)))
 
 (defun nearest-point-in-box (box x y)
-  "Return the point of BOX nearest to X, Y, as two values."
   (destructuring-bind (left top right bottom) box
     (values (clamp x left right) (clamp y top bottom))))
 
@@ -249,7 +247,6 @@ least. Return NIL if there is no such box."
               taken :anywhere-p (and (spot-robot spot) t) :own-p #'own-p)))
 
 (defun on-other-spot-p (spot spots)
-  "True if SPOT overlaps another spot of the index SPOTS."
   (and (find-overlapping-item (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
 
 (defun name-box (snapshot layers spot width taken marks spots robots)

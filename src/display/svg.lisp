@@ -87,7 +87,6 @@
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-text-element-end (canvas gcontext string)
-  "Write the end of a text element with STRING as its text."
   (write-color canvas gcontext "fill")
   (write-svg canvas ">")
   (write-text string (svg-stream canvas))

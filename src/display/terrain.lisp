@@ -165,7 +165,6 @@ the wall is visible."
 ;;; Places.
 
 (defun draw-place-at (canvas type x y)
-  "Draw the mark of the place type TYPE in the cell with its upper left corner at X, Y."
   (or (draw-by-user-code canvas (place-type-graphics type)
                          (list "the :graphics of place type " (place-type-name type))
                          x y graphics-scale* graphics-scale* x y)

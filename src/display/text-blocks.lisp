@@ -21,8 +21,7 @@ ROWS blocks of WIDE x HIGH cells each."
 ;;; Regions.
 
 (defun clip-range (least low high most)
-  "Return LOW, rounded down, and HIGH, rounded up, as two integers between LEAST and MOST that
-differ by at least 1."
+  "Return LOW, rounded down, and HIGH, rounded up, as different integers from LEAST to MOST."
   (let ((low (max least (min (floor low) (1- most)))))
     (values low (max (1+ low) (min (ceiling high) most)))))
 
@@ -42,9 +41,8 @@ cover WIDTH x HEIGHT cells. If ROWS is NIL, the number of rows is unlimited."
                    ((fits-p wide (* 2 wide)) (return (values wide (* 2 wide))))))))
 
 (defun text-view-of-region (snapshot region columns rows)
-  "Return a text view of REGION, a list (left top right bottom) in metres, or of the whole SNAPSHOT
-if REGION is NIL. The view has at most ROWS lines of COLUMNS characters. If ROWS is NIL, the number
-of lines is unlimited."
+  "Return a text view of REGION, a list (left top right bottom) in metres, or NIL for the whole
+SNAPSHOT. The view has at most ROWS lines, or any number if ROWS is NIL, of COLUMNS characters."
   (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
       (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
@@ -84,8 +82,7 @@ row by row."
 
 (defstruct (glyph (:constructor make-glyph (kind char text &optional ink)) (:copier nil))
   "A character of a text map: CHAR stands for an object of KIND that is called TEXT in the legend.
-Believed positions have the kind :ROBOT, too. INK is the name of the colour of CHAR, or NIL for the
-colour of normal text."
+Believed positions have the kind :ROBOT, too. INK names CHAR's colour, or is NIL for normal text."
   (kind :thing :type (member :wall :robot :layer :several :place :thing) :read-only t)
   (char #\Space :type character :read-only t)
   (text "" :type string :read-only t)
@@ -122,8 +119,7 @@ the name, the largest first, and then by name."
 
 (defun letters-of-thing-names (world)
   "Return a hash table from the names of the things in WORLD, strings, to their letters. Large
-things choose first among the letters. If WORLD has more names than letters, some names are
-missing."
+things choose letters first. If WORLD has more names than letters, some names are missing."
   (let ((letters (make-hash-table :test #'equal)) (names (thing-names-by-size world))
         (free (remove #\v (coerce +letters+ 'list))))   ; v is a robot
     (dotimes (rank 4 letters)
@@ -184,8 +180,7 @@ character.")
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun robot-glyph (robot things)
-  "Return the glyph of ROBOT, the image of a robot. THINGS are images of the things in the same
-block."
+  "Return the glyph of the image ROBOT. THINGS are images of the things in the same block."
   (make-glyph :robot (arrow-glyph (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (zero-if-tiny (robot-image-x robot)) (zero-if-tiny (robot-image-y robot))

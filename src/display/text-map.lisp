@@ -29,8 +29,7 @@
 (defun text-item (text) (cons (length text) text))
 
 (defun glyph-item (glyph paint &optional (width 1000))
-  "Return the legend item of GLYPH, cut to WIDTH characters. PAINT is a function that colours a
-string."
+  "Return the legend item of GLYPH, cut to WIDTH characters. The function PAINT colours a string."
   (let ((text (glyph-text glyph)))
     (setf text (subseq text 0 (min (length text) (- width 2))))
     (cons (+ 2 (length text))
@@ -68,8 +67,7 @@ longer than COLUMNS has its own line."
   (remove-if #'glyph-always-below-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
-  "Return the complete legend of SHEET, as lists of items that make lines of at most COLUMNS
-characters."
+  "Return the legend of SHEET, as lists of items that make lines of at most COLUMNS characters."
   (fill-lines (append (head-items sheet paint) (glyph-items (movable-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
@@ -95,9 +93,8 @@ to write beside the map in ROOM characters, and the rest of GLYPHS, for which th
 ;;; Below it.
 
 (defun lines-with-count (head items columns rows)
-  "Return the legend items HEAD and ITEMS as at most ROWS lines of COLUMNS characters. The last line
-counts the items for which there is no room, if the count itself fits. If ROWS is NIL, the number of
-lines is unlimited."
+  "Return the legend items HEAD and ITEMS as at most ROWS lines of COLUMNS characters, or as any
+number if ROWS is NIL. The last line counts the items without room, if the count itself fits."
   (flet ((kept (count &rest more)
            (fill-lines (append head (subseq items 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
@@ -121,8 +118,7 @@ lines is unlimited."
   text)
 
 (defun write-row (sheet row paint stream)
-  "Write row number ROW of SHEET to STREAM. PAINT is a function that colours a string. Return the
-number of glyphs."
+  "Write row ROW of SHEET to STREAM in colours by the function PAINT. Return the number of glyphs."
   (let ((glyphs (row-glyphs sheet row)) (view (sheet-view sheet)))
     (format stream "~4D " (+ (view-top view) (* row (view-high view))))
     (loop with rest = glyphs
@@ -148,8 +144,7 @@ number of glyphs."
             (string-right-trim " " (format nil "~{~10A~}" marks)))))
 
 (defun write-rows (sheet side paint stream)
-  "Write the rows of SHEET to STREAM, and beside them the legend items in SIDE, a vector with a list
-for each row."
+  "Write the rows of SHEET to STREAM, and beside them the legend items in SIDE, a vector of lists."
   (let ((view (sheet-view sheet)))
     (write-ruler view stream)
     (dotimes (row (view-rows view))
@@ -176,8 +171,7 @@ ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
   "Return a sheet of REGION for ROBOT that fits into ROWS lines of COLUMNS characters with the fixed
-part of its legend, if possible. A kind of thing keeps its letter even while none of its things is
-on the floor."
+part of its legend, if possible. A kind of thing keeps its letter while none is on the floor."
   (let* ((world (robot-world robot)) (snapshot (take-snapshot world))
          (letters (letters-of-thing-names world))
          (image (snapshot-robot snapshot (robot-name robot))))

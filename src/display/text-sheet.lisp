@@ -6,8 +6,7 @@
 ;;; a block and the glyph to show there.
 
 (defun glyph-mark-at (view x y glyph)
-  "Return a list with one pair: the number of the block of VIEW at X, Y, and GLYPH. Return NIL if X,
-Y is outside VIEW."
+  "Return a list of one pair, the block number of VIEW at X, Y and GLYPH, or NIL if outside VIEW."
   (let ((number (block-at view x y)))
     (and number (list (cons number glyph)))))
 

@@ -15,8 +15,7 @@
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun segments-along (points)
-  "Return lists (length x y dx dy) for the segments of the way through POINTS, x y ..., without
-segments of length 0."
+  "Return lists (length x y dx dy) for the segments longer than 0 of the way POINTS, x y ...."
   (loop for (x y next-x next-y) on points by #'cddr
         for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
         for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
@@ -32,8 +31,7 @@ segments of length 0."
         do (decf distance length)))
 
 (defun arrow-along (pieces distance)
-  "Return an arrowhead, a list (x y angle), at DISTANCE along the way of PIECES, a value of
-SEGMENTS-ALONG."
+  "Return an arrowhead (x y angle) at DISTANCE along the way of PIECES, a value of SEGMENTS-ALONG."
   (destructuring-bind ((x y) (to-x to-y))
       (list (point-along pieces (- distance (/ +arrow-length+ 2)))
             (point-along pieces (+ distance (/ +arrow-length+ 2))))
@@ -116,8 +114,7 @@ diagonal, where ways would overlap.")
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
 (defun jumps-between (pieces)
-  "Return the jumps between the pieces of a way, as lists x y to-x to-y. PIECES are lists x y ... in
-pixels."
+  "Return the jumps between PIECES of a way, lists x y ... in pixels, as lists x y to-x to-y."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
@@ -152,8 +149,7 @@ pixels."
   (draw-way-arrows canvas lines))
 
 (defun draw-way-sample (canvas points color position)
-  "Draw a sample of a way in COLOR along POINTS, x y ... in pixels. POSITION is its position in a
-list of several ways."
+  "Draw a sample of the way at POSITION of several ways, in COLOR along POINTS, x y ... in pixels."
   (draw-way-lines canvas (list (make-way-line position (list points) :color color :lane 0))))
 
 ;;; Visible jumps and ways.
@@ -170,8 +166,7 @@ list of several ways."
   (cons (floor x +tile-side+) (floor y +tile-side+)))
 
 (defun tiles-along (pieces)
-  "Return a hash table whose keys are the tiles that the lines of PIECES, lists x y ... in pixels,
-cross or touch."
+  "Return a hash table keyed by the tiles that PIECES, lists x y ... in pixels, cross or touch."
   (let ((tiles (make-hash-table :test #'equal)))
     (dolist (piece pieces tiles)
       (loop for (x y next-x next-y) on piece by #'cddr
@@ -181,8 +176,7 @@ cross or touch."
                               do (setf (gethash (tile-at (+ x dx) (+ y dy)) tiles) t)))))))
 
 (defun jump-visible-p (ways box)
-  "True if a part of a jump in WAYS is visible: within BOX and not covered by a way. Each of WAYS is
-a list of pieces."
+  "True if part of a jump in WAYS, lists of pieces, is visible: in BOX and not covered by a way."
   (loop with jumps = (mapcan #'jumps-between ways)
         with tiles = (and jumps (tiles-along (apply #'append ways)))
         for (x y to-x to-y) in jumps
@@ -215,8 +209,7 @@ a list of pieces."
   (with-color color (draw-circle canvas x y radius t)))
 
 (defun draw-way-marks (canvas marks)
-  "Draw MARKS, lists (function x y color), at the ends of ways. Marks on the same spot are drawn
-around each other."
+  "Draw MARKS, lists (function x y color), at ends of ways. Marks on one spot surround each other."
   (flet ((near-p (one other)
            (and (< (abs (- (second one) (second other))) +mark-radius+)
                 (< (abs (- (third one) (third other))) +mark-radius+))))
@@ -251,7 +244,6 @@ around each other."
 ;;; Planned ways.
 
 (defun robots-with-plans (snapshot)
-  "Return the images of the robots in SNAPSHOT that have a planned way."
   (remove-if-not (lambda (robot) (rest (robot-image-planned-way robot)))
                  (snapshot-robots snapshot)))
 
@@ -266,7 +258,6 @@ around each other."
                   (box-around x y (+ 2 +mark-radius+)))))
 
 (defun draw-planned-ways (canvas robots)
-  "Draw the planned ways of ROBOTS, with a ring at the end of each."
   (draw-way-lines canvas
                   (loop for robot in robots
                         for way = (apply #'append (robot-image-planned-way robot))

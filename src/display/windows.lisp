@@ -28,8 +28,7 @@ top and bottom of a view of MAP. The width is 0 if LAYERS do not show the strip.
     (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
 
 (defun draw-x-coordinates (canvas map left top start end)
-  "Draw the strip of x coordinates, in metres, for the pixels from START to END of MAP. The strip
-begins at LEFT, TOP."
+  "Draw at LEFT, TOP the strip of x coordinates in metres for the pixels from START to END of MAP."
   (draw-strip-background canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-width map)) 60))
@@ -66,8 +65,7 @@ corner of MAP. Call this within WITH-CANVAS, with the origin in the corner of MA
 ;;;; Opening windows
 
 (defvar *display-opener* nil
-  "A function of a robot that opens a window with its displays, or NIL if ars-magna/clim is not
-loaded.")
+  "A function of a robot that opens a window with its displays, or NIL without ars-magna/clim.")
 
 (defvar *displays-waiter* nil
   "A function that waits until all windows are closed, or NIL if ars-magna/clim is not loaded.")
@@ -89,8 +87,7 @@ can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-mag
 
 (defun announce-display (robot options)
   "Open the window of ROBOT, which SIMULATOR has started. If no window can be opened, print once a
-line with the reason and the remedy. Do nothing if OPTIONS, the options of SIMULATOR, have :DISPLAY
-NIL."
+line with the reason and the remedy. Do nothing if OPTIONS, of SIMULATOR, have :DISPLAY NIL."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)
