@@ -12,8 +12,7 @@
   (bars '() :type list))
 
 (defun row-label (row &optional (indent 2) (most 24))
-  "Return the text for the tasks in ROW, indented by INDENT spaces for each parent task, but by at
-most MOST spaces."
+  "Return the text for tasks in ROW, indented by INDENT spaces per parent, by MOST spaces at most."
   (let ((more (1- (length (row-bars row)))))
     (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (bar-depth (first (row-bars row)))))
             (bar-label (first (row-bars row)))
@@ -42,8 +41,7 @@ most MOST spaces."
                                    #'< :key #'bar-serial))))
 
 (defun draw-axis (canvas scale top bottom)
-  "Draw vertical lines from TOP to BOTTOM at round numbers of ticks, with these numbers above and
-below."
+  "Draw lines from TOP to BOTTOM at round numbers of ticks, with these numbers above and below."
   (loop with step = (round-tick-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (x-of-tick tick scale)
@@ -239,11 +237,14 @@ the y coordinate of the end of PAGE, in pixels."
   "Save a timeline of the plans that have run in FILE, replacing an older file. The name ends in
 .svg or, if the program rsvg-convert is installed, in .png. Each task is a bar over ticks, below the
 bar of its parent task, with its waits, its commands while they were in progress, and its end. Turns
-of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE. RUNNER: the
-plan runner, by default the plan runner in use. RUNNER must have a trace: see *TRACE-PLANS*. MOST:
-the largest number of rows to draw. IN-COLOR: false for black and white. TITLE: a string above the
-picture, instead of the ticks. SCALE: from 1 to 10, the size of everything, text included. On a page
-of a paper, 174 mm wide, a picture of up to 820 pixels (some 70 ticks) is readable."
+of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.
+  RUNNER: the plan runner, by default the plan runner in use. RUNNER must have a trace: see
+*TRACE-PLANS*.
+  MOST: the largest number of rows to draw.
+  IN-COLOR: false for black and white.
+  TITLE: a string above the picture, instead of the ticks.
+  SCALE: from 1 to 10, the size of everything, text included.
+On a page of a paper, 174 mm wide, a picture of up to 820 pixels (some 70 ticks) is readable."
   (check-argument save-plan-timeline title (typep title '(or null string)) "a string or NIL")
   (check-argument save-plan-timeline scale (and (finite-p scale) (<= 1 scale 10))
                   "a number from 1 to 10, the magnification of the picture")

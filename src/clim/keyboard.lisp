@@ -80,9 +80,8 @@ Return NIL for other keys than arrows."
 (defconstant +altgr+ #x80 "The bit for AltGr in the keyboard state of an X event.")
 
 (defun altgr-key-symbol (symbol-at state)
-  "Return the X key symbol for a key that is pressed with AltGr. Return NIL if STATE has no AltGr or
-the key has no separate symbol for it. SYMBOL-AT is a function from an index in X's list of symbols
-of the key to the symbol."
+  "Return the X key symbol for a key pressed with AltGr, or NIL if STATE has no AltGr or the key has
+no separate symbol for it. The function SYMBOL-AT returns the symbol of the key at an X index."
   (flet ((own (index)
            (let ((symbol (funcall symbol-at index)))
              (and (plusp symbol) (/= symbol (funcall symbol-at 0)) symbol))))
@@ -163,7 +162,7 @@ dead key and a space. PAIRS is a string of pairs: a letter and its result with t
 
 (defun update-dead-key (name character)
   "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
-Return two elements of *DEAD-KEYS*, or NIL: for the key that was waiting, and for the key NAME."
+Return two elements of *DEAD-KEYS*, or NILs: for the key that was waiting, and for the key NAME."
   (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)

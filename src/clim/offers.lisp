@@ -230,8 +230,7 @@ for the numbers of hand and bin."
                 collect (apply #'offer-row window offer))))
 
 (defun rows-for-other-subjects (window subjects x y)
-  "Return menu rows for all SUBJECTS except the first. Each row opens the menu of its subject at X,
-Y of WINDOW."
+  "Return menu rows for SUBJECTS but the first. Each opens its subject's menu at X, Y of WINDOW."
   (loop for rest on (rest subjects)
         collect (let ((turned (append rest (ldiff subjects rest))))
                   (make-row (format nil "Also here: ~A" (subject-heading (first turned)))

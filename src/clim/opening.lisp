@@ -45,7 +45,8 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give the new WINDOW the settings of the window closed last and its robot's last window's state."
+  "Give WINDOW, which is new, the settings of the window closed last, and the state of the last
+window of its robot."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
         (list *last-settings* (rest (assoc (shown-robot window) *window-states*))))
@@ -179,7 +180,8 @@ window shows that robot. Return NIL if there is none."
                        (shown-robot window) reason))))
 
 (defun leave-finished-run (window reason)
-  "Because of REASON, show another run in WINDOW, or close it if other windows show all its robots."
+  "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows
+show all robots of that run."
   (multiple-value-bind (name simulation) (robot-to-show window)
     (cond (name
            (show-robot-called window name simulation)
@@ -192,7 +194,7 @@ window shows that robot. Return NIL if there is none."
 
 (defun match-window-and-prompt (window)
   "Make WINDOW and its prompt agree on the robot. The prompt enters the run of WINDOW. If the user
-has chosen another robot of it, WINDOW shows that robot. Only the prompt's thread calls this."
+has chosen another robot of the run, WINDOW shows that robot. Only the prompt's thread calls this."
   (when (window-simulation window)
     (let ((reason (simulation-over (window-simulation window))))
       (when reason (leave-finished-run window reason)))
@@ -205,8 +207,7 @@ has chosen another robot of it, WINDOW shows that robot. Only the prompt's threa
              (write-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
                               (simulation-name simulation)))))))
 
-;;; When the X server goes, the thread that reads the events finds out, or a window's thread that
-;;; paints at the time.
+;;; When the X server goes, the thread that reads events, or a window's that paints, finds out.
 
 (defun windows-on (port)
   (with-lock (*windows-lock*)

@@ -18,7 +18,7 @@
 
 ;; If the strip shows something else meanwhile, that stays until the mouse moves.
 (defun update-description (pane)
-  "Update the description in the status strip if it is about an object in the painted PANE."
+  "Update the status strip's description if it is about an object in PANE, which has been painted."
   (let ((window (window-of pane)))
     (destructuring-bind (&optional pointed x y text) (window-pointed window)
       (when (and (eq pane pointed) (eq text (window-hint window)))
@@ -138,7 +138,7 @@ popup. OPENER is the command or menu that had opened the popup.")
         (route-press pane button x y)))))
 
 (defun handle-any-press (pane button x y)
-  "Handle a press of the mouse BUTTON at X, Y of PANE. Close the open popup unless it is PANE."
+  "Handle a press of the mouse BUTTON at X, Y of PANE. Close any open popup other than PANE."
   (focus-clicked-pane pane)
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
     (if opener

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.clim)
 
-;;; The thread of a window handles its mouse and its keys. If it waited in a debugger, no one could
-;;; answer there.
+;;; The thread of a window handles mouse and keys. If it waited in a debugger, no one could answer.
 
 (defun signal-debugger-refused (condition hook)
   "Signal MISUSE instead of entering the debugger for CONDITION in the thread of a window."

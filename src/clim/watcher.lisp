@@ -92,8 +92,7 @@ that continues the words, or NIL."
         (sample-seconds sample) seconds))
 
 (defun measure-rate (sample tick seconds)
-  "Return the measured rate in ticks per second, or NIL if it is unknown. TICK and SECONDS are the
-present tick and time."
+  "Return the ticks per second measured at the present TICK and SECONDS, or NIL if unknown."
   (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
     (when (or (minusp ticks)
               (and (> elapsed 0.9) (or (>= ticks +least-measured-ticks+) (> elapsed 5))))

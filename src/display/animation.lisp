@@ -86,7 +86,8 @@ FUNCTION are signalled after the replay."
                           (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)
-  "Return TITLE, a string or NIL, and a remark if JOURNAL is replayed ANYWAY with new definitions."
+  "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
+that says so."
   (let ((words (and anyway (typep title '(or null string)) (changed-definitions-sentence journal))))
     (if words
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)

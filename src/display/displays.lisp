@@ -5,7 +5,8 @@
 (export '(draw-display display-title +displays+))
 
 ;;; The function of a display (manual B) gets the image of the robot and the width. It draws from 0,
-;;; 0 and returns its height. (In the loops, Y steps before the parts run out, ending below it.)
+;;; 0 and returns its height. (In the loops, Y steps before the parts run out, and so ends below the
+;;; last part.)
 
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")

@@ -126,8 +126,7 @@ WIDTH and SIZE have no effect, because canvases have one font."
   (paint-string drawable gcontext x y (glyph-text sequence start end)))
 
 (define-drawing draw-glyph (drawable gcontext (x y) glyph &key translate width size)
-    "Draw the character GLYPH. Its base line begins at X, Y. TRANSLATE, WIDTH and SIZE have no
-effect."
+    "Draw the character GLYPH with its base line at X, Y. TRANSLATE, WIDTH and SIZE have no effect."
   (declare (ignore translate width size))
   (paint-string drawable gcontext x y (glyph-text (list glyph) 0 1)))
 

@@ -98,8 +98,7 @@ the differences; other frames are written whole."
   (write-array (lambda (moment out) (write-moment moment ticks several-p out)) moments out)
   (format out "};~%"))
 
-;;; The page. The picture fills the room between title and controls. Beside it are two lists, which
-;;; the reader can fold.
+;;; The page. The picture fills the room between title and controls, beside two foldable lists.
 
 (defun write-controls (out)
   (format out "<footer><div id=\"timeline\"><div id=\"marks\"></div>~
@@ -221,7 +220,7 @@ to their images. ROBOTS are images of robots, and LINES legend entries of lines,
 
 (defun record-film (journal every until watch part layers in-color scale)
   "Replay JOURNAL and record a film. Call WATCH with the simulation after each tick. Return five
-values: the reel, its ticks, SVG documents of the first and last frames, and the contents."
+values: the reel, the ticks of its frames, SVGs of the first and last frames, and the contents."
   (let ((reel (make-reel)) (ticks '()) (contents nil) (first nil) (last nil)
         ;; The legend and the title of a page are HTML.
         (shown (set-difference layers '(:legend :title))))

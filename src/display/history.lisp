@@ -75,7 +75,7 @@ where ROBOT was put, because ROBOT may have moved away from there by TICK."
         (make-trail points count))))
 
 (defun record-position (simulation robot)
-  "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. Called in every tick."
+  "In every tick, add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved."
   (declare #.*hot* (type robot robot))
   (let* ((name (robot-name robot)) (trail (trail-of-robot-named name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))

@@ -16,12 +16,13 @@
       (funcall function))))
 
 (defmacro with-halo ((color &key (width 1) dashes) &body body)
-  "Run BODY, which draws lines WIDTH wide with DASHES, for a white halo, then in the dark COLOR."
+  "Run BODY, which draws lines, twice: first for a white halo, then in the dark colour COLOR, WIDTH
+pixels wide, with DASHES."
   `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Each of several robots or ways has a colour and dashes by its position. There are 8 colours and
 ;;; 5 dashes: so 40 can be told apart, and 5 without colours. Any two colours are at least 20 apart
-;;; in CIE Lab, with full colour vision and without one kind of cones(tests/palette.lisp).
+;;; in CIE Lab, with full colour vision and without one kind of cones (see tests/palette.lisp).
 
 (define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)

@@ -14,7 +14,7 @@
 
 (addition moment-p)
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
-  "A notable event of a run, told by TEXT. It happened at TICK to the robot named ROBOT, at X, Y."
+  "A notable event of a run, described by TEXT: at TICK, of the robot named ROBOT, at X, Y."
   (tick 0 real "the tick of the event" :addition)
   (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN
 that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;

@@ -7,8 +7,7 @@
 ;;; Things.
 
 ;;; In colour a thing is a shape around its place, which says what the thing does. The larger its
-;;; :size, the larger the shape. A black outline and a white halo make it visible on any ground,
-;;; whatever its colour is.
+;;; :size, the larger the shape. A black outline and a white halo make any colour visible.
 
 (defconstant +greatest-thing-width+ 3/2 "The greatest width of a thing on the map, in cells.")
 (defconstant +size-of-widest-things+ 64
@@ -79,7 +78,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  "Draw the small vertical line of things in the manual's figure, with a halo visible on walls."
+  "Draw the small vertical line of things in the manual's figure. A halo makes it visible on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
     (flet ((upright (more)
@@ -109,8 +108,9 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
 
 ;;; Robots.
 
-;;; Several have colours and dashes by position. Without colours, every second five have hollow
-;;; heads.
+;;; A robot is drawn hollow and below things, so that it does not hide what it is about to grasp.
+;;; Each of several has a colour and dashes by its position. Without colours, the heads of every
+;;; second five are hollow.
 
 (defun robot-radius ()
   "Return the radius of the ring of a robot, in pixels. It is nearly a cell, but half a cell where

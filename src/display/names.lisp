@@ -34,7 +34,7 @@ already has lower-case letters."
 ;;; Of things in one place the small ones are drawn last. A thing hides those of its own size.
 
 (defun pile-key (image)
-  "Return a list for IMAGE, of a thing. Two lists are EQUALP if one of the things hides the other."
+  "Return a list for the image of a thing, EQUALP for two things if one hides the other."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-spot (image hidden)
@@ -75,8 +75,7 @@ same point and for rings around each other, whose names belong together."
            (and (= (spot-x spot) (spot-x other)) (= (spot-y spot) (spot-y other))))))
 
 (defun confusable-spots (spot spots reach)
-  "Return the spots in SPOTS that are within REACH pixels of SPOT and whose names could be confused
-with the name of SPOT."
+  "Return the SPOTS within REACH pixels of SPOT whose names could be confused with that of SPOT."
   (flet ((near-p (from to) (< (abs (- from to)) reach)))
     (remove-if-not (lambda (other)
                      (and (near-p (spot-x spot) (spot-x other))
@@ -112,15 +111,14 @@ with the name of SPOT."
                  (clamp (clamp y top bottom) (- y half) (+ y half))))))))
 
 (defun unambiguous-p (spot box rivals)
-  "True if a name in BOX clearly belongs to SPOT not to RIVALS, spots with confusable names."
+  "True if a name in BOX clearly belongs to SPOT, not to RIVALS, spots with confusable names."
   (loop with own = (spot-distance spot box)
         for rival in rivals
         for robots-p = (and (spot-robot spot) (spot-robot rival))
         never (< (spot-distance rival box) (+ own (if robots-p +robot-margin+ +thing-margin+)))))
 
 (defun confusable-spots-near (spot box spots reach)
-  "Return the CONFUSABLE-SPOTS in the index SPOTS that are so near to BOX that a name in BOX could
-belong to them."
+  "Return the CONFUSABLE-SPOTS in the index SPOTS that are near enough to BOX to own a name there."
   (let ((off (+ 1 +robot-margin+ (max 0 (spot-distance spot box)))))
     (destructuring-bind (left top right bottom) box
       (confusable-spots

@@ -69,8 +69,7 @@ Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
         (t "Choose a smaller scale if it is very large, or save it as .svg")))
 
 (defun reject-png (file words)
-  "Signal MISUSE, because the picture cannot be written to FILE. WORDS is the message of the program
-rsvg-convert."
+  "Signal MISUSE because the picture cannot be written to FILE. WORDS is rsvg-convert's message."
   (let ((words (one-line words)))
     (reject-use "The picture cannot be written to ~A: rsvg-convert ~:[failed without a ~
                  message~;~:*says ~S~]. An older file of this name is unchanged. ~A."

@@ -282,7 +282,7 @@ WORLD, is given, unchanged images are reused, which is faster."
 
 (defun snapshot-of-part (snapshot part operator)
   "Return a snapshot of PART of the map of SNAPSHOT. PART is a list (left top right bottom) in
-cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is invalid."
+cells, or NIL for the whole map. Signals WRONG-ARGUMENT for OPERATOR if PART is not in the map."
   (check-part operator part (snapshot-map snapshot))
   (flet ((within-p (x y)
            (destructuring-bind (left top right bottom) part

@@ -6,7 +6,7 @@
           write-text))
 
 ;;; Elements are written as they are drawn, numbers with at most two decimals. What is drawn with
-;;; clipping is collected first. Only if it reaches beyond its box, it gets a clipping element.
+;;; clipping is collected first. It gets a clipping element only if it reaches beyond its box.
 
 (defclass svg-canvas (canvas)
   ((stream :initarg :stream :accessor svg-stream)

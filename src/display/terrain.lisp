@@ -141,8 +141,7 @@ TILE pixels wide; without TILE, leave out the texture."
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)
-  "Return the width in pixels of a wall from the column or row FROM to TO. It is at least 1, so that
-the wall is visible."
+  "Return the width in pixels of a wall from FROM to TO, columns or rows, at least 1 to be visible."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)

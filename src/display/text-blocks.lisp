@@ -63,8 +63,7 @@ SNAPSHOT. The view has at most ROWS lines, or any number if ROWS is NIL, of COLU
                        when (map-index map x y) collect it))))
 
 (defun block-at (view x y)
-  "Return the number of the block of VIEW that contains the point X, Y, or NIL. Blocks are numbered
-row by row."
+  "Return the number of the block of VIEW, counted by row, that contains the point X, Y, or NIL."
   (let ((column (floor (- x (view-left view)) (view-wide view)))
         (row (floor (- y (view-top view)) (view-high view))))
     (when (and (< -1 column (view-columns view)) (< -1 row (view-rows view)))

@@ -179,8 +179,7 @@ LETTERS is a value of LETTERS-OF-THING-NAMES. If COLORED-P, walls are told apart
     sheet))
 
 (defun row-glyphs (sheet row)
-  "Return a list of the glyphs in row number ROW of SHEET, up to the last glyph. Empty blocks are
-NIL."
+  "Return a list of the glyphs in row ROW of SHEET, up to the last, with NIL for empty blocks."
   (let* ((columns (view-columns (sheet-view sheet)))
          (start (* row columns))
          (last (position nil (sheet-glyphs sheet) :from-end t :test-not #'eq

@@ -87,7 +87,7 @@ can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-mag
 
 (defun announce-display (robot options)
   "Open the window of ROBOT, which SIMULATOR has started. If no window can be opened, print once a
-line with the reason and the remedy. Do nothing if OPTIONS, of SIMULATOR, have :DISPLAY NIL."
+line with the reason and the remedy. Do nothing if the OPTIONS of SIMULATOR have :DISPLAY NIL."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)
