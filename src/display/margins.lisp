@@ -19,9 +19,8 @@ MISUSE if GRAPHICS-SCALE* is not a valid scale."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
 ;;; Without a given scale, the map with title, coordinates and scale bar is at most
-;;; +GREATEST-MAP-WIDTH+ by +GREATEST-MAP-HEIGHT+ pixels large. The legend is added beside
-;;; the map or below it, where the page becomes less large.
-;;; The map does not shrink for it.
+;;; +GREATEST-MAP-WIDTH+ by +GREATEST-MAP-HEIGHT+ pixels large. The legend is added beside the map
+;;; or below it, where the page becomes less large. The map does not shrink for it.
 
 (defconstant +greatest-map-width+ 900
   "The greatest width of a map if no scale is given, in pixels.")
