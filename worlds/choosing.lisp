@@ -33,7 +33,6 @@ the trolley."
 first.")
 
 (defun note-forecast (projections best)
-  "Push the share of successful rollouts of the alternative with index BEST on FORECASTS*."
   (push (projection-probability (nth best projections)) forecasts*))
 
 (def-interp-proc follow-way (me points)

@@ -7,19 +7,15 @@
 (in-readtable :nisp)
 
 (defun vector-length (dx dy)
-  "Return the length of the vector (DX,DY)."
   (sqrt (+ (* dx dx) (* dy dy))))
 
 (defun cell-of (point)
-  "Return the cell of POINT."
   (mapcar #'floor point))
 
 (defun middle-of (cell)
-  "Return the point in the middle of CELL."
   (list (+ (first cell) .5) (+ (second cell) .5)))
 
 (defun point-as-list (pt)
-  "Return PT as a list (x y)."
   (list (pt-x pt) (pt-y pt)))
 
 (defun free-of-walls-p (map x y)

@@ -31,7 +31,6 @@ the robot has received more commands, another program has taken it over."
   (claim-robot claim))
 
 (defun taken-over-p (claim)
-  "True if another program has taken over the robot of CLAIM."
   (/= (claim-asked claim) (commands-received (claim-robot claim))))
 
 (defun must-end-p (claim err)
@@ -126,7 +125,6 @@ steps."
 ;;; Driving.
 
 (defun face-point (journey point next)
-  "Turn the robot of JOURNEY to face POINT, then call NEXT."
   (robot-turn (robot-to-command journey) (angle-towards (journey-me journey) point)
     (continuation (err robot angle) (continue-after-command journey err next next))))
 

@@ -179,7 +179,6 @@ for a thing to move away; every third time turn and drive off."
     (reckon me)))
 
 (defun number-list-p (value count)
-  "True if VALUE is a list of COUNT numbers."
   (and (listp value) (eql count (list-length value)) (every #'realp value)))
 
 (defun check-arguments (operator &rest arguments)

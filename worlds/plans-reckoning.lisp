@@ -33,7 +33,6 @@ start."
   "The names of the odometers of reckonings.")
 
 (defun next-odometer-name (robot)
-  "Return the name of the odometer for the next reckoning of ROBOT."
   (let ((taken (remove-if-not (lambda (name) (member name *reckoning-names*))
                               (mapcar #'odometer-name (robot-odometers robot)))))
     (or (find-if-not (lambda (name) (member name taken)) *reckoning-names*)
@@ -91,7 +90,6 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
 ;;; The way shown in pictures.
 
 (defun robot-of (me)
-  "Return the robot of the reckoning ME."
   (ars-magna.robot:odometer-robot (reckoning-odometer me)))
 
 (defun show-way (me points)

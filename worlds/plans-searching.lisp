@@ -21,7 +21,6 @@
 ;;; Where to go next. LEFT are those of PLACES that were not visited in this round.
 
 (defun random-place (me places left dice)
-  "Return a random one of PLACES, drawn from DICE."
   (declare (ignore me left))
   (roll-element places dice))
 

@@ -45,8 +45,7 @@ with equal values make the contrast's WHERE; the other factors make the names of
                                        (level-names factors seconds)))))
 
 (defun pairs-by-levels (results pairs place)
-  "Group PAIRS by the two levels of the factor PLACE that they compare. Return lists (level base
-pair...)."
+  "Group PAIRS by their two levels of the factor PLACE. Return lists (level base pair...)."
   (loop with factor = (nth place (results-factors results))
         for group in (group-by pairs (lambda (pair)
                                       (mapcar (lambda (sample) (factor-text place sample)) pair)))
@@ -55,8 +54,7 @@ pair...)."
                         group)))
 
 (defun overall-contrasts (results pairs place names)
-  "Return contrasts over several conditions: one for each two levels that several PAIRS with common
-seeds compare."
+  "Return overall contrasts: one for each two levels that several PAIRS with common seeds compare."
   (loop for (level base . group) in (pairs-by-levels
                                      results
                                      (remove-if-not (lambda (pair) (apply #'common-trials pair))
@@ -158,8 +156,7 @@ together; tests over all pairs are corrected separately."
 
 (defun changes-of-pair (pair after before)
   "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
-experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if the parts are not listed
-there."
+experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if no parts are listed."
   (let ((now (recorded-parts (sample-condition (first pair)) after))
         (then (recorded-parts (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
@@ -224,8 +221,7 @@ read from experiment.txt in the directories AFTER and BEFORE, which may be NIL."
 ;;;; Comparing versions
 
 (defun results-and-name (operator name value)
-  "Return two values: the results that VALUE, the argument NAME of OPERATOR, designates, and the
-name of these results."
+  "Return two values: the results that VALUE, the argument NAME of OPERATOR, means, and their name."
   (cond ((results-p value)
          (values value (if (results-directory value)
                            (native-name (results-directory value))

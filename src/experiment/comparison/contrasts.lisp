@@ -58,8 +58,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
     (nreverse pairs)))
 
 (defun comparable-pairs (name first second &optional (pairs (common-trials first second)))
-  "Return those PAIRS of trials of the samples FIRST and SECOND in which the measure NAME can be
-compared."
+  "Return those PAIRS of trials of the samples FIRST and SECOND with comparable values of NAME."
   (if (string-equal name "ticks")
       (remove-if-not (lambda (pair)
                        (and (success-p (aref (sample-outcomes first) (car pair)))
@@ -80,12 +79,10 @@ compared."
           collect a into values and collect b into others
         finally (return (values values others))))
 
-;;; A measure is compared as a rate if it is always true or false, and as a mean if it has numbers.
-;;; Texts are not compared.
+;;; Truth values are compared as rates, and numbers as means. Texts are not compared.
 
 (defun difference-of-values (name firsts seconds)
-  "Return the difference in the measure NAME between FIRSTS and SECONDS, lists of values. Return NIL
-for texts."
+  "Return the difference in the measure NAME between the values FIRSTS and SECONDS; NIL for texts."
   (flet ((all (test) (and (every test firsts) (every test seconds))))
     (cond ((all (lambda (value) (typep value 'boolean))) (rate-difference name firsts seconds))
           ((or (some #'realp firsts) (some #'realp seconds))
@@ -163,7 +160,6 @@ the comparison in CONTRAST. Return CONTRAST."
   (append (comparison-contrasts comparison) (comparison-overall comparison)))
 
 (defun tested-differences (contrasts)
-  "Return the differences of CONTRASTS that count as tests: see ADJUST-P-VALUES."
   (loop for contrast in contrasts
         append (remove-if-not #'counts-as-test-p (contrast-differences contrast))))
 
@@ -214,8 +210,7 @@ each seed the mean of B."
           finally (return (values firsts seconds)))))
 
 (defun overall-difference (name values)
-  "Return the difference in the measure NAME, computed from VALUES, lists (seed a b). Return NIL for
-texts."
+  "Return the difference in the measure NAME, from VALUES, lists (seed a b); NIL for texts."
   (flet ((all (test) (loop for (nil a b) in values always (and (funcall test a) (funcall test b))))
          (difference (kind values)
            (multiple-value-bind (firsts seconds) (means-by-seed values)

@@ -8,8 +8,7 @@
 (defun factor-text (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
-  "Return the levels in RESULTS of the factor with index PLACE: a list of texts, in the table's
-order."
+  "Return the texts of the levels in RESULTS of the factor with index PLACE, in the table's order."
   (remove-duplicates (mapcar (lambda (sample) (factor-text place sample)) (results-samples results))
                      :test #'string= :from-end t))
 
@@ -21,15 +20,13 @@ order."
                                 (string= (factor-text place sample) (factor-text place other))))))
 
 (defun naming-factors (results)
-  "Return the indices of the factors that names of conditions of RESULTS mention: the factors that
-no named case determines."
+  "Return the indices of factors in names of conditions of RESULTS: those that no case determines."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
         unless (and case-p (plusp place) (case-determines-factor-p place (results-samples results)))
           collect place))
 
 (defun varying-factors (results)
-  "Return the indices of those NAMING-FACTORS of RESULTS that have several levels."
   (remove-if-not (lambda (place) (rest (levels results place))) (naming-factors results)))
 
 (defun factor-place (results factor)
@@ -39,8 +36,7 @@ no named case determines."
       (reject-name "factor" (princ-to-string factor) (results-factors results))))
 
 (defun find-level (levels value)
-  "Return the level in LEVELS that is VALUE, or the first level if VALUE is NIL. Signals
-UNKNOWN-NAME."
+  "Return the one of LEVELS that is VALUE, or the first if VALUE is NIL. Signals UNKNOWN-NAME."
   (if (null value)
       (first levels)
       (let ((text (if (stringp value) value (value-text value))))
@@ -63,8 +59,7 @@ UNKNOWN-NAME."
 ;;; Pairs.
 
 (defun other-factors (results place)
-  "Return the indices of the factors that must be equal in conditions that are compared in the
-factor with index PLACE."
+  "Return the indices of factors that must be equal in conditions compared in the factor PLACE."
   (let ((naming (naming-factors results)))
     (remove place (if (member place naming)
                       naming
@@ -115,8 +110,7 @@ DESIGNATOR is an integer; else NIL."
   (or (string-equal word level) (string-equal word (full-level-name factor level))))
 
 (defun designated-levels (results designator)
-  "Return lists (place level) of the levels in RESULTS that DESIGNATOR can mean; NIL for a number or
-sample."
+  "Return lists (place level) that DESIGNATOR can mean in RESULTS; NIL for a number or sample."
   (unless (numbered-sample results designator)
     (let ((word (designator-text designator)))
       (exact-or-partial-matches
@@ -158,8 +152,7 @@ number, from 1, or its name, or a part of the name. Signals UNKNOWN-NAME if no s
                   meanings)))
 
 (defun designated-sample (results designator)
-  "Return the sample that DESIGNATOR means. Signals MISUSE if DESIGNATOR could mean several
-samples."
+  "Return the sample that DESIGNATOR means. Signals MISUSE if DESIGNATOR could mean several."
   (let ((samples (designated-samples results designator)))
     (when (rest samples)
       (reject-ambiguous (designator-text designator) (mapcar #'sample-condition samples)))
@@ -183,8 +176,7 @@ BASE is NIL if SECOND is :ALL."
             (and base (level-title results (list place base))))))
 
 (defun level-pair-samples (results level-pair)
-  "Return pairs of samples that have the two levels of LEVEL-PAIR and are equal in all other
-factors."
+  "Return pairs of samples that have the levels of LEVEL-PAIR and else are equal."
   (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
           append (pairs-differing-in-factor results place level other))))
@@ -245,8 +237,7 @@ conditions. Signals MISUSE if FIRST and SECOND could be levels as well as number
 
 (defun designated-pairs (results first second)
   "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND, which
-may be :ALL; and the index of the factor, if the designators are levels that several conditions
-have."
+may be :ALL; and the index of the factor, if the designators are levels of several conditions."
   (multiple-value-bind (first second) (resolve-condition-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))

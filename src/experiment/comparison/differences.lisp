@@ -137,10 +137,8 @@ fewer draws for many numbers; the smallest possible p does not depend on the dra
           do (setf (paired-adjusted-p difference) adjusted))))
 
 (defun smallest-possible-p (seeds)
-  "Return the smallest possible p of a test over SEEDS seeds, for differences that all have the same
-sign."
+  "Return the smallest possible p over SEEDS seeds, for differences that all have the same sign."
   (expt 2 (- 1 (max 1 seeds))))
 
 (defun significant-p (difference)
-  "True if DIFFERENCE is significant at the 5 % level."
   (and (paired-adjusted-p difference) (<= (paired-adjusted-p difference) .05d0)))

@@ -2,17 +2,15 @@
 
 (in-package :ars-magna.experiment)
 
-;;; All numbers of a difference of means are rounded to the same decimal; its number is negative
-;;; left of the point. It is the second digit of the width of the interval, or if that is 0 of the
-;;; difference.
+;;; All numbers of a difference of means are rounded to the same decimal, whose number is negative
+;;; left of the point: the second digit of the interval's width, or if that is 0 of the difference.
 
 (defun decimals-of-second-digit (size)
   "Return the position after the decimal point of the second significant digit of SIZE."
   (- 1 (decimal-exponent (rational size))))
 
 (defun useful-decimals (difference)
-  "Return the number of decimals to which the numbers of DIFFERENCE, a difference of means, are
-rounded."
+  "Return the number of decimals of the rounded numbers of DIFFERENCE, a difference of means."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (subtract-numbers high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
@@ -25,7 +23,6 @@ rounded."
           (t 3))))
 
 (defun scientific-text (number decimals)
-  "Return the text of NUMBER with a power of ten, rounded to DECIMALS decimals."
   (let* ((power (decimal-exponent number))
          (text (decimal-text (/ number (expt 10 power)) (max 0 (+ decimals power)))))
     (format nil "~Ae~D" (strip-trailing-zeros text) power)))
@@ -58,8 +55,7 @@ rounded."
   (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
 
 (defun p-text (p)
-  "Return the text of the probability P that follows the letter p in a sentence, such as = .032 or <
-.001."
+  "Return the text of the probability P after the letter p in a sentence, such as = .032 or < .001."
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
@@ -81,8 +77,7 @@ rounded."
             (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
 (defun p-values-text (difference)
-  "Return a text with p of DIFFERENCE, corrected for the number of tests, and with the uncorrected
-p."
+  "Return a text with p of DIFFERENCE, both corrected for the number of tests and uncorrected."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
@@ -132,8 +127,7 @@ p."
         when (<= (* tests (smallest-possible-p seeds)) 1/20) return seeds))
 
 (defun too-few-seeds-text (difference)
-  "Return a text with the number of seeds needed if there are too few for a significant p of
-DIFFERENCE; else NIL."
+  "Return a text on the seeds needed if DIFFERENCE has too few for a significant p; else NIL."
   (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
     (when (< seeds (seeds-needed tests))
       (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
@@ -238,8 +232,7 @@ difference alone."
 ;;; What was left out.
 
 (defun side-counts-text (contrast first second)
-  "Return a text with FIRST and SECOND, counts of trials of the two sides of CONTRAST; NIL if both
-are 0."
+  "Return a text with FIRST and SECOND, trial counts of the sides of CONTRAST; NIL if both are 0."
   (let ((words (loop for count in (list first second)
                      for name in (list (contrast-first contrast) (contrast-second contrast))
                      when (plusp count) collect (format nil "~D of ~A" count name))))

@@ -24,14 +24,12 @@ values are the names of series, if there is only one such factor."
         (first free))))
 
 (defun series-factors (results)
-  "Return the factors that make the series in pictures of RESULTS."
   (remove (x-axis-factor results) (varying-factors results)))
 
 ;;; Series and panels.
 
 (defun factor-values-name (sample places factors)
-  "Return the name of SAMPLE made from the factors with the indices PLACES, or NIL if there are
-none."
+  "Return the name of SAMPLE from the factors with the indices PLACES; NIL if there are none."
   (and places
        (level-names (loop for place in places collect (nth place factors))
                     (loop for place in places collect (factor-text place sample)))))
@@ -40,8 +38,7 @@ none."
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
-  "Return the name of the series that SAMPLE belongs to. If the series have a title, the name is
-only the factor's value."
+  "Return the name of the series of SAMPLE: only the factor's value if the series have a title."
   (let ((text (and (series-title places factors) (factor-text (first places) sample))))
     (if (and text (string/= "" text))
         text
@@ -101,8 +98,7 @@ FACTORS make the series."
         (format nil " ~D trial~:P broke off with an error, and did not succeed." count))))
 
 (defun intervals-text (kind summaries)
-  "Return a sentence on the intervals of the estimates of KIND in SUMMARIES, followed by the
-ERRORS-TEXT."
+  "Return a sentence on the intervals of estimates of KIND in SUMMARIES, followed by ERRORS-TEXT."
   (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
                ~A.~A"
           (statistic-option kind :interval)
@@ -116,7 +112,6 @@ ERRORS-TEXT."
   (or (number-from-text text) (if (string= "" text) "none" text)))
 
 (defun logarithmic-x-p (numbers)
-  "True if NUMBERS are so far apart that they need a logarithmic scale."
   (and (cddr numbers) (every #'realp numbers) (every #'plusp numbers)
        (<= 50 (/ (reduce #'max numbers) (reduce #'min numbers)))))
 
@@ -199,12 +194,10 @@ ERRORS-TEXT."
         when (and (eq :mean kind) (any-value-p estimates))
           append (spread-pictures results summaries place)))
 
-;;; Survival. A trial that does not succeed is never done: it counts until the end, and is not
-;;; censored earlier.
+;;; Survival. A trial without success is never done: it counts until the end, not censored earlier.
 
 (defun tick-limit (results)
-  "Return the limit of ticks of the experiment of RESULTS. If the experiment is unknown, return the
-most ticks of any trial."
+  "Return the tick limit of the experiment of RESULTS; if unknown, the most ticks of any trial."
   (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
         (experiment-limit experiment)

@@ -5,8 +5,7 @@
 (defparameter *picture-kinds*
   '((:success . success-pictures) (:ticks . ticks-pictures) (:measures . measure-pictures)
     (:survival . survival-pictures) (:differences . difference-pictures))
-  "An alist from keys of SAVE-RESULT-PICTURES to functions of results and summaries that return
-pictures.")
+  "An alist from keys of SAVE-RESULT-PICTURES to functions from results and summaries to pictures.")
 
 ;;; Files are named after their contents.
 
@@ -144,7 +143,6 @@ missing."
 ;;;; Comparisons: differences from zero
 
 (defun same-sides-p (comparison)
-  "True if all contrasts of COMPARISON compare the same two sides."
   (loop with one = (first (comparison-contrasts comparison))
         for contrast in (comparison-contrasts comparison)
         always (and (string= (contrast-first one) (contrast-first contrast))

@@ -141,7 +141,6 @@ CLAUSE if there are no elements."
                                 characters that cannot be seen, such as line feeds"))))
 
 (defun keyword-factor-p (name)
-  "True if NAME is the keyword of a factor: :ROBOTS or :THINKING."
   (member name '(:robots :thinking)))
 
 (defun special-p (name)

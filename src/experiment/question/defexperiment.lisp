@@ -12,16 +12,14 @@ needs no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
-  "Return a form that makes the list of the values in PART of :vary; for a design, the list of the
-bounds of its ranges."
+  "Return a form that lists the values in PART of :vary; for a design, the bounds of its ranges."
   (cond ((design-part-p part)
          `(list ,@(loop for (nil low high) in (design-ranges part) collect `(list ,low ,high))))
         ((eq :in (second part)) (third part))
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun parts-form (parts value-of)
-  "Return a form that makes lists (part value) of PARTS. The function VALUE-OF returns the form for
-a part's value."
+  "Return a form for lists (part value) of PARTS. VALUE-OF returns the form for a part's value."
   `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)

@@ -51,7 +51,6 @@ variables hold weakly: the keys of a table" :writable))
 ;;; Parameters.
 
 (defun parameter-of-variable (name)
-  "Return the parameter whose variable is the symbol NAME, or NIL."
   (let ((parameter (find-parameter name nil)))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
@@ -135,8 +134,7 @@ PARAMETERS are lists (name value) for all conditions."
                                                       others clean parameters))))
 
 (defun find-by-name (text things name)
-  "Return the THINGS whose name, as the function NAME returns it, is TEXT; if there are none, those
-whose name contains TEXT."
+  "Return the THINGS whose name, given by the function NAME, is TEXT, or else contains TEXT."
   (or (remove text things :key name :test-not #'string-equal)
       (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
                      things)))
@@ -202,8 +200,7 @@ UNKNOWN-NAME."
     (if (and end (plusp end)) (subseq line 0 end) line)))
 
 (defun question-of (name)
-  "Return the question of the experiment named NAME in a table, or NIL if the experiment is
-unknown."
+  "Return the question of the experiment named NAME in a table; NIL for an unknown experiment."
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

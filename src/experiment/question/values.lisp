@@ -10,8 +10,7 @@
 ;;; Reader and printer.
 
 (defun call-with-trial-syntax (function &optional (package *package*))
-  "Call FUNCTION with the reader and printer variables that every trial has, and PACKAGE as the
-current package."
+  "Call FUNCTION in PACKAGE, with the reader and printer variables that every trial has."
   (let ((*package* package) (*readtable* (global-value '*readtable*)) (*read-base* 10))
     (call-printing-plainly function)))
 
@@ -30,7 +29,6 @@ NIL if there is none."
          (1+ end))))
 
 (defun without-addresses (text)
-  "Return TEXT without memory addresses of objects."
   (if (find #\{ text)
       (with-output-to-string (out)
         (loop with i = 0
@@ -60,7 +58,6 @@ that it is the same in each run."
   (format nil "~(~A~)" (safe-text object :escape nil)))
 
 (defun finite-value-p (value)
-  "True if VALUE is a finite real number."
   (and (realp value) (finite-p value)))
 
 (defun simple-table-value-p (value)
@@ -103,8 +100,7 @@ that it is the same in each run."
 
 ;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
-  "Return the text for VALUE in a table, independent of the variables of the reader and the
-printer."
+  "Return the text for VALUE in a table, independent of reader and printer variables."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")

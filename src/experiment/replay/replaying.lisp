@@ -25,9 +25,8 @@
 (defvar *outside* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-outside-trial (function)
-  "Call FUNCTION, which inspects the trial that this thread runs again. The variables *SURROUNDINGS*
-have their values from outside of the trial; keep the values that FUNCTION sets. Errors of FUNCTION
-are not errors of the trial."
+  "Call FUNCTION, which inspects a trial that runs again. The *SURROUNDINGS* have their values from
+outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION are not the trial's."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
       (let ((*inspecting-p* t))
@@ -62,8 +61,7 @@ debugger without a user is an error of the trial."
 
 (defun run-again (experiment condition trial &key gate (then #'identity) journal)
   "Run TRIAL of CONDITION of EXPERIMENT as RUN-TRIAL does, but in this thread and with output. When
-the trial has ended, call THEN with the result while the trial's simulation still exists. Return the
-result."
+the trial ends, call THEN with the result while the trial's simulation exists. Return the result."
   (let ((result (make-result condition trial (trial-seed experiment trial)))
         (begun-p nil))
     (flet ((run ()
@@ -97,8 +95,7 @@ result."
         do (wait-and-serve never (min left 0.02))))
 
 (defun paced-gate (rate)
-  "Return a gate that lets RATE ticks a second pass. The gate opens a display first, if there is
-one."
+  "Return a gate that lets RATE ticks a second pass. The gate first opens a display, if any."
   (let ((due nil))
     (lambda (simulation)
       (unless due

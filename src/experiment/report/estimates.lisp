@@ -6,8 +6,7 @@
 ;;; by it. Numbers some 1e250 times smaller than the largest count as 0.
 
 (defun nearest-float (number)
-  "Return the double-float nearest to NUMBER, or NUMBER itself if it is too large for a
-double-float."
+  "Return the double-float nearest to NUMBER, or NUMBER itself if NUMBER is too large."
   (if (finite-p number) (double number) number))
 
 (defun subtract-numbers (a b)
@@ -105,7 +104,6 @@ Return KIND."
      ,kind))
 
 (defun statistic-option (kind option)
-  "Return the value of OPTION in the DEFINE-STATISTIC of KIND, or NIL."
   (getf (cddr (assoc kind *statistics*)) option))
 
 (define-statistic :rate (truths confidence) (:heading " %" :interval "Wilson's")
@@ -186,8 +184,7 @@ Return KIND."
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun interim-look-number (trials)
-  "Return the number of the interim look after TRIALS trials of each condition; NIL if there is no
-look."
+  "Return the number of the interim look after TRIALS trials of each condition; else NIL."
   (loop for look from 1
         for count = (count-at-look look)
         while (<= count trials)

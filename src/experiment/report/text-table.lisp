@@ -10,8 +10,7 @@
 (defvar *page-width* +page-width+ "The most characters of a line now, as in a narrower window.")
 
 (defun call-with-page-width (function &optional (width +page-width+))
-  "Call FUNCTION, which writes tables, with pages WIDTH characters wide, but at least 60 and at most
-+PAGE-WIDTH+."
+  "Call FUNCTION, which writes tables, with pages of WIDTH characters, from 60 to +PAGE-WIDTH+."
   (let ((*page-width* (max 60 (min width +page-width+))))
     (funcall function)))
 

@@ -32,8 +32,7 @@ OTHERS, and its text in TEXTS."
     result))
 
 (defun check-repeatable (experiment texts)
-  "Signal MISUSE if the trial of EXPERIMENT with the row TEXTS gives another row now. TEXTS are from
-TEXTS-WITH-CHECKSUM."
+  "Signal MISUSE if the trial of EXPERIMENT with TEXTS (see TEXTS-WITH-CHECKSUM) gives another row."
   (let* ((condition (condition-of-texts experiment texts))
          (columns (append (columns experiment) '("series, by its check sum,")))
          (trial (parse-integer (nth (1+ (seed-column columns)) texts)))
@@ -50,8 +49,7 @@ TEXTS-WITH-CHECKSUM."
                   (start-again-advice)))))
 
 (defparameter *seconds-for-checks* 10
-  "The seconds for which trials that have rows are run again, as a check, before an experiment is
-resumed.")
+  "The seconds for which trials with rows are run again, as a check, before an experiment resumes.")
 
 (defun check-rows-repeatable (experiment rows seconds)
   "Signal MISUSE if a trial of ROWS, of different conditions of EXPERIMENT, gives another row now.
@@ -115,8 +113,7 @@ variable or a function; else NIL."
 
 (defun check-finished-run (store parts seconds)
   "Signal MISUSE if the experiment of STORE no longer has the fingerprint PARTS, or a trial gives
-another row now. SECONDS is the duration of the run; this check takes a twentieth of it, or one
-trial."
+another row now. The run took SECONDS; this check takes a twentieth of that, or one trial."
   (let ((experiment (store-experiment store)))
     (check-code-unchanged experiment parts (store-path store))
     (call-noting-refusal

@@ -9,8 +9,7 @@
 ;;; Rows that exist already.
 
 (defun rows-to-check (conditions &rest tables)
-  "Return the values of CONDITIONS in TABLES, which are hash tables: each value once, the values of
-the first table first."
+  "Return the values of CONDITIONS in hash TABLES: each value once, those of the first table first."
   (remove nil (remove-duplicates
                (loop for table in tables
                      append (loop for condition in conditions collect (gethash condition table)))
@@ -18,9 +17,8 @@ the first table first."
 
 (defun find-existing-rows (experiment parts directory)
   "Return two values: a table of the rows of EXPERIMENT present in DIRECTORY, and a list of rows to
-check. The list of rows to check has the texts of the last row of each condition, then those of the
-first rows. PARTS are the fingerprint parts of all conditions. Signals MISUSE for rows with other
-fingerprints."
+check. The list has the texts of the last row of each condition, then those of the first rows. PARTS
+are the fingerprint parts of all conditions. Signals MISUSE for rows with other fingerprints."
   (let ((firsts (make-hash-table :test 'eq)) (lasts (make-hash-table :test 'eq))
         (columns (columns experiment)))
     (multiple-value-bind (presence series)
@@ -52,8 +50,7 @@ fingerprints."
   (* +first-look+ (expt 2 (1- look))))
 
 (defun confidence-at-look (look)
-  "Return the confidence of intervals at the LOOK-th look, chosen so that the confidence of all
-looks together is .95."
+  "Return the confidence of intervals at the LOOK-th look, so that all looks together have .95."
   (- 1d0 (sequential-level look :level .05d0)))
 
 (defun count-successes (experiment trials directory)
@@ -190,8 +187,7 @@ says; NIL for no limit. A trial that takes longer is ended. Such a trial has the
 which is no success, and is not run again. Machines differ, so allow far more time than trials need.
 A trial that ends its own thread is an error of that trial.
 
-A trial with an error has a row, too. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE and
-DAMAGED-TABLE."
+A trial with an error has a row, too. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE, DAMAGED-TABLE."
   (let* ((experiment (find-experiment name))
          (trials (or trials (if until *most-trials* (experiment-trials experiment))))
          (time-limit (if time-limit-p time-limit (experiment-time-limit experiment))))

@@ -63,7 +63,6 @@ FUNCTION are signalled here."
 ;;; On a terminal one line is updated; elsewhere a line is printed now and then.
 
 (defun seconds-since (moment)
-  "Return the seconds since MOMENT, a value of REAL-MICROSECONDS."
   (/ (- (real-microseconds) moment) 1d6))
 
 (defstruct (progress (:constructor make-progress
@@ -163,8 +162,7 @@ unless the function STOPPING-P returns true."
           (return-from call t))))))
 
 (defun call-within-seconds (function seconds)
-  "Call FUNCTION. If FUNCTION takes longer than SECONDS, leave it and return true. There is no limit
-if SECONDS is NIL."
+  "Call FUNCTION. If FUNCTION takes longer than SECONDS, leave it and return true. NIL is no limit."
   (block call
     (let ((open-p t))
       (flet ((leave () (when open-p (return-from call t))))

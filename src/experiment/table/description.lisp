@@ -199,7 +199,6 @@ NIL if there are none."
                        :test #'string= :from-end t)))
 
 (defun recorded-conditions (directory)
-  "Return the names of the conditions in experiment.txt in DIRECTORY, in order."
   (loop for line in (description-lines directory)
         when (starts-with-subseq "= " line) collect (subseq line 2)))
 

@@ -171,7 +171,6 @@ in the worker numbered WORKER."
     (setf (aref bits trial) 1)))
 
 (defun condition-of-texts (experiment texts)
-  "Return the condition of EXPERIMENT with the name in the row TEXTS, or NIL."
   (find (third texts) (experiment-conditions experiment)
         :key #'condition-name :test #'string=))
 

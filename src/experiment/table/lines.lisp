@@ -80,8 +80,7 @@ RANK is the position of this group among all groups."
   (number 0 :type fixnum :read-only t))
 
 (defun index-rows (files)
-  "Return an unsorted vector of the rows in FILES, tables with the same columns, and a list of their
-groups."
+  "Return an unsorted vector of the rows in FILES, tables with equal columns, and a list of groups."
   (let ((groups (make-hash-table :test 'equal))
         (rows (make-array 1000 :adjustable t :fill-pointer 0))
         (columns (columns-of-file (first files))))
@@ -157,8 +156,7 @@ FILE unchanged."
                               file "the file cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
-  "Call FUNCTION with a reader: a function that takes one of FILES and a position, and returns the
-line there."
+  "Call FUNCTION with a reader: a function from one of FILES and a position to the line there."
   (let ((streams (make-hash-table :test 'eq)))
     (unwind-protect
          (progn

@@ -70,8 +70,7 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
                         (format nil "shard-~D-of-~D/" index count))))
 
 (defun directories-with-rows (directory)
-  "Return the names of those directories that have rows, among DIRECTORY and its directories of
-shards."
+  "Return the names of directories with rows, among DIRECTORY and its directories of shards."
   (let* ((path (directory-path directory))
          (shards (remove-if-not (lambda (path)
                                   (starts-with-subseq "shard-"

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-;;; Cells become numbers, T and NIL, :NONE where nothing was measured, or strings; equal strings are
-;;; shared.
+;;; Cells become numbers, T, NIL, :NONE (not measured), or strings; equal strings are shared.
 
 (addition sample-p)
 (define-record (sample (:constructor make-sample (experiment fingerprint condition texts measures)))

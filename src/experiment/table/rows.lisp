@@ -183,7 +183,6 @@ with COLUMNS. Signals DAMAGED-TABLE."
       (reject-table file nil "~A. Remove it, or give another directory." trouble))))
 
 (defun check-files-plain (directory)
-  "Signal DAMAGED-TABLE if one of the files of DIRECTORY exists and is not a plain file."
   (mapc #'check-plain-file (list (rows-file directory) (series-file directory)
                                  (machine-file directory) (description-file directory))))
 

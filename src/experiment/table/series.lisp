@@ -139,9 +139,8 @@ start and end, and the number of the first line."
 ;;; are dropped when the table is sorted.
 
 (defun expected-line-count (texts seed)
-  "Return the number of lines that the trial with the row TEXTS must have. SEED is the index of the
-seed's column. The number is 0 if the row has no digest, as after a timeout or the end of the
-thread."
+  "Return the number of lines that the trial with the row TEXTS must have. SEED is the seed's
+column. The number is 0 if the row has no digest, as after a timeout or the end of the thread."
   (if (string= "" (first (last texts 2)))
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))
@@ -199,8 +198,7 @@ no series."
                 (block-number whole) (native-name (block-file whole))))
 
 (defun check-same-lines (block whole line-of)
-  "Signal DAMAGED-TABLE unless the lines of BLOCK are among the lines of WHOLE, a block of the same
-trial."
+  "Signal DAMAGED-TABLE unless WHOLE, a block of the same trial, has the lines of BLOCK."
   (let ((lines (nthcdr (block-first block) (block-lines whole line-of)))
         (others (block-lines block line-of)))
     (unless (and (<= (length others) (length lines)) (every #'string= others lines))

@@ -19,7 +19,6 @@ or other object of the simulator."
        (users-symbol-p (type-of value))))
 
 (defun structure-values (structure)
-  "Return a list of the values of the bound slots of STRUCTURE, a structure or condition."
   (loop for slot in (class-slot-names (class-of structure))
         when (slot-boundp structure slot) collect (slot-value structure slot)))
 
@@ -33,9 +32,8 @@ or other object of the simulator."
 ;;; Walking.
 
 (defstruct (walk (:constructor make-walk (digest atom)) (:copier nil))
-  "The state of a walk through data. Each part is added to DIGEST. The function ATOM is called with
-each part that has no parts itself. PATH maps the compounds around the current part to their
-depths."
+  "The state of a walk through data. Each part is added to DIGEST. ATOM is called with each part
+that has no parts itself. PATH maps the compounds around the current part to their depths."
   (digest nil :type digest :read-only t)
   (atom nil :type function :read-only t)
   (path (make-hash-table :test 'eq) :read-only t)
@@ -152,8 +150,7 @@ VALUE is too large."
     (t (table-value-p key))))
 
 (defun weak-digests (object atom)
-  "Return a list of digests of what OBJECT, a weak pointer or table, holds now. ATOM is called as by
-CALL-WALKING."
+  "Return digests of what OBJECT, a weak pointer or table, holds now. ATOM is as for CALL-WALKING."
   (if (weak-pointer-p object)
       (let ((target (weak-value object)))
         (and target (list (call-walking target atom))))

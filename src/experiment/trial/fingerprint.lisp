@@ -105,8 +105,7 @@ not determine closures, and functions that were set in another way, as by a tria
 
 (defun visit-variable (symbol reach)
   "Visit the variable SYMBOL and its value. A value that is data is noted as a part in REACH. NIL
-and an empty table are not noted, because a variable that will hold data often has NIL or an empty
-table first."
+and an empty table are not noted, because variables for data often have such values first."
   (unless (eq :global (variable-kind symbol)) (push symbol (reach-variables reach)))
   (let ((value (global-value symbol)))
     (flet ((visit-atom (atom)
@@ -259,8 +258,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
     reach))
 
 (defun fingerprint-parts (experiment condition)
-  "Return the sorted parts of the fingerprint of CONDITION of EXPERIMENT, and the condition's
-REACH."
+  "Return the sorted fingerprint parts of CONDITION of EXPERIMENT, and the condition's REACH."
   (let* ((definitions (definitions-in-trial experiment condition))
          (reach (find-reach experiment condition definitions)))
     (values
@@ -302,8 +300,7 @@ REACH."
        parts))))
 
 (defun prepare-trials (experiment condition)
-  "Set the variables of CONDITION of EXPERIMENT, but not its fingerprint, because its files may have
-changed."
+  "Set the variables of CONDITION of EXPERIMENT, but not the fingerprint: files may have changed."
   (call-with-trial-syntax
    (lambda ()
      (set-reach condition

@@ -197,8 +197,7 @@ SAMPLER keeps the first error."
         do (pop (sampler-samples sampler))))
 
 (defun sample-once (sampler simulation)
-  "Add a sample of SIMULATION to SAMPLER, unless SAMPLER has a sample of this tick or the tick is
-not over."
+  "Add a sample of SIMULATION to SAMPLER, unless this tick has a sample or is not over."
   (let ((tick (simulation-tick simulation)))
     (when (zerop (timeline-phase (simulation-timeline simulation)))
       (drop-later-samples sampler tick)
@@ -226,8 +225,7 @@ not over."
     (funcall function)))
 
 (defun note-series (result)
-  "Store the recorded series in RESULT. If RESULT has no error yet, also store the first error of
-recording."
+  "Store the recorded series in RESULT. Store the first error of recording if RESULT has none."
   (when *sampler*
     (sample-once *sampler* (current-simulation))
     (setf (result-series result) (reverse (sampler-samples *sampler*)))
