@@ -12,9 +12,8 @@
 ;;; The world.
 
 (defun leave-trolley (name places)
-  "Put a trolley NAME, which blocks robots, at one of PLACES, points of the current world. NAME and
-the world's seed decide at which place. People move the trolley among PLACES now and then. Return
-the trolley."
+  "Put a trolley NAME, which blocks robots, at one of PLACES, points of the world. NAME and the
+world's seed decide where. People move the trolley among PLACES at times. Return the trolley."
   (make-new-thing name (cons *world* (roll-element places (dice-for name)))
                   (list '(:size 30) '(:weight 25) '(:substance metal) '(:obsmove #t)
                         (list :haunts places))
@@ -25,12 +24,10 @@ the trolley."
   (leave-trolley 'book-trolley '((72.5 34.5) (84.5 24.5) (76.5 4.5)))
   (leave-trolley 'tea-trolley '((52.5 34.5) (44.5 26.5) (56.5 20.5))))
 
-;;; The plan. WHICH is how it chooses a way: :FIRST, :SECOND, :ANY (at random) or :BEST (by
-;;; rollouts).
+;;; The plan chooses ways by WHICH: :FIRST, :SECOND, :ANY (at random) or :BEST (by rollouts).
 
 (defvar forecasts* '()
-  "A list of the share of rollouts that succeeded for each choice of an errand, the latest choice
-first.")
+  "A list of the share of rollouts that succeeded for each choice of an errand, the latest first.")
 
 (defun note-forecast (projections best)
   (push (projection-probability (nth best projections)) forecasts*))

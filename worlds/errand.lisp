@@ -13,8 +13,7 @@
 (in-readtable :nisp)
 
 (defstruct (errand (:include claim) (:copier nil))
-  "The parts, description and continuation of an errand. PATIENCE is the number of further setbacks
-after which the errand ends."
+  "The parts, description and continuation of an errand. PATIENCE further setbacks end the errand."
   (camera nil :read-only t)
   (hand nil :read-only t)
   (bin nil :read-only t)
@@ -43,8 +42,7 @@ code or NIL, and ROBOT. The codes:
 ;;; Endings and setbacks.
 
 (defun end-errand (errand err)
-  "End ERRAND with the error code ERR, or NIL for success. Does nothing if ERRAND has ended
-already."
+  "End ERRAND with the error code ERR, or NIL for success. Does nothing if ERRAND has ended."
   (unless (errand-over errand)
     (setf (errand-over errand) #t)
     (funcall (errand-continuation errand) err (errand-robot errand))))
@@ -72,8 +70,7 @@ of the robot shows that another program took over the robot, end ERRAND instead.
 ;;; Finding.
 
 (defun find-target (errand)
-  "Search where the camera points. Track and approach the thing found; if none is found, look
-elsewhere."
+  "Search where the camera points. Track and approach the thing found, or if none look elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
       (cond ((must-end-p errand err) (end-errand errand :interrupt))
@@ -100,8 +97,7 @@ elsewhere."
 ;;; Going there.
 
 (defun track-and-continue (errand designator next otherwise)
-  "Track DESIGNATOR and take the step NEXT when the track has begun, or OTHERWISE if it cannot
-begin."
+  "Track DESIGNATOR. Take the step NEXT when the track has begun, or OTHERWISE if it cannot begin."
   (let ((begun #f))
     (camera-track (errand-camera errand) designator
       (continuation (err camera designator)
@@ -114,8 +110,7 @@ begin."
   (track-and-continue errand designator #'go-to-target #'find-target))
 
 (defun go-to-target (errand)
-  "Drive to what the camera tracks. If something blocks the way, check whether the tracked thing is
-near enough."
+  "Drive to what the camera tracks. If something blocks the way, check whether the thing is near."
   (robot-goto-designator (robot-to-command errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (call-unless-interrupted errand err
@@ -142,8 +137,7 @@ near enough."
 
 (defun look-closely-at (errand looks wanted next otherwise)
   "Search for local things, next to the robot or in the bin, until WANTED searches have succeeded;
-then take the step NEXT with the last designator. After LOOKS searches take the step OTHERWISE
-instead."
+then take the step NEXT with the last designator. After LOOKS searches take the step OTHERWISE."
   (camera-get-object-designator (errand-camera errand) :local (errand-description errand)
     (continuation (err camera designator)
       (let ((wanted (if designator (- wanted 1) wanted)))
@@ -160,8 +154,7 @@ instead."
                       #'check-target))
 
 (defun grasp-tracked (errand designator)
-  "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, it may be the wrong thing:
-leave it."
+  "Grasp DESIGNATOR, which the camera tracks. If too heavy, it may be the wrong thing: leave it."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
       (call-unless-interrupted errand err
@@ -193,8 +186,7 @@ leave it."
           (take-next-step errand err #'drop-target #'open-for-target)))))
 
 (defun drop-target (errand)
-  "Drop the thing inside the bin. If the hand is empty, the thing was lost on the way: search
-again."
+  "Drop the thing inside the bin. If the hand is empty, the thing was lost: search again."
   (hand-ungrasp (errand-hand errand)
     (continuation (err hand)
       (let ((lost (eq err :not-grasping)))

@@ -1,9 +1,8 @@
 ;;;; going.lisp -- a robot goes to a point of its map: with continuations instead of a plan.
 
-;;; For programs without plans, and for the command GO-TO of the prompt. It takes the same steps as
-;;; the plan TRAVEL-TO (see doorways.lisp) and keeps its reckoning in the same way. Each step is a
-;;; function that issues a command and returns at once; its continuation takes the next step. The
-;;; steps share a JOURNEY.
+;;; For programs without plans, and for the command GO-TO of the prompt. It takes the same steps and
+;;; keeps the same reckoning as the plan TRAVEL-TO (see doorways.lisp). Each step is a function that
+;;; issues a command and returns; its continuation takes the next step. Steps share a JOURNEY.
 ;;;
 ;;;   (with-simulation (ars-worlds:marvin :seed 1)
 ;;;     (ars-worlds:robot-go-to ars-worlds:marvin 109 24
@@ -41,8 +40,7 @@ the robot has received more commands, another program has taken it over."
 ;;; Journeys.
 
 (defstruct (journey (:include claim) (:copier nil))
-  "The goal and the reckoning of a robot. STEPS and PATIENCE are the numbers of further steps and
-obstacles after which the journey ends."
+  "The goal and reckoning of a robot. STEPS further steps or PATIENCE obstacles end the journey."
   (me nil :type reckoning :read-only t)
   (goal '() :type list :read-only t)
   (tolerance 1 :type real :read-only t)
@@ -52,8 +50,7 @@ obstacles after which the journey ends."
   (patience 40 :type fixnum))
 
 (defun free-goal-near (chart x y)
-  "Return the point (X,Y), a list, or the nearest point that is free on CHART. Signals
-WRONG-ARGUMENT."
+  "Return the point (X,Y), a list, or the nearest free point on CHART. Signals WRONG-ARGUMENT."
   (let ((point (nearest-free-point chart (list x y))))
     (unless point
       (ars-magna.base:reject-argument 'robot-go-to "the point" (list x y)
@@ -103,15 +100,13 @@ Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid
 
 (defun continue-after-command (journey err next otherwise)
   "Call NEXT, a function of no arguments, if a command ended without an error code ERR, else
-OTHERWISE. If the command was interrupted or another program took over the robot, end JOURNEY
-instead."
+OTHERWISE. If the command was interrupted or another program took over the robot, end JOURNEY."
   (cond ((must-end-p journey err) (end-journey journey :interrupt))
         (err (funcall otherwise))
         (t (funcall next))))
 
 (defun continue-journey (journey)
-  "Take the next step of JOURNEY, or end JOURNEY: at the goal, without a way, or after too many
-steps."
+  "Take JOURNEY's next step, or end JOURNEY: at the goal, without a way, or after too many steps."
   (let* ((me (journey-me journey)) (goal (journey-goal journey))
          (step (next-step-of me goal)))
     (cond ((<= (distance-left me goal) (journey-tolerance journey)) (end-journey journey nil))
@@ -174,8 +169,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 ;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 
 (defun look-for-doorway (journey cell beyond)
-  "Drive the robot of JOURNEY, which faces the doorway CELL, through the doorway to the point
-BEYOND."
+  "Drive the robot of JOURNEY, which faces the doorway CELL, through the doorway to BEYOND."
   (labels ((blindly ()
              (drive-to-point journey (middle-of cell)
                              (lambda (journey) (leave-doorway journey beyond))))

@@ -25,8 +25,7 @@
   (list (* factor (first step)) (* factor (second step))))
 
 (defun take-step (thing step)
-  "Move THING by STEP, a list (dx dy) in metres, unless a wall or lid blocks THING. Return true if
-THING moved."
+  "Move THING by STEP, (dx dy) in metres, and return true, unless a wall or lid blocks THING."
   (kick-thing thing (first step) (second step) #f))
 
 ;;; Things.

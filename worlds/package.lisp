@@ -56,7 +56,6 @@
 (in-package :ars-worlds)
 
 (defmacro document-variables (&rest documentation)
-  "Set the docstrings of variables. DOCUMENTATION has the names of variables and their docstrings,
-alternating."
+  "Set docstrings of variables. DOCUMENTATION has names of variables and docstrings, alternating."
   `(setf ,@(loop for (name text) on documentation by #'cddr
                  append `((documentation ',name 'variable) ,text))))

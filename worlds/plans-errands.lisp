@@ -6,17 +6,15 @@
 ;;;     (run-plan 'fetch-thing '((:color blue) (:substance plastic)) '((108.5 24.5))))
 ;;;
 ;;; The plans use the map, the robot's start and the places to look at, but not the positions of
-;;; things. One errand at a time uses the robot. The next waits until that one has ended and cleaned
-;;; up.
+;;; things. One errand at a time uses the robot. The next waits until that one has cleaned up.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
 (def-interp-proc find-and-take (me places description &key (camera (widest-camera)) (hand 0) (bin 0)
                                                            (rounds 12))
-  "Visit PLACES, points of the map, in turn, at most ROUNDS times, and look for a thing that fits
-DESCRIPTION. Stow the first such thing in BIN. ME is the robot's reckoning. Return true. Fails with
-:NOT-FOUND."
+  "Visit PLACES, points of the map, in turn, at most ROUNDS times. Stow in BIN the first thing found
+that fits DESCRIPTION. ME is the robot's reckoning. Return true. Fails with :NOT-FOUND."
   (let ((taken nil))
     (n-times rounds UNTIL taken
       (dolist (place places)
@@ -60,8 +58,7 @@ point. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
 ;;; Tidying.
 
 (def-interp-proc tidy-once (me places description camera hand bin)
-  "Find a thing that fits DESCRIPTION near one of PLACES and stow it in BIN. Return true if a thing
-was found."
+  "Find a thing near PLACES that fits DESCRIPTION and stow it in BIN. Return true if one was found."
   (handle-failure ((:not-found () (return nil)))
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 

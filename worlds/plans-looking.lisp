@@ -20,8 +20,7 @@ TYPE is :LOCAL or :NON-LOCAL."
            (vref camera-moved* camera) (vref camera-movement-error* camera)))
 
 (def-interp-proc scan-for-thing (camera description &key (type :non-local) (rounds 2))
-  "Turn CAMERA until it sees something that fits DESCRIPTION, at most ROUNDS times round. Return a
-designator or NIL."
+  "Turn CAMERA until a designator fits DESCRIPTION, at most ROUNDS times round. Return that or NIL."
   (let ((found nil)
         (views (* rounds (ceiling 2pi (rpl-camera-field-of-view camera)))))
     (n-times views UNTIL found
@@ -31,8 +30,7 @@ designator or NIL."
     found))
 
 (def-interp-proc look-again (camera description)
-  "Look for something that fits DESCRIPTION where CAMERA points, at most four times. Return a
-designator or NIL."
+  "Look where CAMERA points, at most four times. Return a designator that fits DESCRIPTION, or NIL."
   (let ((found nil))
     (n-times 4 UNTIL found
       (setf found (first (look-for-things camera :non-local description))))
@@ -54,8 +52,7 @@ Return a local designator of this thing, or NIL."
 ;;; Approaching.
 
 (def-interp-proc go-round (me attempt)
-  "Drive the robot of the reckoning ME 1.5 metres aside, to the right if ATTEMPT is even, else to
-the left."
+  "Drive the robot of the reckoning ME 1.5 metres aside: right if ATTEMPT is even, else left."
   (turn-by (if (evenp attempt) 1.2 -1.2))
   (drive-by 1.5)
   (reckon me))

@@ -43,9 +43,8 @@ code or NIL."
 ;;; Obstacles.
 
 (def-interp-proc feel-ahead (me)
-  "Find out what stopped the robot of the reckoning ME, by driving slowly ahead. If a wall did,
-correct the reckoning; if a thing did, remember it as an obstacle. Return :WALL or :THING, or NIL if
-nothing is ahead any more."
+  "Drive slowly ahead to find what stopped the robot of the reckoning ME. If a wall did, correct ME;
+if a thing did, remember it as an obstacle. Return :WALL, :THING, or NIL if nothing is ahead."
   (rpl-robot-set-speed .1)
   (rpl-robot-goto-wall)
   (if (wait-for robot-stopped* :timeout 12)
@@ -73,8 +72,7 @@ stopped the robot, else NIL."
            (vref camera-input* camera) (vref camera-designators* camera)))
 
 (defun nearest-ahead (designators)
-  "Return the designator in DESIGNATORS that is nearest to the robot's heading, within .7 radians,
-or NIL."
+  "Return the one of DESIGNATORS nearest to the robot's heading, within .7 radians, or NIL."
   (flet ((off (designator) (abs (angle-difference (!_angle designator) 0))))
     (let ((best (first (sort (copy-list designators) #'< :key #'off))))
       (and best (< (off best) .7) best))))
@@ -182,8 +180,7 @@ for a thing to move away; every third time turn and drive off."
   (and (listp value) (eql count (list-length value)) (every #'realp value)))
 
 (defun check-arguments (operator &rest arguments)
-  "Signal WRONG-ARGUMENT for the first of ARGUMENTS, lists (fine-p name value expected), that
-OPERATOR cannot use."
+  "Signal WRONG-ARGUMENT for the first wrong one of ARGUMENTS, lists (fine-p name value expected)."
   (loop for (fine-p name value expected) in arguments
         unless fine-p do (ars-magna.base:reject-argument operator name value expected)))
 

@@ -1,15 +1,13 @@
 ;;;; plans-reckoning.lisp -- dead reckoning: a robot's estimate of its position, and corrections.
 
-;;; For plans that find their way on a map. A RECKONING begins at a given position and has its own
-;;; odometer. Walls met and doorways sensed correct it. Only HERE reads the true
-;;; position, for the start of a plan.
+;;; For plans that use a map. A RECKONING begins at a given position and has its own odometer. Walls
+;;; met and doorways sensed correct it. Only HERE reads the true position, to start a plan.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
 
 (defstruct (reckoning (:constructor make-reckoning (chart odometer x y heading)) (:copier nil))
-  "A robot's estimated position on its map, the metres driven, and the obstacles found. HEADING is
-in radians."
+  "A robot's estimated position on its map, metres driven, obstacles found. HEADING is in radians."
   (chart nil :type chart :read-only t)
   (odometer nil :read-only t)
   (x 0d0 :type real)
@@ -21,12 +19,10 @@ in radians."
   (trouble 0 :type fixnum))
 
 (defun here (robot)
-  "Return the true position and heading of ROBOT, a list (x y heading). Plans use this list as their
-start."
+  "Return the true position and heading of ROBOT, a list (x y heading). Plans start from that list."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
-;;; Nothing marks the end of a reckoning. So there are eight odometers for them, and a new reckoning
-;;; takes the one that was taken longest ago.
+;;; Nothing marks the end of a reckoning. So each new one takes, of eight odometers, the oldest.
 
 (defparameter *reckoning-names* '(reckoning reckoning-2 reckoning-3 reckoning-4 reckoning-5
                                   reckoning-6 reckoning-7 reckoning-8)
@@ -40,8 +36,7 @@ start."
 
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
   "Return a reckoning of ROBOT (default: the plan's robot) that begins at START, a list (x y
-heading). The last eight reckonings of a robot can be used side by side; older reckonings are no
-longer valid."
+heading). The last eight reckonings of a robot are valid side by side, older reckonings are not."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
                     (ars-magna.robot:make-odometer robot (next-odometer-name robot))
@@ -141,16 +136,14 @@ of at most 90 for each cell. Remove the shown way, because it may no longer be t
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
 
 (defun show-way-to (me chart goal)
-  "Show in pictures the way of the robot of the reckoning ME on CHART to GOAL, unless pictures show
-this way already."
+  "Show in pictures the way of the robot of the reckoning ME on CHART to GOAL, if not yet shown."
   (let ((end (nearest-free-point chart goal)))
     (when (and end (not (way-shown-to-p me end)))
       (let ((start (nearest-free-point chart (reckon me))))
         (show-way me (and start (find-way chart start end)))))))
 
 (defun next-step-of (me goal)
-  "Return the next step of the robot of the reckoning ME to GOAL, as NEXT-STEP does. Show the way in
-pictures."
+  "Return the NEXT-STEP of the robot of the reckoning ME to GOAL, and show the way in pictures."
   (let ((chart (current-chart me)))
     (show-way-to me chart goal)
     (next-step chart (reckon me) goal)))
@@ -184,8 +177,7 @@ its map. Return T. If no wall is within two metres, change nothing and return NI
                         (return-from correct-by-wall t)))))
 
 (defun doorway-nearby (me)
-  "Return the cell of the doorway nearest to the estimated position of ME, or NIL if no doorway is
-within 2.5 metres."
+  "Return the cell of the doorway nearest to the estimate of ME, within 2.5 metres, or NIL."
   (destructuring-bind (x y) (reckon me)
     (let ((best nil) (least 2.5))
       (loop for dx from -3 to 3

@@ -32,8 +32,7 @@ metres; NIL if there is no way."
     (and start (way-cost chart start place))))
 
 (defun nearest-place (me places left dice)
-  "Return the place in LEFT with the cheapest way for the robot of the reckoning ME; the first place
-if the robot can reach none."
+  "Return the one of LEFT with the cheapest way for the robot of ME; the first if there is no way."
   (declare (ignore places dice))
   (flet ((straight (place) (distance-left me place)))
     (let ((nearest (first left)) (least nil))
@@ -52,8 +51,7 @@ if the robot can reach none."
       (first (look-for-things camera :non-local description))))
 
 (def-interp-proc look-round (camera description)
-  "Turn CAMERA until it sees something that fits DESCRIPTION, at most once round. Return a
-designator or NIL."
+  "Turn CAMERA until a designator fits DESCRIPTION, at most once round. Return that or NIL."
   (let ((seen nil))
     (n-times (ceiling 2pi (rpl-camera-field-of-view camera)) UNTIL seen
       (setf seen (look-near-and-far camera description))
@@ -62,8 +60,7 @@ designator or NIL."
     seen))
 
 (def-interp-proc make-out (me camera seen description)
-  "Drive the robot of the reckoning ME to the designator SEEN. Return true if the thing there fits
-DESCRIPTION."
+  "Drive the robot of ME to the designator SEEN. Return true if the thing there fits DESCRIPTION."
   (handle-failure ((:not-reached () (return nil)))
     (approach-thing me camera seen description)
     (if (confirm-thing camera description) t nil)))

@@ -9,8 +9,7 @@
 (in-readtable :nisp)
 
 (defun dice-for (purpose)
-  "Return new dice for PURPOSE, a symbol. The dice depend only on PURPOSE and the seed of the
-current world."
+  "Return new dice, which depend only on PURPOSE, a symbol, and the seed of the current world."
   (ars-magna.base:make-dice (world-seed *world*) purpose))
 
 ;;; Before.

@@ -2,16 +2,14 @@
 
 ;;; A floor to import if you have none: thirteen metres by ten, a corridor between five rooms, a
 ;;; pixel for each tenth of a metre. Walls are two pixels thick and doorways ten wide. There are the
-;;; errors of a real scanner: some pixels beside walls are occupied, some pixels of walls are
-;;; missing, and the areas behind walls and inside a cupboard are unknown. The same code makes the
-;;; same bytes.
+;;; errors of a real scanner: some pixels beside walls are occupied, some of walls are missing, and
+;;; the areas behind walls and inside a cupboard are unknown. The same code makes the same bytes.
 
 (in-package :ars-worlds)
 
 (defparameter *ward-rooms*
   '((8 8 49 39) (48 8 89 39) (88 8 121 39) (8 60 71 91) (70 60 121 91) (8 38 121 61))
-  "Lists (x0 y0 x1 y1): the rooms of the ward, then its corridor, each from outer wall to outer
-wall.")
+  "Lists (x0 y0 x1 y1): the rooms of the ward, then its corridor, from outer wall to outer wall.")
 
 (defparameter *ward-doors*
   '((20 38 29 39) (60 38 69 39) (100 38 109 39) (30 60 39 61) (90 60 99 61))
@@ -40,8 +38,7 @@ wall.")
              (some (lambda (room) (in-wall-of-room-p x y room)) *ward-rooms*)))))
 
 (defun ward-seen-p (x y)
-  "True if the scanner has seen the pixel (X, Y), which is neither behind walls nor in the
-cupboard."
+  "True if the scanner has seen the pixel (X, Y), neither behind walls nor in the cupboard."
   (and (in-box-p x y '(8 8 121 91))
        (not (in-box-p x y '(113 67 119 79)))))
 

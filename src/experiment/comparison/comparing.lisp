@@ -26,8 +26,7 @@ MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
           known
           (mapcar #'known-name (ensure-list measure))))))
 
-;;; Comparisons. PAIRS are lists of two samples of one table; if PLACE is not NIL, the two differ in
-;;; that factor, all else equal.
+;;; PAIRS are lists of two samples of one table that differ only in the factor PLACE, if not NIL.
 
 (defun contrast-of-conditions (results first second place)
   "Return a contrast, still without differences, of the samples FIRST and SECOND of RESULTS. Factors

@@ -144,8 +144,7 @@
         "the interval leaves out 0, but it is an approximation, and p is above .05: p decides")))
 
 (defun no-difference-text (difference)
-  "Return a text on how large DIFFERENCE can be, or on why it is not significant in spite of its
-interval."
+  "Return a text on how large DIFFERENCE can be, or why it is not significant despite its interval."
   (let ((low (paired-low difference)) (high (paired-high difference)))
     (if (<= low 0 high)
         (format nil "if there is one, it is at most ~A. This bound is right about 95 times in 100"

@@ -62,8 +62,7 @@ values are the names of series, if there is only one such factor."
                             title chunk)))
 
 (defun panels (samples places factors &optional where)
-  "Return panels for SAMPLES, as few as can hold all series. The factors with the indices PLACES in
-FACTORS make the series."
+  "Return the fewest panels for SAMPLES. The FACTORS with the indices PLACES make the series."
   (let ((series (group-series samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (split-into-panels series where title))

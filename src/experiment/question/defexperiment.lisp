@@ -7,8 +7,7 @@
 ;;; Expanding.
 
 (defun value-form (name form)
-  "Return the form that evaluates FORM, a value of the factor NAME. A thinking mode that is a list
-needs no quote."
+  "Return the form that evaluates FORM, a value of NAME. Lists as thinking modes need no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)

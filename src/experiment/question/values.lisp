@@ -20,8 +20,7 @@
   "The maximum number of characters of a text in a table.")
 
 (defun address-end (text start)
-  "Return the end of the address that begins at START in TEXT, as in #<HASH-TABLE {10042BD5D3}>, or
-NIL if there is none."
+  "Return the end of the address at START in TEXT, as in #<HASH-TABLE {10042BD5D3}>; else NIL."
   (let ((end (and (char= #\{ (char text start))
                   (position #\} text :start start))))
     (and end (> end (+ 6 start))

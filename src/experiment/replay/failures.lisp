@@ -6,8 +6,7 @@
 ;;; in a continuation or kicker need not end its trial; so a group may also have succeeded.
 
 (defun failure-groups (sample)
-  "Return lists (trials outcome reason error) for groups of trials of SAMPLE that failed or had an
-error, the largest first."
+  "Return groups (trials outcome reason error) of failures and errors of SAMPLE, the largest first."
   (let ((known (make-hash-table :test 'equal)) (keys '()))
     (loop for trial across (sample-trials sample)
           for outcome across (sample-outcomes sample)

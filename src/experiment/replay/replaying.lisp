@@ -117,8 +117,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
                                            (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
-  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. STOP is a function that
-leaves the trial."
+  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. STOP leaves the trial."
   (let ((pace (and rate (paced-gate rate))))
     (lambda (simulation)
       (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))

@@ -184,7 +184,7 @@ Return KIND."
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun interim-look-number (trials)
-  "Return the number of the interim look after TRIALS trials of each condition; else NIL."
+  "Return the number of the interim look after TRIALS trials of each condition, or NIL."
   (loop for look from 1
         for count = (count-at-look look)
         while (<= count trials)

@@ -111,8 +111,7 @@ a form that replays an example."
             (kind-p :mean))))
 
 (defun interim-looks-text (width summaries)
-  "Return sentences on the confidence of intervals of SUMMARIES, if trials were added until the
-intervals were WIDTH wide."
+  "Return sentences on the confidence of SUMMARIES if trials ran until intervals were WIDTH wide."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
     (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
                  after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~

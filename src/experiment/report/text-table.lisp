@@ -32,8 +32,7 @@ other lines with as many spaces."
 
 (defstruct (text-column (:constructor %make-text-column (heading cells anchor width))
                         (:copier nil))
-  "A column of a text table. HEADING and CELLS are lists of lines, WIDTH characters wide, aligned at
-their :START or :END."
+  "A column. HEADING and CELLS are lists of lines of WIDTH characters, aligned at :START or :END."
   (heading '() :type list :read-only t)
   (cells '() :type list :read-only t)
   (anchor :start :type (member :start :end) :read-only t)

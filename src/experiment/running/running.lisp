@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-;;; A second start runs the trials that have no row. So a stopped experiment is continued by
-;;; starting it again. Rows are written as trials end and sorted at the end, so the table is the
-;;; same whatever ran which trial when.
+;;; A second start runs the trials without a row, and so continues a stopped experiment. Rows are
+;;; written as trials end and sorted at the end, so the table is the same whatever ran when.
 
 ;;; Rows that exist already.
 

@@ -30,10 +30,9 @@ results are then left, and the result or NIL."
     (lparallel:end-kernel :wait t)))
 
 (defun call-by-workers (function count &key (pulse (constantly nil)) (stop (constantly nil)))
-  "Call FUNCTION in each of COUNT threads with the thread's number, from 1, and wait until all have
-returned. Call the function PULSE now and then meanwhile. At the end, also after a THROW, call the
-function STOP, which should make the threads return; threads that do not return are ended. Errors of
-FUNCTION are signalled here."
+  "Call FUNCTION in COUNT threads with the thread's number, from 1, and wait until all return. Call
+PULSE now and then meanwhile. At the end, also after a THROW, call STOP, which should make the
+threads return; threads that do not return are ended. Errors of FUNCTION are signalled here."
   (let* ((lparallel:*kernel* (lparallel:make-kernel
                               count :name "trials"
                               ;; Threads that are ended would print a message.
@@ -162,7 +161,7 @@ unless the function STOPPING-P returns true."
           (return-from call t))))))
 
 (defun call-within-seconds (function seconds)
-  "Call FUNCTION. If FUNCTION takes longer than SECONDS, leave it and return true. NIL is no limit."
+  "Call FUNCTION. If FUNCTION takes longer than SECONDS (NIL: no limit), leave it and return true."
   (block call
     (let ((open-p t))
       (flet ((leave () (when open-p (return-from call t))))
@@ -173,9 +172,8 @@ unless the function STOPPING-P returns true."
     nil))
 
 (defun run-trial-in-worker (experiment condition trial stopping-p &optional seconds)
-  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS, without a limit
-if that is NIL. Return the trial's result, even if the trial ends the thread, unless the function
-STOPPING-P returns true."
+  "Run TRIAL of CONDITION of EXPERIMENT in a worker's thread, for at most SECONDS (NIL: no limit).
+Return the trial's result, even if the trial ends the thread, unless STOPPING-P returns true."
   (let* ((seed (trial-seed experiment trial)) (late-p nil)
          (result (make-result condition trial seed)))
     (if (call-catching-thread-end

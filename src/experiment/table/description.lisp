@@ -175,8 +175,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 ;;; What has changed.
 
 (defun recorded-parts (condition directory)
-  "Return the lines for the parts of the condition named CONDITION in experiment.txt in DIRECTORY;
-NIL if there are none."
+  "Return the lines for the parts of CONDITION, a name, in experiment.txt in DIRECTORY, or NIL."
   (let ((lines (description-lines directory))
         (title (format nil "= ~A" condition)))
     (loop for line in (rest (member title lines :test #'string=))

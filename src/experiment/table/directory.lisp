@@ -64,9 +64,8 @@
 ;;; Writing.
 
 (defun remove-incomplete-line (file columns)
-  "Remove an incomplete last line, as a killed process leaves it, from FILE, a table with COLUMNS.
-Return true if FILE has lines left. If FILE is not a table with COLUMNS, leave FILE unchanged and
-signal DAMAGED-TABLE."
+  "Remove an incomplete last line, left by a killed process, from FILE, a table with COLUMNS. Return
+true if FILE has lines left. If FILE is no such table, change nothing and signal DAMAGED-TABLE."
   (when (existing-path file)
     (check-file-header file columns)
     (let ((end (map-lines (constantly nil) file)))

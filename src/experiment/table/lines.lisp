@@ -44,8 +44,7 @@ from 1. Return the position after the last complete line."
                         (cut text 200) header))))))
 
 (defun map-rows (function file)
-  "Call FUNCTION with the texts of each row of the table FILE, and the position and number of its
-line. Signals DAMAGED-TABLE."
+  "Call FUNCTION with texts, position and line number of each row of FILE. Signals DAMAGED-TABLE."
   (let ((columns (columns-of-file file)))
     (map-lines (lambda (line start number)
                  (when (> number 1)
@@ -149,9 +148,8 @@ value of each factor."
 ;;; Writing them in order.
 
 (defun call-replacing-table (function file &optional (check #'identity))
-  "Call FUNCTION with a stream to a new file, then CHECK with the path of the new file; then replace
-the table FILE by the new file. If the new file cannot be written, signal DAMAGED-TABLE and leave
-FILE unchanged."
+  "Call FUNCTION with a stream to a new file, then CHECK with its path; then replace the table FILE
+by the new file. If that cannot be written, signal DAMAGED-TABLE and leave FILE unchanged."
   (call-reporting-file-errors (lambda () (call-replacing-file function file :check check))
                               file "the file cannot be replaced (~A). It is unchanged."))
 
@@ -183,9 +181,8 @@ FILE unchanged."
         always (row-before-p (aref rows (1- index)) (aref rows index))))
 
 (defun write-rows (rows line-of out)
-  "Write the lines of ROWS, which are sorted, to OUT, one line for each trial. Return the number of
-lines. LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two rows of the same trial
-differ."
+  "Write the lines of ROWS, which are sorted, to OUT, one for each trial. Return the number of
+lines. LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two rows of a trial differ."
   (loop with last = nil and last-line = nil and count = 0
         for row across rows
         for line = (funcall line-of (indexed-file row) (indexed-start row))
@@ -198,9 +195,8 @@ differ."
 
 (defun write-sorted-rows (files file order &optional (check #'identity))
   "Write the rows of the tables FILES to FILE, sorted, each row once. FILE may be one of FILES.
-Return the number of rows. ORDER is a list of names of conditions. CHECK is called with the path of
-the new table before it replaces FILE. Signals DAMAGED-TABLE and MISUSE; after an error FILE is
-unchanged."
+Return the number of rows. ORDER is a list of condition names. CHECK is called with the new table's
+path before that replaces FILE. Signals DAMAGED-TABLE and MISUSE; errors leave FILE unchanged."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)

@@ -90,8 +90,7 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
     count))
 
 (defun count-rows (directory)
-  "Return the number of rows in DIRECTORY and the shards below it. A trial counts once for each
-table that has it."
+  "Return the number of rows in DIRECTORY and its shards. A trial counts once for each such table."
   (loop for directory in (directories-with-rows directory)
         sum (1- (count-whole-lines (rows-file (directory-path directory))))))
 

@@ -161,8 +161,7 @@ Signals DAMAGED-TABLE."
                      (series-columns experiment))))
 
 (defun series-complete-p (index texts)
-  "True if INDEX has all lines of the trial with the row TEXTS, or if INDEX is NIL because there are
-no series."
+  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL, as without series."
   (or (null index)
       (zerop (expected-line-count texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))

@@ -192,10 +192,9 @@ and an empty table are not noted, because variables for data often have such val
 ;;;; The number
 
 ;;; The parts of a fingerprint are lists (kind name number): the experiment's text, the condition's
-;;; values, the simulator, the definitions that a journal of such a run would have, and what the
-;;; forms can reach. Rows with equal fingerprints should be equal functions of the seed; a resumed
-;;; experiment checks this with a trial. All other code in the files of these parts counts, too,
-;;; except other experiments.
+;;; values, the simulator, the definitions in a journal of such a run, and what the forms can reach.
+;;; Rows with equal fingerprints should be equal functions of the seed; a resumed experiment checks
+;;; this with a trial. All other code in the parts' files counts, except other experiments.
 
 (defparameter *file-digests* (make-hash-table :test 'equal :synchronized t)
   "A table from names of files to digests. A saved Lisp needs the table if its files are gone.")

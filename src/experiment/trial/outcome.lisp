@@ -4,9 +4,8 @@
 
 (export '(call-until-error))
 
-;;; An outcome is "success", "failure", "limit" (no ticks were left), "error" (the trial's own code
-;;; signalled one) or "timeout" (it took too much real time). A failure has a short reason, which
-;;; several trials can share.
+;;; An outcome is "success", "failure", "limit" (no ticks left), "error" (the trial's code signalled
+;;; one) or "timeout" (too much real time). A failure has a short reason, which trials can share.
 
 (define-record (result (:constructor make-result (condition trial seed)))
   "The result of a trial."
@@ -60,8 +59,7 @@
                   (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
 (defun error-in-plan (values)
-  "Return the text of the Lisp error by which a plan failed, if VALUES are those of RUN-PLAN; else
-an empty text."
+  "Return the text of the error of a failed plan, if VALUES are those of RUN-PLAN; else \"\"."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))

@@ -118,9 +118,8 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
         (result-error result) (plain-text text)))
 
 (defun outcome-of-run (experiment values)
-  "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If VALUES are
-not from RUN-PLAN, and a plan waits for something that can never happen, the trial fails with the
-reason deadlock."
+  "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If these are
+not from RUN-PLAN, and a plan can never continue, the trial fails with the reason deadlock."
   (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
     (if (and (success-p outcome)
              (not (experiment-until experiment))
@@ -200,8 +199,7 @@ first of VALUES, the values of :run. Such a failure is true, so :run may have ta
                  experiment result))
 
 (defun run-trial (experiment condition trial &key gate)
-  "Run TRIAL, a number, of CONDITION of EXPERIMENT, with GATE as for CALL-IN-TRIAL. Return the
-trial's result."
+  "Run TRIAL, a number, of CONDITION of EXPERIMENT; GATE is as for CALL-IN-TRIAL. Return a result."
   (let ((result (make-result condition trial (trial-seed experiment trial))))
     (call-noting-errors
      (lambda ()
