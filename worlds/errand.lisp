@@ -70,7 +70,7 @@ of the robot shows that another program took over the robot, end ERRAND instead.
 ;;; Finding.
 
 (defun find-target (errand)
-  "Search where the camera points. Track and approach the thing found, or if none look elsewhere."
+  "Search where the camera points. Track and approach the thing found; if none, look elsewhere."
   (camera-get-object-designator (errand-camera errand) :non-local (errand-description errand)
     (continuation (err camera designator)
       (cond ((must-end-p errand err) (end-errand errand :interrupt))
@@ -110,7 +110,7 @@ of the robot shows that another program took over the robot, end ERRAND instead.
   (track-and-continue errand designator #'go-to-target #'find-target))
 
 (defun go-to-target (errand)
-  "Drive to what the camera tracks. If something blocks the way, check whether the thing is near."
+  "Drive to what the camera tracks. If something blocks the way, check whether the target is near."
   (robot-goto-designator (robot-to-command errand) (errand-camera errand)
     (continuation (err robot camera designator)
       (call-unless-interrupted errand err
@@ -154,7 +154,7 @@ then take the step NEXT with the last designator. After LOOKS searches take the 
                       #'check-target))
 
 (defun grasp-tracked (errand designator)
-  "Grasp DESIGNATOR, which the camera tracks. If too heavy, it may be the wrong thing: leave it."
+  "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, leave it: it may be wrong."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
       (call-unless-interrupted errand err

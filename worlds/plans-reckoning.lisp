@@ -22,7 +22,7 @@
   "Return the true position and heading of ROBOT, a list (x y heading). Plans start from that list."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
-;;; Nothing marks the end of a reckoning. So each new one takes, of eight odometers, the oldest.
+;;; Nothing marks the end of a reckoning. So a new reckoning takes the oldest of eight odometers.
 
 (defparameter *reckoning-names* '(reckoning reckoning-2 reckoning-3 reckoning-4 reckoning-5
                                   reckoning-6 reckoning-7 reckoning-8)
@@ -36,7 +36,7 @@
 
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
   "Return a reckoning of ROBOT (default: the plan's robot) that begins at START, a list (x y
-heading). The last eight reckonings of a robot are valid side by side, older reckonings are not."
+heading). The last eight reckonings of a robot are valid side by side; older reckonings are not."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
                     (ars-magna.robot:make-odometer robot (next-odometer-name robot))

@@ -2,7 +2,7 @@
 
 ;;; A floor to import if you have none: thirteen metres by ten, a corridor between five rooms, a
 ;;; pixel for each tenth of a metre. Walls are two pixels thick and doorways ten wide. There are the
-;;; errors of a real scanner: some pixels beside walls are occupied, some of walls are missing, and
+;;; errors of a real scanner: some pixels beside walls are occupied, some in walls are missing, and
 ;;; the areas behind walls and inside a cupboard are unknown. The same code makes the same bytes.
 
 (in-package :ars-worlds)

@@ -155,7 +155,7 @@ together; tests over all pairs are corrected separately."
 
 (defun changes-of-pair (pair after before)
   "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
-experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if no parts are listed."
+experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is missing."
   (let ((now (recorded-parts (sample-condition (first pair)) after))
         (then (recorded-parts (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))

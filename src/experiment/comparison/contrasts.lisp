@@ -194,7 +194,7 @@ sample of RESULTS and a sample of OTHER-RESULTS."
                        collect (list seed a b))))
 
 (defun means-by-seed (values)
-  "VALUES are lists (seed a b) of numbers. Return a list of the means of A for each seed, and of B."
+  "VALUES are lists (seed a b) of numbers. Return two lists: A's and B's means for each seed."
   (let ((sums (make-hash-table)) (seeds '()))
     (loop for (seed a b) in values
           for entry = (or (gethash seed sums)

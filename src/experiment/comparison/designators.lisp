@@ -176,7 +176,7 @@ BASE is NIL if SECOND is :ALL."
             (and base (level-title results (list place base))))))
 
 (defun level-pair-samples (results level-pair)
-  "Return pairs of samples that have the levels of LEVEL-PAIR and else are equal."
+  "Return pairs of samples that have the levels of LEVEL-PAIR and are otherwise equal."
   (destructuring-bind (place level base) level-pair
     (loop for other in (if base (list base) (remove level (levels results place) :test #'string=))
           append (pairs-differing-in-factor results place level other))))

@@ -20,7 +20,7 @@
   "The maximum number of characters of a text in a table.")
 
 (defun address-end (text start)
-  "Return the end of the address at START in TEXT, as in #<HASH-TABLE {10042BD5D3}>; else NIL."
+  "Return the end of the address at START in TEXT, as in #<HASH-TABLE {10042BD5D3}>, or NIL."
   (let ((end (and (char= #\{ (char text start))
                   (position #\} text :start start))))
     (and end (> end (+ 6 start))

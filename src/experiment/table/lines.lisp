@@ -44,7 +44,7 @@ from 1. Return the position after the last complete line."
                         (cut text 200) header))))))
 
 (defun map-rows (function file)
-  "Call FUNCTION with texts, position and line number of each row of FILE. Signals DAMAGED-TABLE."
+  "Call FUNCTION with each row's texts, position and line number in FILE. Signals DAMAGED-TABLE."
   (let ((columns (columns-of-file file)))
     (map-lines (lambda (line start number)
                  (when (> number 1)

@@ -59,7 +59,7 @@
                   (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
 (defun error-in-plan (values)
-  "Return the text of the error of a failed plan, if VALUES are those of RUN-PLAN; else \"\"."
+  "Return the text of the Lisp error of a failed plan, if VALUES are those of RUN-PLAN; else \"\"."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
