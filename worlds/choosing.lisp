@@ -38,8 +38,7 @@ world's seed decide where. People move the trolley among PLACES at times. Return
 
 (def-interp-proc choose-way (me which first second &key (trials 5))
   "Drive the robot of the reckoning ME by the way FIRST or SECOND, lists of points with the same
-end. WHICH is
-:FIRST, :SECOND, :ANY (at random) or :BEST (by TRIALS rollouts of each way)."
+end. WHICH is :FIRST, :SECOND, :ANY (at random) or :BEST (by TRIALS rollouts of each way)."
   (case which
     (:first (follow-way me first))
     (:second (follow-way me second))

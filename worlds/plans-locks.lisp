@@ -25,8 +25,7 @@ fluent's value is NIL until the manipulation ends, then the error code, or :DONE
 (def-interp-proc manipulate-thing (name hand camera description &key with)
   "Do the manipulation NAME with HAND on something next to the robot that fits DESCRIPTION; WITH
 describes a tool in HAND, such as a key. Look for the thing and the tool before each attempt. Fails
-with
-:WILL-NOT-DO after twelve attempts."
+with :WILL-NOT-DO after twelve attempts."
   (insistently (error (let ((target (look-closely camera description))
                             (tool (if with (look-closely camera with)))
                             (part (robot-hand (rpl-robot) hand)))

@@ -113,11 +113,10 @@ or the directory cannot be made."
   "Save in FILE a map of the world of CONDITION of EXPERIMENT with the paths of the robots in
 TRIALS: a number of first trials, or a list of trial numbers. An existing FILE is replaced. Colours
 show the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION
-is as for FIND-CONDITION. PART
-(left top right bottom), in cells, is the part of the map, by default all. TITLE replaces the
-experiment's question. FILE and the other arguments are those of SAVE-PICTURE. Return the file's
-truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if FILE is a PNG file and rsvg-convert is
-missing."
+is as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map, by default
+all. TITLE replaces the experiment's question. FILE and the other arguments are those of
+SAVE-PICTURE. Return the file's truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if FILE
+is a PNG file and rsvg-convert is missing."
   (declare (ignore part title layers in-color scale))
   (picture-kind 'save-ways-picture file)
   (let* ((experiment (find-experiment experiment))
