@@ -33,8 +33,7 @@ stays."
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))
 
 (defun no-other-stays (whereabouts)
-  "Return a fluent that is true while no task stays, except the current task and the tasks around
-it."
+  "Return a fluent that is true while only the current task and the tasks around it stay."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
                   (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
@@ -66,8 +65,7 @@ attempts to return."))
   (and (get-properties (rest (second form)) (list key)) t))
 
 (defun at-location-text (place there go attempts body)
-  "Return plan text that runs BODY at PLACE. GO brings the robot to PLACE, and THERE is true at
-PLACE."
+  "Return plan text that runs BODY at PLACE. GO brings the robot there, and THERE is true there."
   (with-gensyms (at most left here stay done again lost)
     `(let* ((,at ,place) (,most (check-attempts ,attempts)) (,left ,most)
             (,here (whereabouts)) (,stay nil))

@@ -3,8 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 ;;; The task that runs one of these starts a child for each branch, in order, and waits. When the
-;;; outcome is known, the remaining children evaporate, newest first. When all are gone, the task
-;;; goes on.
+;;; outcome is known, the remaining children evaporate, newest first. Then the task goes on.
 ;;;
 ;;; A branch evaporated from outside of the construct counts as ended, neither succeeded nor failed.
 
@@ -12,8 +11,7 @@
   `(vector ,@(loop for branch in branches collect (plan-code branch scope))))
 
 (defun start-branches (branches task environment)
-  "Start each of BRANCHES as a part of TASK. TASK then waits for its parts. Return what a step
-returns."
+  "Start each of BRANCHES as a part of TASK, and await the parts. Return what a step returns."
   (loop for branch across branches
         for index from 0
         do (start-branch branch task environment index (task-level task)))
@@ -91,8 +89,7 @@ attempts left, each a cons (node . environment)."
   (loop for attempt across attempts collect (cons attempt environment)))
 
 (defun in-random-order (attempts environment dice)
-  "Do as IN-WRITTEN-ORDER, in a random order drawn from DICE. Without DICE, keep the order as
-written."
+  "Do as IN-WRITTEN-ORDER, in an order drawn from DICE; without DICE, keep the order as written."
   (loop with left = (in-written-order attempts environment dice)
         while left
         collect (let ((chosen (if dice (roll-element left dice) (first left))))

@@ -63,12 +63,10 @@
 (defparameter *constructs-without-failures*
   '("SEQ" "PAR" "PURSUE" "N-TIMES" "WAIT-FOR" "WAIT-TIME" "WAIT-UNTIL" "SET-VALUE" "PULSE"
     "FLUENT-VALUE" "VREF" "WHENEVER" "WITH-POLICY" "WITH-VALVE")
-  "Names of operators that do not fail with the error code of a command, unless a form in them
-does.")
+  "Names of operators that fail with the error code of a command only if a form in them does.")
 
 (defun may-fail-with-class-p (form code)
-  "True if FORM, in a plan, may fail with class CODE. Uses what is known of the functions that FORM
-calls."
+  "True if FORM, in a plan, may fail with class CODE, by what is known of the functions in FORM."
   (let ((operator (first form)))
     (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
                            (or (not (keywordp class)) (eq class code))))
@@ -194,8 +192,7 @@ handler. (From CRAM.)"
 
 (addition reset-counter)
 (defmacro reset-counter (counter &environment environment)
-  "Set COUNTER, a counter of WITH-RETRY-COUNTERS, to its initial value, and return that value. (From
-CRAM.)"
+  "Set COUNTER of WITH-RETRY-COUNTERS to its initial value, and return that value. (From CRAM.)"
   (check-counter "reset-counter" counter environment)
   `(setq ,counter ,(start-value-variable counter)))
 

@@ -14,8 +14,7 @@
   (index 0 :type fixnum :read-only t))
 
 (defun parse-pattern (pattern)
-  "Return the shape of PATTERN, in which ?x stands for the variable x, and a list of its variables
-in order."
+  "Return the shape of PATTERN, where ?x stands for the variable x, and its variables in order."
   (let ((holes '()))
     (labels ((hole-of (variable)
                (or (find variable holes :key #'hole-variable)
@@ -29,8 +28,7 @@ in order."
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun shape-matches-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the values of the
-holes."
+  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the holes' values."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -102,8 +100,7 @@ NIL" :writable)
        (not (goal-covers-p goal other))))
 
 (defun choose-goal (operator instance)
-  "Return the goal for OPERATOR and INSTANCE, and the values of its variables. Return NIL if no goal
-matches."
+  "Return the goal for OPERATOR and INSTANCE, and the values of its variables. NIL if none matches."
   (let ((best nil) (values '()))
     (dolist (goal (operator-goals operator) (values best values))
       (multiple-value-bind (matches found)
@@ -161,11 +158,10 @@ otherwise NIL."
 PERCEIVE or BELIEF. BODY is plan text, perhaps after a documentation string. In BODY the variables a
 and b have the values that ?a and ?b match. A variable that occurs twice must match the same value
 twice. A pattern may end in a dot and ?x. The value of the goal is the value of BODY, or the value
-given to SUCCEED-WITH.
-If several patterns match a goal, the most specific one is used, and among equals the one defined
-first. (CRAM uses the first that matches.) A pattern that differs from an older one only in the
-names of its variables replaces it. Signals MALFORMED-DEFINITION. (From CRAM; the variables are as
-in DEF-INTERP-MACRO.)"
+given to SUCCEED-WITH. If several patterns match a goal, the most specific one is used, and among
+equals the one defined first. (CRAM uses the first that matches.) A pattern that differs from an
+older one only in the names of its variables replaces it. Signals MALFORMED-DEFINITION. (From CRAM,
+with variables as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()

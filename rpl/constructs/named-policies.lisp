@@ -7,8 +7,7 @@
 
 (addition policy-p)
 (define-record (policy (:constructor %make-policy (name lambda-list init check recover clean-up)))
-  "A policy: a condition that must hold while a part of a plan runs, and the reactions if it does
-not."
+  "A policy: a condition that must hold while part of a plan runs, and the reactions if it fails."
   (name nil symbol
         "the name of the policy, a symbol; NIL if MAKE-POLICY made the policy" :writable :addition)
   (lambda-list '() list "the lambda list of the policy's clauses" :writable :addition)
@@ -94,9 +93,8 @@ NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
-  "Store VALUE under NAME for the other clauses of a policy, and return VALUE. For use in a clause
-of a policy. VALUE and NAME are evaluated. The value is kept while the policy is in force (from
-CRAM)."
+  "Store VALUE under NAME for the other clauses of a policy, and return VALUE. For use in such a
+clause. VALUE and NAME are evaluated. The value is kept while the policy is in force (from CRAM)."
   (check-in-clause form environment)
   `(store-policy-value ,+use-variable+ ,name ,value))
 
@@ -120,8 +118,7 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
                         environment))))
 
 (defun name-arguments-in (operator form)
-  "Return the name arguments of all calls of OPERATOR in FORM. OPERATOR is POLICY-GET or
-POLICY-SETF."
+  "Return the name arguments of all calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
   (when (consp form)
     (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
             (loop for rest = form then (cdr rest)

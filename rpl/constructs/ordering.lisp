@@ -102,8 +102,7 @@ it is a fluent. WATCHER waits for EARLIER."
       (watch (order-watcher order)))))
 
 (defun checked-orders (pairs task)
-  "Return an order for each of PAIRS, conses (earlier . later), on behalf of TASK. Signals
-WRONG-ARGUMENT and MISUSE."
+  "Return an order of TASK for each of PAIRS (earlier. later). Signals WRONG-ARGUMENT and MISUSE."
   (loop for (earlier . later) in pairs
         do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
                            "a task, such as the name of a :tag, or a fluent")
@@ -124,8 +123,7 @@ forms."
         else collect constraint))
 
 (defun check-order-tag (form name steps scope)
-  "Signal MALFORMED-DEFINITION if NAME, in an :order of FORM, is a symbol that names no tag or
-variable."
+  "Signal MALFORMED-DEFINITION if the symbol NAME, in an :order of FORM, names no tag or variable."
   (unless (or (consp name)
               (member name (tags-in steps))
               (and (symbolp name)
@@ -146,8 +144,7 @@ variable."
 ;;; tagged within a tagged form starts and ends within that.
 
 (defun nested-tags (forms)
-  "Return a list of (outer inner): each pair of tag names in FORMS where the tag inner is inside the
-tag outer."
+  "Return a list of (outer inner): the pairs of tag names in FORMS where inner is inside outer."
   (loop for form in forms
         append (cond ((atom form) '())
                      ((and (eq (first form) :tag) (typep (rest form) '(cons symbol t)))

@@ -6,8 +6,7 @@
 ;;; gives way to it before its next step.
 
 (defun tests-once-p (policy scope)
-  "True if POLICY, plan text, is a test that is made only once. After the test, POLICY fails or does
-nothing that could wait."
+  "True if POLICY, plan text, is a test made only once, after which POLICY fails or does not wait."
   (and (consp policy)
        (operator-in-p policy '("IF" "WHEN" "UNLESS" "COND"))
        (find-call #'fail-p (list policy))

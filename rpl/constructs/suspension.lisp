@@ -44,8 +44,7 @@ status of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 ;;;; Reacting to suspension
 
 (defun run-reaction (reaction task frame)
-  "Run REACTION, a leaf, with the task variables of TASK at FRAME. Errors in REACTION become
-messages."
+  "Run the leaf REACTION with the task variables of TASK at FRAME. Errors in it become messages."
   (let ((*calling-task* task)
         (*asker* task)
         (innermost (shiftf (task-frame task) frame)))
@@ -73,8 +72,7 @@ effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)
    (inside (values (frame-up frame) value))))
 
 (defun evaporate-body (task frame)
-  "Evaporate the part of TASK that runs the body of FRAME, because that part must not continue where
-it is."
+  "Evaporate the part of TASK that runs the body of FRAME, because it must not continue from there."
   (when (eq frame (task-frame task))
     (setf (frame-data frame) nil)
     (mapc #'evaporate (task-children task))))

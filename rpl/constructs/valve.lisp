@@ -26,8 +26,7 @@
   (count 0 fixnum "how many lines the valve has had so far" :writable))
 
 (define-record (claim (:constructor make-claim (task valves priority)))
-  "The request of TASK to own VALVES. TASK waits for its claim, or one of its frames holds the
-claim."
+  "The request of TASK to own VALVES. TASK waits for its claim, or a frame of TASK holds the claim."
   (task nil task)
   (valves '() list "the valves that the claim requests" :export)
   (priority 0 real)
@@ -72,8 +71,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 
 (addition valve-owner)
 (defun valve-owner (valve)
-  "Return the task that owns VALVE, or NIL. If a part of that task owns VALVE as well, return the
-part."
+  "Return the task that owns VALVE, or NIL. If a part of it owns VALVE as well, return the part."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (let ((claims (valve-claims (entity-here valve))))
     (and claims (claim-task (first claims)))))
@@ -96,8 +94,7 @@ part."
            (some-line function (line-behind tree)))))
 
 (defun owner-claims (valve)
-  "Return the owner claims of VALVE, innermost first: the claim of the owner, and those of the tasks
-around the owner."
+  "Return the claims on VALVE of the owner and of the tasks around the owner, innermost first."
   (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
@@ -186,8 +183,7 @@ around the owner."
              (values ahead tree)))))
 
 (defun joined-lines (ahead behind)
-  "Return one tree of the lines of AHEAD and of BEHIND. The lines of BEHIND come after those of
-AHEAD."
+  "Return one tree of the lines of AHEAD and, after those, the lines of BEHIND."
   (cond ((null ahead) behind)
         ((null behind) ahead)
         ((> (line-weight ahead) (line-weight behind))
@@ -248,8 +244,7 @@ AHEAD."
   (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
 
 (defun grant-queued-claims (task)
-  "Grant the claims that TASK and its parts wait for, if they are grantable. TASK has just got back
-a valve."
+  "Grant the grantable claims that TASK, which has just got back a valve, and its parts wait for."
   (let ((awaited (task-awaiting task)))
     (when (and (claim-p awaited) (grantable-p awaited)) (grant-queued-claim awaited)))
   (mapc #'grant-queued-claims (task-children task)))

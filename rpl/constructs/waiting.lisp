@@ -152,16 +152,14 @@ that counts each event, a watcher for any other fluent, and NIL if CONDITION is 
   +parked+)
 
 (defun take-events (source missed)
-  "Remove the events that are handled now from SOURCE: one event if MISSED is :all, otherwise all.
-Signals WRONG-ARGUMENT."
+  "Remove from SOURCE one event if MISSED is :all, otherwise all. Signals WRONG-ARGUMENT."
   (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
   (cond ((not (watcher-p source)))
         ((eq missed :all) (decf (watcher-pending source)))
         (t (setf (watcher-pending source) 0))))
 
 (defun fluent-with-options-p (condition environment)
-  "True if CONDITION, the first argument of a WHENEVER, is a list of a form and keywords and not a
-call."
+  "True if CONDITION, of a WHENEVER, is a list of a form and keywords and not a call."
   (and (typep condition '(cons t (cons keyword)))
        (or (eq :missed (second condition))
            (consp (first condition))
@@ -180,10 +178,9 @@ and the value of :missed. Signals MALFORMED-DEFINITION."
 (define-construct whenever (fluent &body body)
   "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if
 FLUENT is true. A pulse of a network's source pulses the network, if the network is true at that
-instant. WHENEVER ends only by RETURN, failure or evaporation (manual D.4).
-Several events while BODY runs count as one; (FLUENT :missed :once) says the same. With (FLUENT
-:missed :all) as the first argument, or a view with :ALWAYS as FLUENT, BODY runs once for each
-event."
+instant. WHENEVER ends only by RETURN, failure or evaporation (manual D.4). Events while BODY runs
+count as one; (FLUENT :missed :once) says the same. With (FLUENT :missed :all) as the first
+argument, or a view with :ALWAYS as FLUENT, BODY runs once for each event."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
   (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
@@ -211,8 +208,7 @@ event."
 ;;;; Waiting for any condition
 
 (defun wait-until-text (condition)
-  "Return plan text that waits until CONDITION, a form, is true, and returns the value of
-CONDITION."
+  "Return plan text that waits until the form CONDITION is true, and returns the value."
   (with-gensyms (met again value)
     `(block ,met
        (tagbody

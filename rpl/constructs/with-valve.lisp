@@ -21,8 +21,7 @@ stands for. Signals WRONG-ARGUMENT."
     (make-claim task valves priority)))
 
 (defun claim-or-queue (claim task)
-  "Let TASK make CLAIM. Return true if TASK gets the valves at once; otherwise TASK waits in the
-queue."
+  "Let TASK make CLAIM. Return true if TASK gets the valves at once; otherwise TASK queues."
   (cond ((grantable-p claim) (grant-claim claim) t)
         (t (queue-up claim)
            (park task claim)
@@ -30,8 +29,7 @@ queue."
            nil)))
 
 (defun claim-form (priority valves scope)
-  "Return a lambda expression that returns a cons: the value of PRIORITY, and the list of the values
-of VALVES."
+  "Return a lambda expression that returns a cons: the value of PRIORITY, and a list of the valves."
   (dolist (valve valves)
     (when (and (name-without-quote-p valve scope) (fboundp valve))
       (warn-of-style "~A: ~(~A~) is a function, not a variable. Call it: (with-valve ~

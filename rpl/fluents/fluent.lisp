@@ -30,8 +30,7 @@
 
 (define-record (derived (:include fluent)
                         (:constructor %make-derived (name operator sources height)))
-  "A fluent whose value is the value of OPERATOR for the values of SOURCES. SOURCES are fluents and
-other objects."
+  "A fluent whose value is that of OPERATOR for the values of SOURCES, fluents and other objects."
   (operator #'list function)
   (sources '() list)
   (users 0 fixnum :writable)
@@ -120,8 +119,7 @@ view of changes, a cons of this count and KEY of the value" :writable)
 
 (public state)
 (defun state (name)
-  "Return a new fluent that is false at first. NAME is the proposition that the fluent represents
-(manual D.2)."
+  "Return a new fluent, false at first. NAME is the proposition that it represents (manual D.2)."
   (create-fluent name nil))
 
 (addition create-fluent-vector)
@@ -192,8 +190,7 @@ If PULSED-P is true, these fluents are pulsed and never set."
   (eq t (first (gethash name *known-variables*))))
 
 (defun known-vector-variable-p (name)
-  "Return the name of a kind of part, if the variable NAME holds a vector of fluents for such parts;
-or NIL."
+  "Return the kind of part for which the variable NAME holds a vector of fluents; or NIL."
   (let ((kind (first (gethash name *known-variables*))))
     (and (stringp kind) kind)))
 

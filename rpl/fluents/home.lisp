@@ -10,8 +10,7 @@
 ;;; The newest entry of the inbox comes first, the oldest of the outbox.
 
 (defstruct (backlog (:constructor make-backlog ()) (:copier nil))
-  "A queue of derived fluents to recompute, by height; fluents of the same height in order of
-arrival."
+  "A queue of derived fluents to recompute, by height, and at the same height in order of arrival."
   (heads (make-array 8 :initial-element nil) :type simple-vector)
   (tails (make-array 8 :initial-element nil) :type simple-vector)
   (highest 0 :type fixnum))

@@ -13,8 +13,7 @@
   (if (fluent-p source) (fluent-now source) source))
 
 (defun compute (derived)
-  "Return the value of DERIVED, computed from the stored values of its sources. All sources are in
-use."
+  "Return the value of DERIVED, computed from the stored values of its sources, which are in use."
   (declare #.*hot*)                     ; 12 ns for two sources
   (let* ((operator (derived-operator derived))
          (sources (derived-sources derived))
@@ -118,8 +117,7 @@ itself. Signals MISUSE for a vector of fluents."
 
 ;; An error fluent is of use only if it is read.
 (defun was-read-p (fluent)
-  "True if FLUENT was read since the last FORGET-READING, or has ever been in a network, or a task
-waits for FLUENT."
+  "True if FLUENT was read since FORGET-READING, or was ever in a network, or a task waits for it."
   (let ((fluent (entity-here fluent)))
     (and (or (fluent-reading fluent) (fluent-first-watcher fluent)) t)))
 
@@ -143,8 +141,7 @@ waits for FLUENT."
              (and (null value) object (gethash object *known-variables*) t)))))
 
 (defun reject-name-of-fluent (name)
-  "Signal MISUSE if the value of the symbol NAME is a fluent, because the quote is then a mistake.
-Otherwise return NAME."
+  "Return NAME, but signal MISUSE if the symbol's value is a fluent: then the quote is a mistake."
   (if (names-fluent-p name)
       (reject-use "~S is a symbol, not a fluent. Leave out the quote: ~(~:*~A~)." name)
       name))
@@ -264,8 +261,7 @@ because the values of fluents may refer to each other.")
 ;;; which are known; the links between fluents are dropped and made again.
 
 (defun reachable-fluents (watchers)
-  "Return the fluents that WATCHERS watch, all fluents that depend on them, and all fluents that
-they depend on."
+  "Return the fluents that WATCHERS watch, all that depend on them, and all that they depend on."
   (let ((seen (make-hash-table :test 'eq)) (fluents '()))
     (labels ((visit (fluent)
                (unless (gethash fluent seen)

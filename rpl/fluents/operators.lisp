@@ -128,8 +128,7 @@ EVERY-VALUE is AND as a function."
 
 (defun lift-junction (name function absorbing thunks)
   "Return AND (if ABSORBING is NIL) or OR (if ABSORBING is T) of the values of THUNKS. Do not call
-further thunks when the result is certain. From the first value that is a fluent on, the result is a
-network."
+further thunks when the result is certain. From the first fluent on, the result is a network."
   (loop for (thunk . more) on thunks
         for value = (one-fluent (funcall (the function thunk)))
         when (fluent-p value)
@@ -142,8 +141,7 @@ network."
 ;;; The same under the names of the operators, for ordinary code. Each is also a function.
 
 (defmacro define-lifted (&rest operators)
-  "Define functions in the package ARS-MAGNA.RPL.LIFTED with the names of OPERATORS, which are Lisp
-functions."
+  "Define functions in ARS-MAGNA.RPL.LIFTED with the names of OPERATORS, which are Lisp functions."
   `(progn
      ,@(loop for operator in operators
              for name = (find-symbol (symbol-name operator) :ars-magna.rpl.lifted)
@@ -157,16 +155,14 @@ functions."
 (define-lifted not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
-  "Do as Lisp's AND. If the value of one of FORMS is a fluent, return a network of that fluent and
-the remaining forms."
+  "Do as Lisp's AND. If one of FORMS is a fluent, return a network of it and the remaining forms."
   (cond ((null forms) t)
         ((null (rest forms)) (first forms))
         (t `(lift-junction 'and #'every-value nil
                            (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
-  "Do as Lisp's OR. If the value of one of FORMS is a fluent, return a network of that fluent and
-the remaining forms."
+  "Do as Lisp's OR. If one of FORMS is a fluent, return a network of it and the remaining forms."
   (if (rest forms)
       `(lift-junction 'or #'some-value t
                       (list ,@(loop for form in forms collect `(lambda () ,form))))

@@ -10,8 +10,7 @@
 ;;; whose watcher was called for a true value will wake, whatever happens to the fluent afterwards.
 ;;;
 ;;; A pulse notifies the watchers of all dependent fluents that are true at its instant, even if it
-;;; does not change them. The change back afterwards notifies the watchers of what was false at the
-;;; instant.
+;;; does not change them. The change back then notifies the watchers of what was false.
 
 (defvar *propagating* nil
   "NIL, or, while a change spreads through networks, a list of one element. The element is the list
@@ -24,8 +23,7 @@ of views that are true for the instant of the change. Meanwhile networks must no
 ;; Costs 1 ns without a trace.
 (declaim (inline note-change))
 (defun note-change (kind fluent value)
-  "Record in the trace of the current plan runner, if it keeps a trace, that FLUENT has the new
-value VALUE."
+  "Record in the trace of the current plan runner, if any, that FLUENT has the new value VALUE."
   (let* ((home *runner*)
          (function (and home (home-on-change home))))
     (when function (funcall function kind fluent value))))
@@ -54,8 +52,7 @@ value VALUE."
   (when (eq t how) (setf (derived-queued derived) t)))
 
 (defun dequeue (height backlog)
-  "Remove the next derived fluent of HEIGHT from BACKLOG. Return the fluent and how to renew it; or
-NIL."
+  "Remove and return the next fluent of HEIGHT from BACKLOG, and how to renew it; or NIL."
   (let ((derived (svref (backlog-heads backlog) height)))
     (when derived
       (let ((successor (shiftf (derived-successor derived) nil)))
@@ -64,8 +61,7 @@ NIL."
         (values derived (shiftf (derived-queued derived) nil))))))
 
 (defun notify-watchers (fluent)
-  "Notify the watchers of FLUENT, which has just changed or been pulsed, if FLUENT is true or in
-error."
+  "Notify the watchers of FLUENT, which has just changed or been pulsed, if it is true or in error."
   (let ((value (fluent-now fluent))
         (trouble (and (derived-p fluent) (derived-trouble fluent))))
     (when (or value trouble)
@@ -96,8 +92,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
            :pulsed))))
 
 (defun propagate-by-height (backlog &optional (kind :change))
-  "Renew the fluents in BACKLOG and the fluents that depend on them, lowest height first. See
-RENEW."
+  "Renew the fluents in BACKLOG and those that depend on them, lowest height first. See RENEW."
   (loop for height from 1
         while (<= height (backlog-highest backlog))
         do (loop
@@ -184,8 +179,7 @@ for RENEW."
 ;;; A change for another runner is posted to that runner, or made at once while no thread has it.
 
 (defun foreign-home (fluent)
-  "Return the home in which FLUENT must be changed, if this thread does not own that home; otherwise
-NIL."
+  "Return the home in which FLUENT must be changed, unless this thread owns that home; or NIL."
   (let ((home (home-of fluent)))
     (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
           ((eq home *runner*) nil)
@@ -200,8 +194,7 @@ NIL."
     (propagate fluent :change)))
 
 (defun set-in-home (home fluent value)
-  "Set FLUENT, which belongs to HOME, to VALUE. Set FLUENT now if no thread owns HOME or serves
-HOME, otherwise by a post."
+  "Set FLUENT of HOME to VALUE: now if no thread owns or serves HOME, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
            (call-owning-home home #'take-home (lambda () (set-now fluent value) t)))
@@ -245,8 +238,7 @@ effect when the running plans pause (manual D.2)."
     (propagate-back fluents)))
 
 (defun propagate-back (fluents)
-  "Recompute the fluents that depend on FLUENTS. After a pulse, FLUENTS have their former values
-again."
+  "Recompute the fluents that depend on FLUENTS, which after a pulse have their old values again."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
       (propagating

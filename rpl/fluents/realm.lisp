@@ -95,8 +95,7 @@ fork with the same origin."
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
-  "Make TWIN the twin of ENTITY in REALM, unless REALM has a twin of ENTITY. Return the twin in
-REALM."
+  "Make TWIN the twin of ENTITY in REALM, unless there is one already. Return the twin in REALM."
   (let ((token (ensure-token entity)))
     (with-lock ((realm-lock realm))
       (or (gethash token (realm-twins realm))
@@ -168,8 +167,7 @@ REALM."
                  #'> :key #'car))))
 
 (defun promote-realm (realm)
-  "Make REALM a fork of its grandparent, as if made at the time of its parent. Do nothing if REALM
-has no grandparent."
+  "Make REALM a fork of its grandparent, if any, as if made at the time of its parent."
   (let* ((parent (realm-parent realm))
          (above (realm-parent parent)))
     (when above
@@ -181,9 +179,8 @@ has no grandparent."
       (record-fork realm above))))
 
 (defun leave-realm (realm successor)
-  "Remove all references from SUCCESSOR to entities of REALM, and of the other forks of REALM.
-SUCCESSOR is a fork of a fork of REALM and replaces REALM. If REALM is not a fork, keep these
-references."
+  "Remove references from SUCCESSOR to entities of REALM, and of its other forks. SUCCESSOR is a
+fork of a fork of REALM and replaces REALM. If REALM is not a fork, keep these references."
   (promote-realm successor)
   (when (realm-parent realm)
     (loop for (nil . weak) in (shiftf (realm-forks realm) '())
@@ -209,7 +206,6 @@ references."
 
 (declaim (inline before-change))
 (defun before-change (entity)
-  "Make the twins of ENTITY that forks need. Must be called before each change of the state of
-ENTITY."
+  "Make the twins of ENTITY that forks need. Must be called before each change of ENTITY's state."
   (when (< (entity-seen entity) (realm-count (entity-realm entity)))
     (make-fork-twins entity)))

@@ -34,8 +34,7 @@ parts begun; its memory is the new environment."
             variables)))
 
 (defun fill-lambda (values scopes sequential)
-  "Return a lambda expression that makes an environment of the values of the forms VALUES, each in
-its scope of SCOPES."
+  "Return a lambda expression that makes an environment of the values of VALUES, forms in SCOPES."
   (if sequential
       (let ((inner (scope-variable (first scopes))))
         `(lambda (outer)

@@ -94,8 +94,7 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
 ;;;; Choices
 
 (define-expression branch
-  "Runs the one of BRANCHES whose index the function CHOOSER returns. If CHOOSER returns NIL, runs
-nothing."
+  "Runs the one of BRANCHES whose index the function CHOOSER returns; runs nothing for NIL."
   (:parts (chooser function) (branches simple-vector))
   (:step
    (let ((index (funcall chooser environment)))

@@ -25,8 +25,7 @@
    (inside (values (frame-up frame) value))))
 
 (defun call-code (form scope)
-  "Return code for FORM, a call of a procedure or of an unknown function. The arguments of FORM do
-not wait."
+  "Return code for FORM, a call of a procedure or unknown function, whose arguments do not wait."
   (let* ((local (cdr (assoc (first form) (scope-procedures scope))))
          (arguments (loop for argument in (rest form) collect (as-lisp argument scope)))
          (outer (and local (list (environment-form scope (second local))))))
@@ -45,14 +44,12 @@ not wait."
        (not (known-variable-p name (scope-environment scope)))))
 
 (defun check-plan-quote (plan form scope)
-  "Warn if PLAN, the form of a plan in FORM, is the unquoted name of a plan and not a variable in
-SCOPE."
+  "Warn if PLAN, a plan's form in FORM, is the unquoted name of a plan and no variable in SCOPE."
   (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
     (style-warn-of-own form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
 
 (define-construct call-plan (plan &rest arguments)
-  "Run PLAN, a plan procedure or its name, with ARGUMENTS as part of a plan; return the values of
-PLAN."
+  "Run PLAN, a plan procedure or its name, with ARGUMENTS as part of a plan; return its values."
   (:arguments plan &rest arguments)
   (:parts (entry function (progn (check-plan-quote plan form scope)
                                  (value-lambda `(enter-plan ,plan ,@arguments) scope))))
@@ -106,8 +103,7 @@ tasks. A deeper call fails with class :TOO-DEEP. The limit stops endless recursi
 ;;;; Calls with a list of arguments
 
 (defstruct (application (:include call-plan-node) (:copier nil))
-  "A call of a plan with a list of arguments. The plan and the list are the variables of its
-environment.")
+  "A call of a plan with a list of arguments. Plan and list are the variables of its environment.")
 
 (define-global +application+
     (make-application :form '(call-plan)

@@ -53,8 +53,7 @@ left out."
                     (first form) (shape-text lambda-list) trouble))))
 
 (defun nisp-namesake (name)
-  "Return the construct or function of NISP that has the same name as NAME but is another symbol, or
-NIL."
+  "Return the construct or function of NISP that has the same name as NAME, another symbol; or NIL."
   (multiple-value-bind (symbol status)
       ;; To packages with local nicknames NISP may mean another.
       (let ((*package* (find-package "KEYWORD"))) (find-symbol (symbol-name name) "NISP"))
@@ -112,8 +111,7 @@ what to write instead; or NIL."
           (t (warn-of-unknown form)))))
 
 (defun check-later (check form)
-  "Call CHECK with FORM at the end of the compilation unit, with the source location and package of
-the current form."
+  "Call CHECK with FORM at the end of the compilation unit, at this source location and package."
   (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
         (loaded *load-truename*))
     (at-end-of-unit form
@@ -132,8 +130,7 @@ names are checked at the end of the compilation unit."
         (check-later #'check-known-call form))))
 
 (defun check-lisp-call (form)
-  "Warn if FORM, a call inside a Lisp form in which plans cannot wait, turns out to be a call of a
-plan."
+  "Warn if FORM, a call inside a Lisp form in which plans cannot wait, turns out to call a plan."
   (when (procedure-name-p (first form))
     (warn-of-form form "~(~A~) is a plan procedure that is defined only later. A plan procedure ~
                         cannot be called inside a lambda, or another form that only Lisp runs."
@@ -218,8 +215,7 @@ later, nor inside a call for which TEST returns :NOWHERE."
 ;;; Variables.
 
 (defun check-use (variables where form)
-  "Warn about each of VARIABLES, the variables bound by FORM, that the list of forms WHERE does not
-mention."
+  "Warn about each of VARIABLES, bound by FORM, that the list of forms WHERE does not mention."
   (when (has-source-location-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))

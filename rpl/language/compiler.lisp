@@ -71,8 +71,7 @@ variable, not in the fluent."
        (,(first form) ,key ,@(cddr form)))))
 
 (defun let-meaning (form)
-  "Return FORM, a LET, without the types of its variables. If FORM has no types, return FORM
-itself."
+  "Return FORM, a LET, without the types of its variables; without types, return FORM itself."
   (if (and (listp (second form)) (find '- (second form)))
       `(,(first form) ,(untyped-bindings (second form)) ,@(cddr form))
       form))
@@ -186,8 +185,7 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
                            (argument-mistake-text form lambda-list)))))
 
 (defun refuse-code (form scope &optional (container form))
-  "Return code for FORM as a leaf. Signal MISPLACED-SUSPENSION if FORM, which is inside CONTAINER,
-would wait."
+  "Return code for FORM as a leaf. Signal MISPLACED-SUSPENSION if FORM, in CONTAINER, would wait."
   (multiple-value-bind (suspends reason) (suspension form scope)
     (if (eq suspends :must)
         (reject-suspension reason container)
@@ -199,8 +197,7 @@ would wait."
        (suspension form scope)))
 
 (defun binds-fluents-p (form scope)
-  "True if FORM is a LET in the text of a plan that binds variables to fluents. Leaves do not record
-such bindings."
+  "True if FORM, in plan text, is a LET that binds fluents. Leaves do not record such bindings."
   (and (consp form)
        (own-text-p form)
        (operator-in-p form '("LET" "LET*"))
@@ -211,8 +208,7 @@ such bindings."
 
 (defun hoisted-code (form scope &optional (fixed 1))
   "Return code for FORM, whose first FIXED elements stay in place. The other elements that suspend,
-and those to the left of them, are bound to variables before FORM. These bindings keep the order of
-evaluation."
+and those to the left of them, are bound to variables before FORM, to keep the order of evaluation."
   (let* ((parts (nthcdr fixed form))
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
          (names (loop for part in (subseq parts 0 count)

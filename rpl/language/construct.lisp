@@ -39,8 +39,7 @@ of type NAME."
          ,@forms))))
 
 (defun state-forms (states)
-  "Return the forms of a step with the states STATES, each (state form...). Each state becomes a
-local function."
+  "Return the forms of a step with STATES, each (state form...), which become local functions."
   (let* ((names (mapcar #'first states))
          (functions (loop for name in names collect (make-symbol (symbol-name name)))))
     `((macrolet ((at-once (state)
@@ -111,8 +110,7 @@ the functions for speed, because a profile has shown that this matters."
 
 ;;; A construct has four parts: for users a macro, with its lambda list, documentation and the error
 ;;; outside of plans; for the compiler, how to make a node; for tasks, the steps of the node in
-;;; named states; and what the node does when a signal passes. For an example see
-;;; rpl/language/README.md.
+;;; named states; and what the node does at a signal. For an example see rpl/language/README.md.
 
 ;;; All constructs.
 
@@ -175,8 +173,7 @@ first occurrence is expanded, because arguments come before bodies."
       (cons (first form) (expanded (rest form))))))
 
 (defun hoisted-form (parts form)
-  "Return FORM with variables instead of PARTS, conses in FORM. The variables are bound around
-FORM."
+  "Return FORM with variables instead of PARTS, conses in FORM, and bind the variables around it."
   (let ((names (loop for nil in parts collect (gensym "PART"))))
     `(let* ,(mapcar #'list names parts)
        ,(reduce (lambda (form pair) (subst (first pair) (second pair) form :test #'eq))
@@ -185,8 +182,7 @@ FORM."
 ;;; The definition.
 
 (defun stub-form (name lambda-list documentation in-lisp)
-  "Return the definition of the Lisp macro NAME. IN-LISP is the form for its expansion in ordinary
-Lisp, or NIL."
+  "Return the definition of the macro NAME. IN-LISP is the form for its expansion in Lisp, or NIL."
   (if in-lisp
       (user-macro-form name `(&whole form ,@lambda-list) (cons name lambda-list)
                        `(,documentation

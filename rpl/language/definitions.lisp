@@ -56,8 +56,7 @@ next call, also in running plans (manual D.2)."
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a plan procedure without a name. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
-the variables around INTERP-LAMBDA, but not the blocks, tags and local plans. Run the procedure by
-CALL-PLAN."
+the variables around INTERP-LAMBDA, but not the blocks, tags and local plans. Run it by CALL-PLAN."
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
                                       (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))
@@ -108,8 +107,7 @@ anything. The second value is a list of (variable word) for each word that must 
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
 
 (defparameter *largest-pattern* 250
-  "The largest number of lists, words and variables in a pattern. The limit is small enough for the
-compiler's stack.")
+  "The largest number of lists, words and variables in a pattern, to spare the compiler's stack.")
 
 (defun larger-than-p (form limit)
   (let ((open (list form)))
@@ -130,8 +128,7 @@ compiler's stack.")
 (define-user-macro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
 bound while TEMPLATE is evaluated. A pattern may end in a dot and ?x for all remaining forms. The
-value of TEMPLATE is the plan text to use. A documentation string may come before TEMPLATE (manual
-D.8)."
+plan text to use is its value. A documentation string may come before TEMPLATE (manual D.8)."
   (check-plan-name (title "def-interp-macro" name) name)
   (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)

@@ -13,8 +13,7 @@
   "Names of functions that always return a fluent.")
 
 (defun vector-variable (form)
-  "Return the name of the kind of part if FORM is the variable of a vector of fluents for such
-parts, or NIL."
+  "Return the kind of part for which FORM is the variable of a vector of fluents; or NIL."
   (and (symbolp form) (known-vector-variable-p form)))
 
 (defun known-fluent-p (form environment)
@@ -52,8 +51,7 @@ of FLUENT-VALUE return values, and so do calls of lifted operators with them."
          (every (lambda (argument) (known-value-p argument environment)) (rest form)))))
 
 (defun as-fluents (form)
-  "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent and not a
-value."
+  "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent, no value."
   (cond ((and (consp form) (or (operator-in-p form '("FLUENT-VALUE")) (eq 'quote (first form))))
          (second form))
         ((and (consp form) (proper-list-p form))
@@ -126,8 +124,7 @@ value."
 
 ;; What a quoted list holds is never a fluent. With a :test of the author's it may still be found.
 (defun fluent-sought-in-constant (form environment)
-  "Return the fluent that FORM, a call, searches for in a constant, which cannot contain fluents; or
-NIL."
+  "Return the fluent that the call FORM searches for in a constant, which has no fluents; or NIL."
   (and (operator-in-p form '("MEMBER" "FIND" "POSITION" "COUNT" "ASSOC" "RASSOC"))
        (cddr form)
        (constantp (third form))
@@ -179,8 +176,7 @@ NIL."
 (defparameter *assigning-operators*
   '("SETQ" "SETF" "PSETQ" "PSETF" "PUSH" "PUSHNEW" "POP" "MULTIPLE-VALUE-SETQ" "ROTATEF"
     "SHIFTF")
-  "Names of operators that assign variables. INCF and DECF are missing because they assign only
-numbers.")
+  "Names of operators that assign variables, without INCF and DECF, which assign only numbers.")
 
 (defun assigned-p (variable forms)
   (map-calls (lambda (call)
@@ -190,8 +186,7 @@ numbers.")
              forms))
 
 (defun bound-to-fluents (bindings body scope sequential)
-  "Return a list of the variables that BINDINGS, the bindings of a LET or LET*, bind to fluents and
-that BODY does not assign."
+  "Return the variables that BINDINGS, of a LET or LET*, bind to fluents and BODY does not assign."
   (let ((*fluents-here* (scope-fluents scope)) (found '()))
     (loop for (variable value) in (remove-if #'atom bindings)
           do (cond ((and (known-fluent-p value (scope-environment scope))

@@ -84,14 +84,12 @@ FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
             collect test)))
 
 (defun pulse-form-p (form)
-  "True if FORM is the variable of a fluent that is only pulsed, or an element of a vector of such
-fluents."
+  "True if FORM is the variable of a fluent only pulsed, or an element of a vector of such fluents."
   (or (known-pulse-p form)
       (and (operator-in-p form '("VREF")) (consp (rest form)) (known-pulse-p (second form)))))
 
 (defun pulse-in-test (test)
-  "Return the form of a fluent that is only pulsed, if TEST tests the value of such a fluent; or
-NIL."
+  "Return the form of the fluent, only pulsed, whose value TEST tests; or NIL."
   (cond ((pulse-form-p test) test)
         ((not (proper-list-p test)) nil)
         ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
@@ -152,8 +150,7 @@ NIL."
                  name (wait-for-end-text name part) (results-of-command name part)))))
 
 (define-mistake command-of-others :leaf (form)
-  "FORM is a command for which plans have another function. Code that is called later does not
-count."
+  "FORM is a command for which plans have another function. Code called later does not count."
   (cond ((and (symbolp (first form)) (same-name-p (first form) 'continuation)) :nowhere)
         ((has-plan-function-p (first form))
          (format nil "~(~A~) does not notify plans of its end. In a plan write ~A."
@@ -170,8 +167,7 @@ count."
          clauses))
 
 (defun forms-with-errors-handled (form)
-  "Return a list of the forms inside FORM, a Lisp form, in which errors are handled but failures are
-not."
+  "Return a list of the forms inside FORM, a Lisp form, that handle errors but not failures."
   (cond ((operator-in-p form '("IGNORE-ERRORS")) (rest form))
         ((operator-in-p form '("HANDLER-CASE"))
          (and (cddr form) (errors-only-p (cddr form)) (list (second form))))

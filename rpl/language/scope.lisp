@@ -27,8 +27,7 @@ FORM, if FORM is given."
 ;;; Lambda lists.
 
 (defun invalid-parameters-text (parameters environment)
-  "Return a text of why PARAMETERS, a lambda list without types, is not an ordinary lambda list; or
-NIL."
+  "Return a text of why PARAMETERS, without types, is not an ordinary lambda list; or NIL."
   (flet ((first-trouble (names)
            (loop for name in names
                  for trouble = (invalid-variable-text name environment)
@@ -54,8 +53,7 @@ NIL."
 
 (defun warn-of-parameters (parameters definition environment)
   "Warn if one of PARAMETERS, in DEFINITION, has the name of a function by which plans command the
-robot. The list of parameters is then probably missing, and PARAMETERS is the first form of the
-body."
+robot. Then PARAMETERS is probably the first form of the body."
   (let ((name (find-if (lambda (name)
                          (and (starts-with-subseq "RPL-" (string name))
                               (known-function-p name environment)))
@@ -187,8 +185,7 @@ copy also has ADDITIONS, for macros."
     (layered-scope scope (list :functions level names) level :function names)))
 
 (defun wrapped-scope (scope wrapping)
-  "Return a copy of SCOPE in which leaves are wrapped in WRAPPING, a MACROLET or SYMBOL-MACROLET
-without a body."
+  "Return a copy of SCOPE with leaves wrapped in WRAPPING, a bodiless MACROLET or SYMBOL-MACROLET."
   (destructuring-bind (operator definitions) wrapping
     (multiple-value-call #'layered-scope scope (list :wrapping wrapping) (scope-level scope)
       (ecase operator
@@ -205,8 +202,7 @@ without a body."
         when (eq kind :variables) append names))
 
 (defun names-by-level (scope)
-  "Return a list of lists: the names of the variables in each environment of SCOPE, innermost
-first."
+  "Return lists of the names of the variables in each environment of SCOPE, innermost first."
   (loop for level from (scope-level scope) above 0
         collect (loop for (kind layer-level names) in (scope-layers scope)
                       when (and (eq kind :variables) (= level layer-level))
@@ -271,8 +267,7 @@ Return FORM."
   form)
 
 (defun leaf-lambda (form scope &rest parameters)
-  "Return a lambda expression for FORM in SCOPE, whose parameters are the environment and
-PARAMETERS."
+  "Return a lambda expression for FORM in SCOPE. Its parameters: the environment and PARAMETERS."
   (add-source-location
    `(lambda (,(scope-variable scope) ,@parameters)
       (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))

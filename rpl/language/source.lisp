@@ -7,8 +7,7 @@
           in-plans-only))
 
 ;;; Inside a plan, IF, AND, < and so on have their plan meaning, whether they are symbols of Common
-;;; Lisp, of Nisp or ours. Operators are known by name, if they are Lisp's or belong to a package
-;;; of this system.
+;;; Lisp, of Nisp or ours. Operators of Lisp or of this system's packages are known by name.
 ;;;
 ;;; That holds for the plan's own text only: an AND that DOTIMES or PUSH expands into stays Lisp's.
 ;;; So the conses of the text are recorded, and those of expansions of macros that are not Lisp's.
@@ -64,8 +63,7 @@ the misplaced form.")
   "Advice on what to write instead of the Lisp forms in which plans cannot wait, by operator.")
 
 (defun iterate-call-p (form)
-  "True if FORM is a call of a macro of the library iterate. The macros of iterate look into all
-forms inside them."
+  "True if FORM is a call of a macro of the library iterate, which looks into all forms inside."
   (and (symbolp (first form))
        (member (first form) '("ITER" "ITERATE") :test #'string=)
        (symbol-package (first form))
@@ -147,8 +145,7 @@ symbol itself if it is a user's symbol."
   (if (and (symbolp name) (system-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
-  "True if FORM is a call of an operator of Lisp or of this system, and the name of the operator is
-one of NAMES."
+  "True if FORM is a call of an operator of Lisp or of this system with one of NAMES."
   (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))
 
@@ -166,8 +163,7 @@ one of NAMES."
        (string= (first forms) name)))
 
 (defun plan-loop-p (form)
-  "True if FORM, a LOOP, has the shape of a plan's LOOP, (loop [UNTIL or WHILE test]
-compound-form...)."
+  "True if FORM, a LOOP, has a plan's shape (loop [UNTIL or WHILE test] compound-form...)."
   (let ((forms (rest form)))
     (every #'consp (if (or (starts-with-test-p forms "UNTIL") (starts-with-test-p forms "WHILE"))
                        (cddr forms)
@@ -187,16 +183,14 @@ compound-form...)."
   form)
 
 (defvar *written-forms* nil
-  "A table from the conses of expansions to the forms of the plan text that they stand for, while a
-plan is compiled.")
+  "While a plan is compiled, a table from conses of expansions to the forms that they stand for.")
 
 (defun form-as-written (form)
   "Return the form in the author's text from which FORM was made, or FORM."
   (values (gethash form *written-forms* form)))
 
 (defun note-written-as (expansion form)
-  "Record that the new conses in EXPANSION, which was made from FORM, stand for FORM. Return
-EXPANSION."
+  "Record that the new conses in EXPANSION, made from FORM, stand for FORM. Return EXPANSION."
   (let ((written (form-as-written form)))
     (labels ((note (part)
                (loop while (and (consp part)

@@ -15,8 +15,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "A table of the operators with a special meaning in plans. The keys are names, and symbols of
-users.")
+  "A table, by names and symbols of users, of the operators with a special meaning in plans.")
 
 (defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Names of functions that may make other tasks ready.")
@@ -32,8 +31,7 @@ users.")
   "The names of the blocks and tags inside the expression that is being examined.")
 
 (defun exit-suspends-p (form scope)
-  "True if FORM leaves for a block or tag of the plan in SCOPE, outside of the expression that is
-being examined."
+  "True if FORM leaves for a block or tag of the plan in SCOPE, outside of the examined expression."
   (let ((name (second form)))
     (and (not (member name *inner-exits*))
          (if (eq (first form) 'go)
@@ -59,8 +57,7 @@ variable, or a binding of something that cannot be bound."
                    "an operator as the first element; write data as '(...) or (list ...)")))
 
 (defun call-suspends (form scope environment)
-  "Return :MUST, :MAY or NIL for FORM, a call or special form, without regard to its parts: see
-SUSPENSION."
+  "Return :MUST, :MAY or NIL for FORM, a call or special form, without its parts: see SUSPENSION."
   (let ((name (first form)))
     (cond ((local-function-p name environment)
            (and (assoc name (scope-procedures scope)) :must))

@@ -11,8 +11,7 @@
 (define-expression tagged
   "Runs BODY as a separate task with the name NAME. The function PLACE returns the environment that
 has the task, and the index of the task there; or NIL if no environment has it. LAYERS are the
-layers of its scope. REPLACED is NIL, or a list of the replacing form and the original node: see
-Replacing below."
+layers of its scope. REPLACED is NIL, or a list of the replacing form and the original node."
   (:parts (name symbol) (place function) (body node) (layers list) (replaced list))
   (:steps
    (begin
@@ -88,8 +87,7 @@ environment of SCOPE, from index FIRST on."
                                   (scope-task-tags scope))))
 
 (defun with-tags-code (form names scope coder)
-  "Return the code that CODER returns for a scope in which NAMES are bound to tasks. FORM is the
-source of the code."
+  "Return the code that CODER returns for a scope with NAMES bound to tasks. FORM is its source."
   (if names
       `(make-binding
         :form ',(form-as-written form)
@@ -211,8 +209,7 @@ MALFORMED-DEFINITION. (From CRAM, where it takes a function.)"
 
 (addition restore-task-code)
 (defun restore-task-code (path)
-  "Restore the original code of tasks at PATH, see TASK-CODE, from their next start on. Return the
-original code."
+  "Restore and return the original code of tasks at PATH, see TASK-CODE, from their next start on."
   (let ((node (find-tagged 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))

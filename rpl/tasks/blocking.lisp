@@ -52,8 +52,7 @@
     (setf (task-frame task) (make-frame +gate+ (frame-environment frame) frame))))
 
 (defun add-hold (task hold)
-  "Keep TASK from starting until RELEASE-HOLD with the same HOLD. Signals MISUSE if TASK has
-started."
+  "Keep TASK from starting until RELEASE-HOLD with HOLD. Signals MISUSE if TASK has started."
   (when (null (task-gate task))
     (unless (eq (task-state task) :created)
       (unless (at-start-p task)
@@ -82,8 +81,7 @@ started."
 ;;; blocking have a frame whose DATA is a BLOCK-HOOK.
 
 (define-record (block-hook (:constructor make-block-hook (function)))
-  "The reaction of an expression when its task is blocked: a call of FUNCTION with the task and the
-frame."
+  "The reaction of an expression when its task is blocked: FUNCTION is called with task and frame."
   (function #'list function))
 (declaim-final block-hook)
 

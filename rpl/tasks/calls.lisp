@@ -45,9 +45,8 @@
       (format nil "~:A" lambda-list))))
 
 (defun unknown-keyword-text (shape rest &key (wrong-p #'keywordp))
-  "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST is the list of
-arguments, or of forms for them, after the fixed arguments. Elements for which WRONG-P is false are
-not checked."
+  "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST lists the arguments,
+or forms for them, after the fixed ones. Elements for which WRONG-P is false are not checked."
   (unless (or (shape-open shape)
               (loop for (key value) on rest by #'cddr
                     thereis (and (eq key :allow-other-keys) value)))
@@ -118,8 +117,7 @@ function, on the part with the number PART. Return NIL if no fluent is pulsed at
     (wait-form-text (subst part variable wait))))
 
 (defun results-of-command (name part)
-  "Return the forms of the fluents for the results of NAME, a plan function, on the part with the
-number PART."
+  "Return the forms of the fluents for the results of the plan function NAME on part number PART."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore wait))
     (subst part variable results)))

@@ -9,8 +9,7 @@
   (and (typep form '(cons symbol)) (member (first form) names :test #'string=)))
 
 (defun plan-backtrace (task frame)
-  "Return the expressions in progress in TASK at FRAME and in the tasks around TASK, innermost
-first."
+  "Return the expressions in progress in TASK at FRAME and in the tasks around it, innermost first."
   (nconc (forms-under-way frame)
          (loop for whole in (rest (lineage task)) nconc (forms-under-way (task-frame whole)))))
 
@@ -24,8 +23,7 @@ first."
 
 (defun failure-of (condition task frame)
   "Return the failure for CONDITION, which TASK at FRAME has met, with all data of a failure. The
-failure counts as the number of steps that take as long. So a plan that only fails uses up its
-slice."
+failure counts as the number of steps that take as long. So a plan that only fails uses its slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
@@ -43,8 +41,7 @@ slice."
     failure))
 
 (defun lisp-backtrace ()
-  "Return a text of the Lisp calls in progress in the code of a plan that has just signalled an
-error."
+  "Return a text of the Lisp calls in progress in code of a plan that has just signalled an error."
   (let* ((calls (calls-in-progress))
          (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
                                calls :key #'first)))
@@ -114,8 +111,7 @@ that are over."
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-watchers (runner tasks)
-  "Register the waits of TASKS of RUNNER with their fluents again. Wake the tasks that have missed
-events."
+  "Register the waits of TASKS of RUNNER with their fluents again. Wake those that missed events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
                   (lambda (watcher)
                     (let ((client (watcher-client watcher)))
@@ -171,15 +167,13 @@ no more parts."
                (make-ready-first task))))))
 
 (defun end-plan-of (task)
-  "Evaporate the whole plan of TASK, which is ready. If the plan was cleaning up, abandon the
-cleanup."
+  "Evaporate the whole plan of TASK, which is ready. If the plan was cleaning up, abandon that."
   (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))
 
 (defun end-current-plan (runner)
-  "Evaporate the plan of the running task of RUNNER. If the plan was cleaning up, abandon the
-cleanup."
+  "Evaporate the plan of the running task of RUNNER, and abandon a cleanup in progress."
   (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
     (make-ready-first task)
@@ -212,8 +206,7 @@ after any failure."
 
 (defun call-with-plan-restarts (runner function fail end leave)
   "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
-LEAVE and END. Any other non-local exit from a step also ends its plan, so the step cannot be tried
-again."
+LEAVE and END. Any other non-local exit from a step also ends its plan; no retry is possible."
   (declare (type function function fail end leave))
   (labels ((in-step-p (&optional condition)
              (declare (ignore condition))

@@ -50,8 +50,7 @@ steps a tick, or any number of steps if BUDGET is NIL."
              (allow-steps runner (- budget paid)))))))
 
 (defun uncount-steps (runner steps)
-  "Do not count STEPS that a task of RUNNER has taken, unless too many uncounted steps were taken in
-this tick."
+  "Do not count STEPS that a task of RUNNER took, unless this tick has too many uncounted steps."
   (decf (runner-uncovered runner) steps)
   (when (runner-budget runner)
     (incf (runner-uncounted runner) steps)
@@ -81,9 +80,8 @@ this tick."
 (addition charge-ticks)
 (defun charge-ticks (ticks &optional (runner *runner*))
   "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended. For Lisp code
-in a plan that knows its cost only when it runs. Commands go on; afterwards the plans react to the
-events of the meantime. If thinking is not charged, do nothing. Returns nothing. Signals
-WRONG-ARGUMENT."
+in a plan that knows its cost only when it runs. Commands go on; afterwards the plans react to what
+has happened. If thinking is not charged, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))

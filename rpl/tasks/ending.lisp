@@ -45,8 +45,7 @@
                (funcall (runner-on-end runner) task))))))
 
 (defun child-over (parent child how result)
-  "Notify PARENT that CHILD has ended. If PARENT has a signal, only the end of the last child
-matters."
+  "Notify PARENT that CHILD has ended. If PARENT has a signal, only its last child's end matters."
   (cond ((null (task-signal parent))
          (let* ((frame (task-frame parent))
                 (node (frame-node frame)))
@@ -71,15 +70,13 @@ the signal SIGNAL."
       (wake parent value)))
 
 (defun fail-or-escape (task how result)
-  "If a child of TASK has failed or escaped, as HOW says, let TASK do the same with RESULT, and
-return true."
+  "If HOW says that a child of TASK failed or escaped, let TASK do so with RESULT, and return true."
   (when (member how '(:failed :escaped))
     (end-with-signal task result)
     t))
 
 (defun complete-when-alone (task value)
-  "End the construct in which TASK waits for its children, with VALUE, if TASK has no more
-children."
+  "End the construct in which TASK waits for its children, with VALUE, if no child is left."
   (unless (task-newest-child task) (end-with-value task value)))
 
 ;;; Unwinding.

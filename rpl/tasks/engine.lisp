@@ -94,8 +94,7 @@ that each task gets its turn in it."
     outcome))
 
 (defun apply-due-batch (runner)
-  "Apply the next posted batch if it is due at the end of a round of RUNNER. Return true if a batch
-was applied."
+  "Apply the next posted batch if it is due at the end of a round of RUNNER. Return true if so."
   (when (or (null (runner-spent runner))
             (null (runner-budget runner))
             (not (runner-charged-p runner))
@@ -104,8 +103,7 @@ was applied."
     (apply-next-batch runner)))
 
 (defun run-rounds (runner)
-  "Run the ready tasks of RUNNER and apply posts, until no task is ready and nothing is posted.
-Return :idle or :budget."
+  "Run the ready tasks and apply the posts of RUNNER, until none are left. Return :idle or :budget."
   (loop
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
@@ -209,8 +207,7 @@ for this time."
     (and timer (timer-due timer))))
 
 (defun outside-request-p (runner)
-  "True if something is posted to RUNNER, or the end of some of its tasks is requested. Any thread
-may call OUTSIDE-REQUEST-P."
+  "True if something is posted to RUNNER, or the end of a task is requested. For any thread."
   (and (or (runner-ends-requested runner) (posted-p runner)) t))
 
 (defun runner-idle-p (runner)
@@ -219,8 +216,7 @@ state of RUNNER."
   (not (or (any-ready-p runner) (outside-request-p runner))))
 
 (defun skip-idle-tick (runner tick)
-  "Set the time of RUNNER to TICK, without a reaction, if no task would run at TICK. Return true if
-so."
+  "Set the time of RUNNER to TICK without a reaction, if no task would run then. Return true if so."
   (let ((wake (next-wake-time runner)))
     (unless (or (and wake (<= wake tick))
                 (not (runner-idle-p runner))
@@ -247,8 +243,7 @@ possible."
         (runner-lisps-dice runner) nil))
 
 (defun digest-runner (runner digest)
-  "Add the state of RUNNER to DIGEST: its tasks, the tick of its next timer, its dice and its
-charges."
+  "Add the state of RUNNER to DIGEST: its tasks, the tick of its next timer, its dice and charges."
   (digest-add digest (list (runner-tick runner) (next-wake-time runner)
                            (and (runner-dice runner) (dice-state (runner-dice runner)))
                            (runner-debt runner) (runner-still-until runner)))
@@ -288,8 +283,7 @@ LIMIT is NIL, until nothing can run. The other cleanups are abandoned, with a wa
 jumps to the next tick at which a task wakes. Return the plan's value, or its failure. The second
 value is :succeeded, :failed, :evaporated, :deadlock (reported as an error message) or :limit (if
 the tick LIMIT came first). If the plan is not over then, or at a non-local exit from
-RUN-PLAN-ALONE, the plan is ended; its cleanups run until tick LIMIT at most. Signals
-WRONG-ARGUMENT."
+RUN-PLAN-ALONE, the plan is ended; cleanups run until tick LIMIT at most. Signals WRONG-ARGUMENT."
   (check-argument run-plan-alone arguments (proper-list-p arguments) "a list of arguments")
   (check-argument run-plan-alone limit (or (null limit) (quantity-p limit))
                   "a tick, a number up to 1e15, or NIL")

@@ -54,8 +54,7 @@ MISUSE" :writable))
   (remove-if-not #'defined-p (registered-procedures)))
 
 (defun procedures-to-offer ()
-  "Return the names of all defined plan procedures. Procedures of users come first, the newest
-first."
+  "Return the names of all defined plan procedures, those of users first, the newest first."
   (remove-if-not (lambda (name) (defined-p (registered-procedure name)))
                  (names-to-suggest *procedures*)))
 
@@ -77,8 +76,7 @@ first."
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)
-  "Return sentences about what to write instead of NAME, which is given as a plan and is no plan; or
-NIL."
+  "Return sentences about what to write instead of NAME, given as a plan but no plan; or NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
@@ -134,8 +132,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
          (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
 
 (defun known-lambda-list (name)
-  "Return the lambda list of the plan procedure with the name NAME, if such a procedure is known; or
-NIL."
+  "Return the lambda list of the plan procedure NAME, if such a procedure is known; or NIL."
   (first (gethash name *declared-procedures*)))
 
 (defun declared-names ()
@@ -169,8 +166,7 @@ NIL."
 
 (defun install-procedure (name lambda-list documentation entry body stub
                           &optional source text)
-  "Make NAME a plan procedure for all calls from now on. TEXT is the definition, from the file
-SOURCE."
+  "Make NAME a plan procedure for all later calls. TEXT is the definition, from the file SOURCE."
   (let ((procedure (ensure-procedure name)))
     (warn-if-function procedure)
     (declare-procedure name lambda-list)

@@ -89,8 +89,7 @@ from a Lisp error; otherwise NIL."
                            (clause-types form)))))
 
 (defun similar-clause-text (failure)
-  "Return a text that a handler clause around FAILURE is for a similar class, or for Lisp errors; or
-NIL."
+  "Return a text that a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
   (multiple-value-bind (type class) (similar-clause failure)
     (let ((error-type (clause-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
@@ -204,8 +203,7 @@ from the inside to the outside, and have the names of operators.)"
 (addition find-task)
 (defun find-task (place &optional (within *runner*))
   "Return the running or waiting task at PLACE, a value of TASK-PLACE or the number of a task; NIL
-if there is no such task. WITHIN is a plan runner, or a task. If WITHIN is a task, PLACE starts at
-the parts of this task."
+if there is no such task. WITHIN is a plan runner, or a task at whose parts PLACE starts."
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)

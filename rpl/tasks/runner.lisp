@@ -286,8 +286,7 @@ thread, or in the run that replaced a rewound run. Return TASK if TASK has no co
   (or (null runner) (eq runner *runner*)))
 
 (defun task-for-caller (task)
-  "Return TASK. For a caller outside of the plans of TASK, return the counterpart of TASK: see
-TASK-NOW."
+  "Return TASK or, for a caller outside of the plans of TASK, its counterpart: see TASK-NOW."
   (let ((runner (task-runner task)))
     (if (inside-plans-p runner)
         task

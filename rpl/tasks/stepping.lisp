@@ -4,13 +4,11 @@
 
 (export '(notify-at-rest spawn))
 
-;;; A task that notifies another by a pulse must not do so before the other waits for it. So the
-;;; sender waits until the receiver is at rest: until it waits, is over, is blocked, or has used its
-;;; slice.
+;;; A task must not notify another by a pulse before the other waits for it. So the sender waits
+;;; until the receiver is at rest: until it waits, is over, is blocked, or has used its slice.
 
 (defstruct (notice (:constructor make-notice (receiver sender function)) (:copier nil))
-  "A call of FUNCTION that must happen when the task RECEIVER is at rest. The task SENDER waits for
-this call."
+  "A call of FUNCTION for which the task SENDER waits until the task RECEIVER is at rest."
   (receiver nil :type task :read-only t)
   (sender nil :type task :read-only t)
   (function nil :type function :read-only t))
@@ -179,8 +177,7 @@ continues with."
               (funcall (node-step node) node task frame value)))))))
 
 (defun begin-turn (task runner)
-  "Give TASK the rest of its slice in this round of RUNNER, or a new slice if it has had none in
-this round."
+  "Give TASK the rest of its slice in this round of RUNNER, or a new slice if it has had none."
   (declare #.*hot* (type task task) (type plan-runner runner))
   (unless (= (task-round task) (runner-round runner))
     (setf (task-round task) (runner-round runner)

@@ -8,8 +8,7 @@
 
 ;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
 ;;; is stuck if all of them are, not counting policies, which only watch. If it is unknown what
-;;; could wake a task, it does not count as stuck; the report of deadlocks covers it when nothing
-;;; runs any more.
+;;; could wake a task, it does not count as stuck; the report of deadlocks covers it in the end.
 
 (defgeneric tasks-awaited (awaited)
   (:documentation "Return the tasks that must go on before AWAITED can happen; NIL if they are
@@ -40,8 +39,7 @@ that TASK needs."
         (list task))))
 
 (defun obstacles (task)
-  "Return the tasks that must go on before TASK itself can go on, without regard to its parts; NIL
-if they are unknown."
+  "Return the tasks that must go on before TASK itself, without its parts, can; NIL if unknown."
   (or (and (task-awaiting task) (tasks-awaited (task-awaiting task)))
       (all-preemptors task)))
 
@@ -63,8 +61,7 @@ on."
   (:method (awaited) (awaited-text awaited)))
 
 (defun wait-text (task)
-  "Return a text of what TASK waits for, as TASK-AWAITS does, with the tasks that own it if they are
-known."
+  "Return a text of what TASK waits for, as TASK-AWAITS does, with the tasks known to own it."
   (and (task-awaits task)
        (if (tasks-awaited (task-awaiting task))
            (stuck-wait-text (task-awaiting task))
@@ -118,8 +115,7 @@ ended."
   "The object that a task waits for if it got something other than a fluent to wait for.")
 
 (defun waiting-parts (task)
-  "Return a list of those among TASK and its parts that wait for something other than the end of
-their own parts."
+  "Return a list of those of TASK and its parts that wait for more than the end of their own parts."
   (remove-if-not (lambda (part) (and (eq :waiting (task-state part)) (task-awaiting part)))
                  (all-tasks task)))
 
@@ -243,8 +239,7 @@ wait for that."
 ;;; Reports.
 
 (defun warn-of-wait (task text)
-  "Queue a warning with TEXT about a wait of TASK, once for each form. The wait does not do what was
-probably meant."
+  "Queue a warning with TEXT, once for each form, that a wait of TASK is probably not as meant."
   (when (first-warning-p (task-form task) (task-runner task))
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
@@ -255,8 +250,7 @@ once for each form."
   (warn-of-wait task (no-fluent-advice task)))
 
 (defun warn-of-awaited-value (task value)
-  "Queue a warning, once for each form, if TASK waits for VALUE and VALUE is probably not meant as a
-condition."
+  "Queue a warning, once for each form, if TASK waits for VALUE, probably not meant as a condition."
   (multiple-value-bind (kind remedy)
       (typecase value
         (number (values "number" (format nil "(wait-time ~A) waits for that many ticks" value)))
@@ -274,8 +268,7 @@ condition."
        4000))
 
 (defun text-of-plans (tasks)
-  "Return a text that names the plans TASKS, as the subject of a sentence, and says what they wait
-for."
+  "Return a text that names the plans TASKS, as subject of a sentence, and says what they wait for."
   (format nil "the plan~P ~{~A~^, ~} wait~:[s~;~] for ~A"
           (length tasks) (mapcar #'task-label tasks) (rest tasks)
           (or (text-of-waits (mapcan #'waiting-parts tasks))

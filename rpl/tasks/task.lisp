@@ -45,8 +45,7 @@ environment around it" :writable :export)
 MEMORY" :writable :export))
 
 (defun frame-state (frame)
-  "Return the state of FRAME, a keyword. If the node of FRAME has no states, return the number of
-parts begun."
+  "Return the state of FRAME, a keyword or, if its node has no states, the number of parts begun."
   (let ((states (node-states (frame-node frame))))
     (if (plusp (length states))
         (svref states (frame-counter frame))
@@ -145,8 +144,7 @@ NIL" :writable :export)
         while each collect each))
 
 (defun frames-around (task &optional (frame (task-frame task)))
-  "Return a list of the frames of TASK from FRAME on, and the frames of the tasks around TASK,
-innermost first."
+  "Return a list of the frames of TASK from FRAME on and of the tasks around TASK, innermost first."
   (nconc (frame-chain frame)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 
@@ -188,8 +186,7 @@ frames in one list run the same expression."
     (nreverse (mapcar #'nreverse runs))))
 
 (defun forms-under-way (frame)
-  "Return a list of the expressions that FRAME and the frames around it are running, innermost
-first."
+  "Return a list of the expressions that FRAME and the frames around it run, innermost first."
   (loop for (each) in (frame-runs frame)
         collect (current-form (frame-node each) each)))
 
@@ -203,16 +200,14 @@ first."
         (node-form (task-node task)))))
 
 (defun object-text (object)
-  "Return the printed text of OBJECT. If OBJECT is data that takes long to print, return a part of
-the text."
+  "Return the printed text of OBJECT, or a part of the text if OBJECT takes long to print."
   (if (typep object '(or cons string bit-vector number symbol))
       (unqualified-text object)
       (prin1-to-string object)))
 
 (defun form-text (form &optional (width 60) (length 8) (level 4))
-  "Return the text of FORM, or any other object, on one line of at most WIDTH characters. The text
-has at most LENGTH elements of each list, lists to the depth LEVEL, and symbols without their
-packages."
+  "Return the text of FORM, any object, on one line of at most WIDTH characters. The text has at
+most LENGTH elements of each list, lists to the depth LEVEL, and symbols without their packages."
   (let ((*print-case* :downcase) (*print-pretty* nil) (*print-readably* nil)
         (*print-length* length) (*print-level* level) (*print-base* 10) (*print-radix* nil))
     (cut (substitute #\Space #\Newline
