@@ -11,14 +11,12 @@
   `(vector ,@(loop for branch in branches collect (plan-code branch scope))))
 
 (defun start-branches (branches task environment)
-  "Start each of BRANCHES as a part of TASK, and await the parts. Return what a step returns."
   (loop for branch across branches
         for index from 0
         do (start-branch branch task environment index (task-level task)))
   (await-parts task))
 
 (defun await-parts (task)
-  "Let TASK wait for its parts. Return what a step returns."
   (park task nil)
   +parked+)
 
@@ -146,7 +144,6 @@ succeeds. Return the value of BODY. If BODY succeeds for no element, fail with a
 ;;;; For each element of a sequence
 
 (defun iteration-environment (environment item tags)
-  "Return a new environment inside ENVIRONMENT, with ITEM and a new task for each of TAGS."
   (coerce (list* environment item (loop for tag in tags collect (make-task tag +nothing+)))
           'simple-vector))
 

@@ -6,7 +6,6 @@
   (and (member status '(:succeeded :failed :evaporated)) t))
 
 (defun continue-with-outcome (target task frame)
-  "Continue TASK at FRAME with the outcome of TARGET. Return what a step returns."
   (let ((result (task-result target)))
     (cond ((eq :failed (task-state target)) (unwind task (frame-up frame) result))
           (t (values (frame-up frame)
@@ -94,7 +93,6 @@ it is a fluent. WATCHER waits for EARLIER."
         earlier)))
 
 (defun enforce-order (order task)
-  "Let ORDER hold, on behalf of TASK, unless ORDER is met already."
   (let ((fluent (order-fluent order)))
     (unless (fluent-value fluent)
       (add-hold (order-later order) order)
@@ -166,7 +164,6 @@ forms."
                 collect (list (list :end inner) (list :end outer)))))
 
 (defun circular-p (precedences)
-  "True if the pairs (earlier later) in PRECEDENCES contain a cycle."
   (loop for open = (remove-if-not (lambda (pair)
                                     (find (first pair) precedences :key #'second :test #'equal))
                                   precedences)

@@ -67,7 +67,6 @@ returns a value."
              (list policy)))
 
 (defun waits-then-fails-p (body)
-  "True if BODY, a list of forms in a plan, only waits and then fails, as policies often do."
   (let ((forms (if (and (null (rest body)) (operator-in-p (first body) '("SEQ" "PROGN")))
                    (rest (first body))
                    body)))

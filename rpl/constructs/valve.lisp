@@ -94,7 +94,6 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
            (some-line function (line-behind tree)))))
 
 (defun owner-claims (valve)
-  "Return the claims on VALVE of the owner and of the tasks around the owner, innermost first."
   (loop for claim = (first (valve-claims valve)) then (cdr (assoc valve (claim-outer claim)))
         while claim
         when (member valve (claim-taken claim) :test #'eq) collect claim))
@@ -122,7 +121,6 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 ;;; Granting.
 
 (defun rivals (valve task)
-  "Return the owner claims of VALVE whose tasks do not contain TASK, innermost first."
   (remove-if (lambda (claim) (part-of-p task (claim-task claim))) (owner-claims valve)))
 
 (defun may-preempt-p (claim rival)
@@ -207,7 +205,6 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
                  (t (return tree)))))
 
 (defun ensure-line (claim valve)
-  "Return the line of VALVE in which CLAIM waits, or a new line if VALVE has no such line."
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
     (or (find-line line (valve-lines valve))
         (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
@@ -265,7 +262,6 @@ losers, if possible."
     (regain-valve valve claim)))
 
 (defun without-claim (claims claim)
-  "Return CLAIMS without CLAIM, which is usually the newest of CLAIMS."
   (if (eq claim (first claims)) (rest claims) (remove claim claims)))
 
 (defun release-valves (claim)

@@ -11,7 +11,6 @@
     (wake task nil timer)))
 
 (defun make-timer-after (ticks task function)
-  "Return a new timer that calls FUNCTION in TICKS ticks, on behalf of TASK."
   (let ((runner (task-runner task)))
     (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
 
@@ -141,7 +140,6 @@ that counts each event, a watcher for any other fluent, and NIL if CONDITION is 
              watcher))))
 
 (defun await-event (task source)
-  "Let TASK wait until SOURCE has another event. Return what a step returns."
   (cond ((watcher-p source)
          (if (plusp (watcher-pending source))
              (give-way task)

@@ -9,7 +9,6 @@
 
 (declaim (inline stored-value))
 (defun stored-value (source)
-  "Return the stored value of SOURCE, if SOURCE is a fluent in use; otherwise return SOURCE."
   (if (fluent-p source) (fluent-now source) source))
 
 (defun compute (derived)

@@ -123,7 +123,6 @@ EVERY-VALUE is AND as a function."
   (and (every #'identity values) (first (last values))))
 
 (defun some-value (&rest values)
-  "Return the first true value of VALUES, or NIL. SOME-VALUE is OR as a function."
   (find-if #'identity values))
 
 (defun lift-junction (name function absorbing thunks)

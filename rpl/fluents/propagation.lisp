@@ -17,7 +17,6 @@
 of views that are true for the instant of the change. Meanwhile networks must not set fluents.")
 
 (defun backlog-now ()
-  "Return the backlog of the current plan runner, or a new backlog outside of plan runners."
   (if *runner* (home-backlog *runner*) (make-backlog)))
 
 ;; Costs 1 ns without a trace.
@@ -282,7 +281,6 @@ together. So a task that a pulse wakes sees the values set at the same instant (
 ;;; A run that was rewound continues in a fork. When that is over, its values are copied back.
 
 (defun copy-back-value (fluent from)
-  "Set FLUENT, a base fluent, to the value of its twin in the realm FROM."
   (let ((value (fluent-now (entity-in fluent from))) (home (home-of fluent)))
     (cond ((eql value (fluent-now fluent)))
           (home (set-in-home home fluent value))

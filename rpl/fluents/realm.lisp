@@ -86,7 +86,6 @@ fork with the same origin."
   (:documentation "Return a new object like ENTITY for REALM. Nothing uses the new object yet."))
 
 (defun ensure-token (entity)
-  "Return the token of ENTITY. If ENTITY has no token, give it a new one."
   (when (zerop (entity-token entity))
     (with-lock ((realm-lock (entity-realm entity)))
       (when (zerop (entity-token entity))
@@ -155,7 +154,6 @@ fork with the same origin."
 ;;; that are over, the newest takes the twins of its parent and becomes a fork of its grandparent.
 
 (defun twins-in (realm)
-  "Return a list of all twins in REALM."
   (with-lock ((realm-lock realm))
     (loop for twin being the hash-values of (realm-twins realm) collect twin)))
 

@@ -28,7 +28,6 @@ parts begun; its memory is the new environment."
          (enter-tail body inner frame)))))
 
 (defun binds-special-p (variables body scope)
-  "True if a form that binds VARIABLES around BODY binds one of them as a special variable."
   (or (declared-special variables body)
       (some (lambda (variable) (special-variable-p variable (scope-environment scope)))
             variables)))

@@ -10,8 +10,6 @@
 ;;; Calls in Lisp code are checked by Lisp.
 
 (defun warn-at-form (warn form control arguments)
-  "Let the function WARN report a text about FORM, with the source location of FORM. The text is
-formatted from CONTROL and ARGUMENTS."
   (call-at-source-location form
                  (lambda ()
                    (funcall warn "~A~@[ (~A)~]: ~A" (text-title) (clause-location form)

@@ -18,7 +18,6 @@ forms that Lisp runs."
      (pushnew ',name (getf *mistakes* ,where))))
 
 (defun warn-of-text-mistakes (form)
-  "Warn of the mistakes in FORM, the text of a plan."
   (map-calls (lambda (call)
                (dolist (rule (getf *mistakes* :text))
                  (let ((text (call-rule rule call)))
@@ -43,8 +42,6 @@ forms that Lisp runs."
   "The values that a fluent of TASK-STATUS can have.")
 
 (defun compared-fluent (form)
-  "Return the form of the fluent whose value FORM returns. The form of the fluent is the argument if
-FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
   (if (and (operator-in-p form '("FLUENT-VALUE" "VREF")) (consp (rest form)))
       (compared-fluent (second form))
       form))
@@ -159,7 +156,6 @@ FORM is a call of FLUENT-VALUE or VREF, otherwise FORM."
 ;;; Handlers of Lisp's. A failure is no error.
 
 (defun errors-only-p (clauses)
-  "True if each of CLAUSES, the clauses of a Lisp handler, is for errors."
   (every (lambda (clause)
            (and (consp clause)
                 (or (eq :no-error (first clause))

@@ -219,7 +219,6 @@ copy also has ADDITIONS, for macros."
           ,index))
 
 (defun environment-form (scope level)
-  "Return a form for the environment made at LEVEL, for use in a leaf of SCOPE."
   (second (element-form scope level 0)))
 
 (defun layer-wrapping (layer scope)
@@ -267,7 +266,6 @@ Return FORM."
   form)
 
 (defun leaf-lambda (form scope &rest parameters)
-  "Return a lambda expression for FORM in SCOPE. Its parameters: the environment and PARAMETERS."
   (add-source-location
    `(lambda (,(scope-variable scope) ,@parameters)
       (declare (type simple-vector ,(scope-variable scope)) (ignorable ,(scope-variable scope)))

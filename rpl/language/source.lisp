@@ -128,7 +128,6 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 ;;; Names of operators.
 
 (defun system-symbol-p (symbol)
-  "True if SYMBOL belongs to the package COMMON-LISP or to a package of this system."
   (let ((package (symbol-package symbol)))
     (or (eq package #.(find-package :cl))
         (and package (starts-with-subseq "ARS-MAGNA." (package-name package))))))
@@ -140,8 +139,6 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
         ((eq (first form) :tag) ":TAG")))
 
 (defun operator-key (name)
-  "Return the key of the operator NAME in *PLAN-FORMS*. The key is the name of the operator, or the
-symbol itself if it is a user's symbol."
   (if (and (symbolp name) (system-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)

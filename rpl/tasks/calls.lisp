@@ -16,7 +16,6 @@
   (open nil t "true if other keywords are allowed, too"))
 
 (defun keyword-of (parameter)
-  "Return the keyword for PARAMETER, a parameter after &KEY in a lambda list or a function type."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (cond ((consp name) (first name))
           (t (make-keyword name)))))

@@ -138,7 +138,6 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
               (t (make-ready task)))))))
 
 (defun evaporate-children (task)
-  "Evaporate the children of TASK, newest first."
   (loop for child = (task-newest-child task) then older
         while child
         for older = (task-older child)
@@ -191,7 +190,6 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
     (funcall (runner-on-post runner))))
 
 (defun end-requested-tasks (runner)
-  "Evaporate the tasks that other threads, or code outside of plans, have asked RUNNER to end."
   (loop for requests = (runner-ends-requested runner)
         until (swap-if-eq (runner-ends-requested runner) requests '())
         finally (loop for (task . asker) in (reverse requests)

@@ -302,7 +302,6 @@ can share these nodes. Return NIL and false if one of them has closed over somet
     (values nodes t)))
 
 (defun determine-sharing (node)
-  "Find out whether forks share NODE, and record the result in NODE."
   (multiple-value-bind (nodes shared-p) (shared-code node)
     (dolist (each nodes) (setf (node-sharing each) :shared))
     (setf (node-sharing node) (if shared-p :shared :per-run))))

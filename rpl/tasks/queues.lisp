@@ -74,7 +74,6 @@
         (timer-place timer) place))
 
 (defun sift-up (timer place heap)
-  "Put TIMER into HEAP at the index PLACE, or as far up from there as it belongs."
   (loop while (plusp place)
         for above = (ash (1- place) -1)
         while (earlier-p timer (aref heap above))
@@ -83,7 +82,6 @@
   (put-timer timer place heap))
 
 (defun sift-down (timer place heap)
-  "Put TIMER into HEAP at the index PLACE, or as far down from there as it belongs."
   (loop with count = (fill-pointer heap)
         for left = (1+ (* 2 place))
         while (< left count)

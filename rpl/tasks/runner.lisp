@@ -248,7 +248,6 @@ their slice."
                     (t (return task)))))))))
 
 (defun release-spent (runner)
-  "Queue the ready tasks of RUNNER again that were put aside because they had used their slice."
   (dolist (task (nreverse (shiftf (runner-spent runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
 

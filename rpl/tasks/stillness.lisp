@@ -141,7 +141,6 @@ ended."
           (form-text (task-form task))))
 
 (defun status-fluent-p (fluent)
-  "True if FLUENT has a name as the fluents of TASK-STATUS have."
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun end-wait-advice (name part tasks)
@@ -194,7 +193,6 @@ wait for that."
 ;;; What does not end.
 
 (defun exit-in-p (form)
-  "True if FORM contains RETURN, or another symbol with RETURN in its name."
   (typecase form
     (cons (or (exit-in-p (car form)) (exit-in-p (cdr form))))
     (symbol (search "RETURN" (symbol-name form)))))

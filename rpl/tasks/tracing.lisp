@@ -29,7 +29,6 @@ TRACE-ENTRY; they are evaluated only if there is a trace."
                      (form-now task) subject value)))
 
 (defun trace-running-task (runner event subject value)
-  "Add to the trace of RUNNER that the running task, if any, caused EVENT."
   (let* ((asker *asker*)
          (task (and (task-p asker) (eq runner (task-runner asker)) asker)))
     (add-trace-entry (runner-trace runner) (runner-tick runner) event
