@@ -144,8 +144,7 @@ UNKNOWN-GOAL if no BELIEF matches. (From XFRM, except for the syntax.)"
 
 (addition goals-under-way)
 (defun goals-under-way (&optional (task (current-task)))
-  "Return the goals that TASK (default: the calling task) works for, innermost first: a list of
-lists such as (achieve (on a b)). Each goal in the list serves the next one. The goals of the tasks
-around TASK come last."
+  "Return a list of the goals, such as (achieve (on a b)), of TASK (default: the calling task),
+innermost first. Each goal serves the next one. The goals of the tasks around TASK come last."
   (mapcar #'goal-run-form
           (remove-if-not #'goal-run-p (mapcar #'frame-data (and task (frames-around task))))))

@@ -7,8 +7,7 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
-  "The stays of one plan runner's tasks at places. STAYS is a fluent whose value is a list of the
-stays."
+  "The stays of one plan runner's tasks at places. The fluent STAYS has a list of the stays."
   (valve (make-valve 'whereabouts) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 

@@ -21,9 +21,8 @@
   +parked+)
 
 (define-construct par (&body branches)
-  "Run BRANCHES in parallel, in a plan. PAR succeeds when all branches have succeeded, with the
-first value of the last form written. PAR fails as soon as one branch fails, and evaporates the
-others (manual D.7)."
+  "Run BRANCHES in parallel in a plan. PAR succeeds when all branches have, with the first value of
+the last form written. When one branch fails, PAR fails and evaporates the others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches (single-scope scope))))
   (:steps
@@ -54,9 +53,8 @@ that branch, or fails as it failed, and evaporates the others (manual D.4; readi
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
-  "Run BRANCHES in parallel, in a plan. TRY-ALL succeeds as soon as one branch succeeds, with the
-value of that branch, and evaporates the others. If all branches fail, TRY-ALL fails with a
-COMPOSITE-FAILURE."
+  "Run BRANCHES in parallel in a plan. TRY-ALL succeeds as soon as one branch does, with its value,
+and evaporates the others. If all branches fail, TRY-ALL fails with a COMPOSITE-FAILURE."
   (:like par)
   (:steps
    (begin
@@ -200,8 +198,7 @@ FAILURES are lists with the newest first."
     (:failed (push result (tally-failures tally)))))
 
 (defun complete-by-tally (task frame tally branches)
-  "End the construct in which TASK waits at FRAME, if TALLY decides its outcome. BRANCHES is the
-number of branches."
+  "End the construct where TASK waits at FRAME, if TALLY decides the outcome of BRANCHES branches."
   (cond ((zerop (tally-missing tally))
          (end-with-value task (reverse (tally-values tally))))
         ((> (tally-missing tally) (tally-left tally))

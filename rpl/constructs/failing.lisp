@@ -77,8 +77,7 @@
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
 (defun warn-of-code-as-class (code body form)
-  "Warn if FORM handles the class CODE in BODY, where CODE is only the error code of a command.
-Commands do not fail."
+  "Warn if FORM handles CODE in BODY, where only commands, which do not fail, have the error CODE."
   (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
          (fluent (and command (fluent-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-with-class-p form code)) body)))
@@ -185,8 +184,7 @@ handler. (From CRAM.)"
 
 (addition get-counter)
 (defmacro get-counter (counter &environment environment)
-  "Return how often DO-RETRY will still run its body for COUNTER, a counter of WITH-RETRY-COUNTERS.
-(From CRAM.)"
+  "Return how often DO-RETRY still runs its body for COUNTER of WITH-RETRY-COUNTERS. (From CRAM.)"
   (check-counter "get-counter" counter environment)
   counter)
 
@@ -236,9 +234,8 @@ ended with SIGNAL. Return NIL alone if SIGNAL continues instead."
 
 (define-construct evap-protect (protected cleanup &key limit)
   "Run PROTECTED, a form, in a plan, and then CLEANUP in every case: success, failure, evaporation
-or a RETURN that leaves PROTECTED. CLEANUP may wait. If CLEANUP takes more than LIMIT ticks, it is
-abandoned, with a warning. A failure of CLEANUP counts only if PROTECTED succeeded. Return all
-values of PROTECTED."
+or a RETURN that leaves PROTECTED. CLEANUP may wait, but is abandoned with a warning after LIMIT
+ticks. A failure of CLEANUP counts only if PROTECTED succeeded. Return all values of PROTECTED."
   (:parts (protected node (plan-code protected scope))
           (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))
   (:steps

@@ -110,8 +110,7 @@ NIL" :writable)
                 values found))))))
 
 (defun advice-on-goal (name)
-  "Return a sentence about how to write a goal, if NAME is the first word of a goal's pattern;
-otherwise NIL."
+  "Return a sentence about how to write a goal, if NAME is the first word of its pattern; or NIL."
   (let ((goal (find-if (lambda (goal)
                          (let ((first (first (goal-pattern goal))))
                            (and first (symbolp first) (same-name-p name first))))

@@ -59,8 +59,7 @@ CRAM)."))
   (memory '() :type list))
 
 (defun new-policy-use (policy arguments)
-  "Return a new use of POLICY, a policy or its name, with ARGUMENTS. Signals WRONG-ARGUMENT if
-POLICY does not take ARGUMENTS."
+  "Return a new use of POLICY, a policy or its name, with ARGUMENTS, or signal WRONG-ARGUMENT."
   (let* ((policy (find-policy policy))
          (parameters (policy-lambda-list policy))
          (trouble (arguments-misfit-text (shape-of parameters) arguments :wrong-p (constantly t))))

@@ -113,8 +113,7 @@ it is a fluent. WATCHER waits for EARLIER."
 ;;; Reading the constraints.
 
 (defun constraint-list (constraints)
-  "Return CONSTRAINTS as one list of (:order a b) forms. CONSTRAINTS are such forms or lists of such
-forms."
+  "Return CONSTRAINTS, (:order a b) forms or lists of such forms, as one list of them."
   (loop for constraint in constraints
         if (and (consp constraint) (consp (first constraint)))
           append constraint

@@ -28,8 +28,7 @@
   "Names of operators that a (return value) in their body ends.")
 
 (defun lost-return-value (policy)
-  "Return the (return value) that ends POLICY, if POLICY is a WHENEVER, whose value is lost.
-Otherwise return NIL."
+  "Return the (return value) that ends POLICY, if it is a WHENEVER and so loses the value; or NIL."
   (and (operator-in-p policy '("WHENEVER"))
        (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
                         (cddr policy)))
@@ -74,9 +73,8 @@ returns a value."
          (operator-in-p (first (last forms)) '("FAIL")))))
 
 (defun warn-of-swapped-policy (policy body form)
-  "Warn if POLICY and BODY of FORM were probably written in the wrong order. The order is probably
-wrong if BODY is a WHENEVER that never ends and POLICY a list of steps, or if BODY only waits and
-then fails, as policies often do."
+  "Warn if POLICY and BODY of FORM are probably in the wrong order: if BODY is a WHENEVER that never
+ends and POLICY a list of steps, or if BODY only waits and then fails, as policies often do."
   (let ((endless-p (and (null (rest body)) (endless-whenever-p (first body)))))
     (when (and (not (looks-like-policy-p policy))
                (if endless-p

@@ -78,9 +78,8 @@ effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)
     (mapc #'evaporate (task-children task))))
 
 (define-construct retry-after-suspension (&body body)
-  "Run BODY in a plan as a separate task. When the task is stopped, BODY evaporates, and its
-cleanups run. When the task may run again, BODY starts from the beginning. Return the first value of
-BODY (from CRAM)."
+  "Run BODY in a plan as a separate task. If the task is stopped, BODY evaporates, and its cleanups
+run. When the task may go on, BODY starts anew. Return the first value of BODY (from CRAM)."
   (:parts (body node (body-code body scope)))
   (:steps
    (begin

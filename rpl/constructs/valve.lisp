@@ -254,8 +254,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 
 ;; The new owner has no parts yet, and at least the priority of those in line: no other can have it.
 (defun grant-waiting (valve)
-  "Grant the first claim that waits for VALVE and is grantable. Afterwards give VALVE back to its
-losers, if possible."
+  "Grant the first grantable claim waiting for VALVE. Then give VALVE back to losers, if possible."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
     (when claim (grant-queued-claim claim)))
   (dolist (claim (owner-claims valve))

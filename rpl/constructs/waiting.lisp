@@ -18,8 +18,7 @@
   (setf (task-timer task) (make-timer-after ticks task #'time-out)))
 
 (defun span-in-ticks (span unit operator)
-  "Return the duration SPAN, a number or a fluent, in ticks. UNIT is :ticks or :seconds. OPERATOR is
-named in errors."
+  "Return SPAN, a number or fluent, in ticks. UNIT is :ticks or :seconds. Errors name OPERATOR."
   (let ((span (fluent-value span)))
     (unless (quantity-p span)
       (reject-argument operator 'span span "a number from -1e15 to 1e15"))
@@ -35,8 +34,7 @@ named in errors."
                    (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
 (defun span-lambda (operator span unit form scope)
-  "Return a lambda expression that returns the duration SPAN in ticks, for the environment. SPAN and
-UNIT are forms in FORM."
+  "Return a lambda expression from the environment to ticks, for SPAN and UNIT, forms in FORM."
   (check-unit unit form)
   (when (and (realp span) (minusp span))
     (style-warn-of form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
@@ -61,8 +59,7 @@ number up to 1e15. If SPAN is 0 or less, do not wait."
 ;;;; Waiting for a fluent
 
 (defun wake-waiter (watcher value trouble)
-  "Continue the task of WATCHER with VALUE, or let it fail with TROUBLE, because the watched fluent
-has become true."
+  "Let the task of WATCHER, whose fluent became true, go on with VALUE or fail with TROUBLE."
   (let ((task (watcher-client watcher)))
     (unwatch watcher)
     (when (eq watcher (task-awaiting task))

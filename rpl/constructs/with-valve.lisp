@@ -3,8 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 (defun valve-for (object)
-  "Return the valve in the current run that OBJECT, a valve or a fluent with a valve as value,
-stands for. Signals WRONG-ARGUMENT."
+  "Return this run's valve for OBJECT, a valve or a fluent with a valve. Signals WRONG-ARGUMENT."
   (let ((valve (fluent-value object)))
     (unless (valve-p valve)
       (reject-argument 'with-valve 'valve valve

@@ -23,8 +23,7 @@
           (t (values (apply operator (mapcar #'stored-value sources)))))))
 
 (defun recompute (derived)
-  "Recompute the value of DERIVED, which is in use. Return true if the value changed, or if the
-computation signalled an error."
+  "Recompute DERIVED, which is in use. Return true if its value changed or there was an error."
   (declare #.*hot*)
   (let ((trouble (loop for source in (derived-sources derived)
                        thereis (and (derived-p source) (derived-trouble source))))
@@ -69,9 +68,8 @@ computation signalled an error."
         (when (fluent-p source) (assign-home source))))))
 
 (defun watch (watcher)
-  "Register WATCHER with its fluent, after the watchers that are already registered. Another thread
-may have just set the fluent. So a caller that waits for the fluent to become true must check the
-fluent once more afterwards."
+  "Register WATCHER with its fluent, after the watchers already registered. Another thread may have
+just set the fluent, so a caller that waits for it to become true must check it again afterwards."
   (let ((fluent (watcher-fluent watcher)))
     (unless (eq *runner* (fluent-home fluent))
       (assign-home fluent)
@@ -207,8 +205,7 @@ a base fluent, return a list of FLUENT."
       (list fluent)))
 
 (defun fluent-watchers (fluent)
-  "Return the clients of the watchers of FLUENT, in order of arrival. Watchers of networks of FLUENT
-do not count."
+  "Return the clients of the watchers of FLUENT itself, not of its networks, in order of arrival."
   (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
         while watcher collect (watcher-client watcher)))
 

@@ -24,8 +24,7 @@
       (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
 
 (defun change-since-reading (view value)
-  "Return a number if VALUE, the current value of the fluent of VIEW, differs from the value when
-VIEW was last read; or NIL."
+  "Return a number if VALUE, of VIEW's fluent, is not that at the last reading of VIEW; or NIL."
   (destructuring-bind (sets . last) (view-memory view)
     (let ((now (count-sets (view-bases view))))
       (unless (= sets now)
@@ -101,8 +100,7 @@ or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (Fr
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 
 (defmacro lifting (operator &rest arguments &environment environment)
-  "Call the function with the name OPERATOR with ARGUMENTS; return a network if any argument is a
-fluent (reading 184)."
+  "Call the function OPERATOR with ARGUMENTS; return a network if any is a fluent (reading 184)."
   (let* ((bindings (loop for argument in arguments
                          unless (constantp argument environment)
                            collect (list (gensym "ARGUMENT")
@@ -118,8 +116,7 @@ fluent (reading 184)."
            (,operator ,@values)))))
 
 (defun every-value (&rest values)
-  "Return the last of VALUES if all VALUES are true; otherwise NIL. VALUES must not be empty.
-EVERY-VALUE is AND as a function."
+  "Return the last of VALUES, which must not be empty, if all VALUES are true; otherwise NIL."
   (and (every #'identity values) (first (last values))))
 
 (defun some-value (&rest values)

@@ -287,8 +287,7 @@ together. So a task that a pulse wakes sees the values set at the same instant (
           (t (set-now fluent value)))))
 
 (defun copy-back-values (from realm)
-  "Set the base fluents of REALM to the values of their twins in the realm FROM. FROM is a fork of
-REALM that is over."
+  "Set the base fluents of REALM to the values of their twins in FROM, an ended fork of REALM."
   (let ((*realm* realm))
     (loop for each = from then (realm-parent each)
           until (or (null each) (eq each realm))

@@ -52,8 +52,7 @@ made" :writable))
 
 (declaim (inline entity-here))
 (defun entity-here (entity)
-  "Return the object that represents ENTITY in the current run: ENTITY itself or, in a fork of the
-run of ENTITY, its twin."
+  "Return what represents ENTITY in the current run: ENTITY or, in a fork of its run, its twin."
   (if (eq *realm* (entity-realm entity))
       entity
       (entity-in entity *realm*)))
@@ -78,8 +77,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
          (gethash (entity-token entity) (realm-twins realm)))))
 
 (defun twin-here (entity)
-  "Return the object that represents ENTITY in the current run. ENTITY may come from this run or any
-fork with the same origin."
+  "Return what represents ENTITY, from this run or any fork of the same origin, in the current run."
   (or (known-twin entity *realm*) (entity-here entity)))
 
 (defgeneric fresh-twin (entity realm)

@@ -29,8 +29,7 @@
     (warn-at-form #'warn-of-style form control arguments)))
 
 (defun known-operators (&optional (package *package*))
-  "Return the names of operators that a misspelt call in PACKAGE could mean. Names of one letter are
-left out."
+  "Return the names, of several letters, of operators that a misspelt call in PACKAGE could mean."
   (let ((names (declared-names)))
     (do-symbols (symbol package names)
       (when (and (known-function-p symbol nil)

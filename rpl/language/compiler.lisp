@@ -40,8 +40,7 @@
           (t (copy-source-location `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
-  "Return a Lisp form with the meaning that FORM, a call in the text of a plan, has in plans. If
-FORM means the same in Lisp, return FORM."
+  "Return a Lisp form with the meaning in plans of FORM, a call in plan text; perhaps FORM itself."
   (let ((name (or (plan-operator-name form) "")))
     (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
       (mapc #'check-condition (rest form)))
@@ -64,8 +63,7 @@ FORM means the same in Lisp, return FORM."
             (t form)))))
 
 (defun ccase-meaning (form)
-  "Return a Lisp form with the meaning of FORM, a CCASE, in plans. A new key is stored in a
-variable, not in the fluent."
+  "Return a Lisp form for FORM, a CCASE in a plan. A new key goes to a variable, not to the fluent."
   (with-gensyms (key)
     `(let ((,key (operand-value ,(second form))))
        (,(first form) ,key ,@(cddr form)))))
@@ -125,8 +123,7 @@ variable, not in the fluent."
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun condition-lambda (form scope)
-  "Return a lambda expression that returns the fluent or other object of the condition FORM, for an
-environment."
+  "Return a lambda expression from an environment to the fluent or other object of condition FORM."
   (check-condition form)
   (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 

@@ -25,8 +25,7 @@
       (reject-name "state" name names)))
 
 (defun with-node-form (name clauses forms)
-  "Return a form that runs FORMS with access to the parts and states that CLAUSES define for nodes
-of type NAME."
+  "Return a form that runs FORMS with the parts and states that CLAUSES define for a node NAME."
   (let ((states (mapcar #'first (clause :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))
@@ -61,8 +60,7 @@ of type NAME."
      ,(with-node-form name clauses forms)))
 
 (defun node-functions (name clauses)
-  "Return a list of lists (slot function definition) for the slots of a node of type NAME, as
-CLAUSES define them."
+  "Return lists (slot function definition) for the slots that CLAUSES give a node of type NAME."
   (flet ((row (slot prefix variables forms)
            (when forms
              (let ((function (symbolicate prefix '- name)))

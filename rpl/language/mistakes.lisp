@@ -10,9 +10,8 @@
   "The names of the rules for mistakes: a property list of the lists for :TEXT and :LEAF.")
 
 (defmacro define-mistake (name where (form) documentation &body body)
-  "Define the rule NAME, a function that looks for a mistake in FORM, a call. The rule returns
-sentences about the mistake, or NIL. WHERE is :TEXT for calls in plan text, or :LEAF for calls in
-forms that Lisp runs."
+  "Define the rule NAME, a function that returns sentences about a mistake in FORM, a call; or NIL.
+WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp runs."
   `(progn
      (defun ,name (,form) ,documentation ,@body)
      (pushnew ',name (getf *mistakes* ,where))))

@@ -131,8 +131,7 @@ TIMES returns the largest number of turns, NIL for any number. Frames remember t
                (enter body environment frame)))))))
 
 (defun split-loop-test (forms)
-  "Return the condition that ends a loop of FORMS, which follow LOOP, and the body of the loop. The
-condition is NIL if the loop has no test."
+  "Return the condition, or NIL, that ends a loop of FORMS, which follow LOOP, and the loop's body."
   (cond ((starts-with-test-p forms "UNTIL") (values (second forms) (cddr forms)))
         ((starts-with-test-p forms "WHILE")
          (values (note-own-text `(not ,(second forms))) (cddr forms)))

@@ -15,8 +15,7 @@
              (:global "is a global variable")))))
 
 (defun check-variables (variables environment &optional (form nil form-p))
-  "Signal MALFORMED-DEFINITION unless VARIABLES can be bound in ENVIRONMENT. The error is about
-FORM, if FORM is given."
+  "Signal MALFORMED-DEFINITION, about FORM if given, unless VARIABLES can be bound in ENVIRONMENT."
   (dolist (variable variables)
     (let ((trouble (invalid-variable-text variable environment)))
       (when trouble
@@ -144,8 +143,7 @@ handlers" :writable :export)
        ,inner)))
 
 (defun layered-scope (scope layer level &rest additions)
-  "Return a copy of SCOPE with LAYER, at LEVEL, as the innermost layer. The Lisp environment of the
-copy also has ADDITIONS, for macros."
+  "Return a copy of SCOPE with LAYER, at LEVEL, innermost, and ADDITIONS in its Lisp environment."
   (inner-scope scope
                :level level
                :layers (cons layer (scope-layers scope))
@@ -253,8 +251,7 @@ copy also has ADDITIONS, for macros."
   "The innermost form of the source text around the form that is being compiled, or NIL.")
 
 (defun add-source-location (form)
-  "Give FORM, code made around parts of the current source form, the source location of that form.
-Return FORM."
+  "Return FORM, made around parts of the current source form, with that form's source location."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (has-source-location-p form)))
                (copy-source-location form *current-source-form*)

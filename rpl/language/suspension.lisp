@@ -74,8 +74,7 @@ variable, or a binding of something that cannot be bound."
           (t :may))))
 
 (defun defined-exits (form plan-form)
-  "Return a list of the parts of FORM, and a list of the blocks or tags that FORM defines for these
-parts. Return NIL if FORM defines none."
+  "Return lists of the parts of FORM and of the blocks or tags that FORM defines for them; or NIL."
   (cond ((eq (first form) 'block) (values (cddr form) (list (second form))))
         ((eq (first form) 'tagbody)
          (values (remove-if #'atom (rest form)) (remove-if #'consp (rest form))))
@@ -116,8 +115,7 @@ parts. Return NIL if FORM defines none."
              (procedure-name-p (first form))))))
 
 (defun suspension (form scope)
-  "Return whether FORM makes its task wait: :MUST, :MAY or NIL. The second value is the expression
-in FORM that is the reason."
+  "Return whether FORM makes its task wait, :MUST, :MAY or NIL, and the reason, a part of FORM."
   (let ((result nil) (reason nil))
     (labels ((note (kind form)
                (when (or (null result) (and (eq kind :must) (eq result :may)))

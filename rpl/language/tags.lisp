@@ -60,8 +60,7 @@ layers of its scope. REPLACED is NIL, or a list of the replacing form and the or
                   :replaced '())))
 
 (defun tags-in (forms)
-  "Return the names of the tags in FORMS. Tags inside a WITH-TAGS, PAR-LOOP or similar construct do
-not count."
+  "Return the names of the tags in FORMS. not in a WITH-TAGS, PAR-LOOP or similar construct."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))
@@ -140,8 +139,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
                               (ensure-list (procedure-body part)))))))
 
 (defun tagged-in (node name)
-  "Return a list of the tagged nodes with the name NAME in NODE, in order. If such nodes are nested,
-only the outermost is in the list."
+  "Return a list, in order, of the outermost tagged nodes with the name NAME in NODE."
   (let ((seen (make-hash-table :test 'eq)) (found '()))
     (labels ((visit (node)
                (unless (gethash node seen)

@@ -135,9 +135,8 @@ shown as suspended."
 ;;; SUSPEND and WAKE-UP.
 
 (defun call-or-post (word task function)
-  "Call FUNCTION, which does the work of a call of WORD on TASK. Call it now if a plan of the same
-runner is the caller or TASK has no runner. Otherwise post FUNCTION, which is then called before the
-next reaction. Return TASK."
+  "Call FUNCTION, which does the work of WORD on TASK, now if a plan of the same runner calls or
+TASK has no runner; otherwise post FUNCTION, to be called before the next reaction. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)

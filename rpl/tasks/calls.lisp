@@ -86,8 +86,7 @@ has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents
   (and (symbolp name) (get name 'end) t))
 
 (defun fluent-of-code (name code)
-  "Return the form of the fluent that is set if the command of the plan function NAME ends with
-CODE, or NIL."
+  "Return the form of the fluent that is set if a command of function NAME ends with CODE; or NIL."
   (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
     (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
 

@@ -91,8 +91,7 @@ failure counts as the number of steps that take as long. So a plan that only fai
     (when (eq :ready (task-state task)) (make-ready task))))
 
 (defun repair-timers (runner tasks)
-  "Rebuild the timers of RUNNER from its old timers and those of TASKS. Leave out timers of tasks
-that are over."
+  "Rebuild RUNNER's timers from its old ones and those of TASKS, without timers of ended tasks."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
                                             (remove nil (mapcar #'task-timer tasks)))

@@ -55,8 +55,7 @@
         (t (make-ready parent))))
 
 (defun end-with-signal (parent signal)
-  "Evaporate the children of PARENT, which waits for them. When all children are gone, send PARENT
-the signal SIGNAL."
+  "Evaporate the children of PARENT, which waits for them. Then send SIGNAL to PARENT."
   (setf (task-signal parent) signal
         (task-awaiting parent) nil)
   (if (task-newest-child parent)

@@ -160,8 +160,7 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
-  "Apply the oldest batch or call posted to RUNNER. Return true if there was one. Errors become
-messages."
+  "Apply the oldest batch or call posted to RUNNER. Return true if any. Errors become messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
       (at-home (runner)
@@ -173,8 +172,7 @@ messages."
 ;;; Ending.
 
 (defun stop-plan (runner &optional task)
-  "Evaporate TASK, or all tasks of RUNNER if TASK is NIL, before the next step. Any thread may call
-STOP-PLAN."
+  "From any thread, evaporate TASK, or all tasks of RUNNER if TASK is NIL, before the next step."
   (mapc #'request-end (if task (list task) (plan-runner-tasks runner))))
 
 (defun close-runner (runner)
@@ -192,8 +190,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
 ;;; Time.
 
 (defun note-tick (runner tick)
-  "Set the time of RUNNER to TICK, outside of reactions. The next reaction wakes the tasks that wait
-for this time."
+  "Set the time of RUNNER to TICK, outside of reactions. The next reaction wakes tasks due at TICK."
   (setf (runner-tick runner) tick))
 
 (defun advance-timers (runner tick)
@@ -211,8 +208,7 @@ for this time."
   (and (or (runner-ends-requested runner) (posted-p runner)) t))
 
 (defun runner-idle-p (runner)
-  "True if no task of RUNNER is ready and nothing is posted. Then only time or a post can change the
-state of RUNNER."
+  "True if no task of RUNNER is ready and nothing is posted: only time or a post can change RUNNER."
   (not (or (any-ready-p runner) (outside-request-p runner))))
 
 (defun skip-idle-tick (runner tick)

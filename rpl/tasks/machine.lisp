@@ -43,8 +43,7 @@ environment."))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
-  "True while plans may enter the debugger. If true, leaves offer restarts that run a leaf again or
-return a value for it.")
+  "True while plans may enter the debugger. Leaves then offer to run again or to return a value.")
 
 (declaim (inline call-leaf))
 (defun call-leaf (leaf environment)

@@ -252,20 +252,17 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
     (values (procedure-body procedure)
             (apply (procedure-entry procedure) arguments))))
 
-;;; All runs share the plans that were defined by name. But INTERP-LAMBDA makes a plan when it is
-;;; evaluated, and the functions in its nodes, and in those of its local plans, close over the
-;;; variables around it. Such nodes belong to one run, and so do the nodes that refer to them; a
-;;; fork copies both.
+;;; All runs share the plans defined by name. But INTERP-LAMBDA makes a plan when evaluated, and the
+;;; functions in its nodes, and in those of its local plans, close over the variables around it.
+;;; Such nodes, and the nodes that refer to them, belong to one run; a fork copies both.
 
 (defun defined-procedure-p (procedure)
-  "True if PROCEDURE is the current definition of its name. False for local procedures and
-procedures without a name."
+  "True if PROCEDURE is the current definition of its name. False if it is local or has no name."
   (and (procedure-name procedure)
        (eq procedure (gethash (procedure-name procedure) *cells*))))
 
 (defun parts-of-code (object)
-  "Return a list of the objects that OBJECT refers to. OBJECT is a node, procedure, function or
-environment."
+  "Return a list of what OBJECT, a node, procedure, function or environment, refers to."
   (etypecase object
     (function (and (closure-p object) (closure-values object)))
     (node (node-parts object))

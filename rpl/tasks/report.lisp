@@ -37,8 +37,7 @@ with the task, a column and STREAM."
   (cut (failure-text failure) 500))
 
 (defun write-some (control items stream)
-  "Write the first 30 of ITEMS to STREAM by the format string CONTROL, one at a time, and the number
-of the remaining items."
+  "Write the first 30 of ITEMS to STREAM by the format string CONTROL, and the number of the rest."
   (let ((more (nthcdr 30 items)))
     (dolist (item (ldiff items more)) (format stream control item))
     (when more (format stream "    ... and ~D more~%" (length more)))))
@@ -55,9 +54,8 @@ of the remaining items."
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun probable-slip-p (type class)
-  "True if TYPE, a symbol that does not match CLASS, may be a slip for CLASS. A slip has a similar
-name that differs not only in digits, or another ending, as STUCK and STUCKED; or only one of TYPE
-and CLASS is a keyword."
+  "True if the symbol TYPE, which does not match CLASS, may be a slip for CLASS: a similar name that
+differs not only in digits; another ending, as STUCK and STUCKED; or only one is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
@@ -155,8 +153,7 @@ that returns true is responsible for reporting a failure of the task. The functi
 any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "Report the failure of TASK, a top-level task that has just ended, if TASK has failed. AWAITED-P
-is as for REPORT-FAILURE."
+  "If TASK, a top-level task just ended, has failed, report it. AWAITED-P is as for REPORT-FAILURE."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))

@@ -24,8 +24,7 @@ The slice is a tenth of the steps of a reaction if that is less.")
 changes are applied. The changes are then applied even if some tasks do not wait yet.")
 
 (defparameter *runaway-limit* 1000000
-  "The number of steps after which time passes in a reaction without a budget, although tasks are
-still ready.")
+  "The number of steps after which time passes in a reaction without budget, despite ready tasks.")
 
 (addition *plan-task-limit*)
 (defparameter *plan-task-limit* 200000
@@ -33,8 +32,7 @@ still ready.")
 runner. Starting one more task fails with class :TOO-MANY-TASKS.")
 
 (define-record (plan-runner (:include home) (:constructor %make-plan-runner) (:conc-name runner-))
-  "An object that runs plans. A plan runner has the tasks, the tick, the timers, and the changes and
-calls posted from outside."
+  "An object that runs plans, with tasks, tick, timers, and changes and calls posted from outside."
   (rings (coerce (loop repeat +levels+ collect (make-ring)) 'simple-vector) (simple-vector 8))
   (mask 0 fixnum :writable)
   (current nil (or null task) :writable)
@@ -48,8 +46,7 @@ calls posted from outside."
   (client nil t "the object for which the plan runner runs plans, as given to
 MAKE-PLAN-RUNNER" :export)
   (steps 0 (unsigned-byte 62)
-         "the number of steps that the plan runner has taken. A step begins or ends an
-expression" :writable :export)
+         "the number of steps taken. A step begins or ends an expression" :writable :export)
   (pause 0 (unsigned-byte 62) "the number of steps at which the running task must pause" :writable)
   (limit 0 (unsigned-byte 62) "the number of steps at which the reaction must end" :writable)
   (slice +slice+ fixnum :writable)
@@ -78,8 +75,7 @@ tasks" :writable :export)
   (lisps-dice nil (or null random-state) "the random state for CL:RANDOM in plans of the plan
 runner; NIL for the state of all programs" :writable :export)
   (trace nil (or null chronicle)
-         "the trace of the plan runner in its internal form, or NIL: see
-PLAN-TRACE" :writable :export)
+         "the trace in its internal form, or NIL: see PLAN-TRACE" :writable :export)
   (clock nil (or null function) :writable)
   (stepper nil (or null function) "the function to call before each step with the task and the
 frame, or NIL" :writable :export)
@@ -149,13 +145,11 @@ of CLIENT. If FAILURE is NIL, note that TASK, a part of a plan, was just ended."
       (mapcan #'all-tasks (plan-runner-tasks which))))
 
 (defun task-numbered (number which)
-  "Return the task with the number NUMBER in WHICH, a task or a plan runner, if this task is not
-over; otherwise NIL."
+  "Return the task with the number NUMBER in WHICH, a task or runner, if it is not over; or NIL."
   (find number (all-tasks which) :key #'task-serial))
 
 (defun counted-steps (runner)
-  "Return the number of counted steps of RUNNER: steps taken, without those of exempt tasks, and
-charged steps."
+  "Return the number of counted steps of RUNNER: steps of tasks not exempt, and charged steps."
   (+ (runner-steps runner) (runner-uncovered runner)))
 
 (defun count-slow-step (steps runner &optional task)
@@ -218,8 +212,7 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
     (mark-level runner level)))
 
 (defun blocked-p (task)
-  "True if TASK, or a task around it, is blocked. For an evaporating task, only blocks of its own
-cleanup count."
+  "True if TASK or a task around it is blocked. If it evaporates, only its cleanup's blocks count."
   (loop for each = task then (task-parent each)
         until (or (null each) (task-ending-p each))
         thereis (plusp (task-blocked each))))
@@ -229,8 +222,7 @@ cleanup count."
        (<= (task-slice task) 0)))
 
 (defun take-ready (runner)
-  "Return the next task of RUNNER to run, or NIL. Put aside blocked tasks and tasks that have used
-their slice."
+  "Return RUNNER's next task to run, or NIL. Put aside blocked tasks and those past their slice."
   (declare #.*hot* (type plan-runner runner))
   (loop
     (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))

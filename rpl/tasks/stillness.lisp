@@ -11,8 +11,7 @@
 ;;; could wake a task, it does not count as stuck; the report of deadlocks covers it in the end.
 
 (defgeneric tasks-awaited (awaited)
-  (:documentation "Return the tasks that must go on before AWAITED can happen; NIL if they are
-unknown.")
+  (:documentation "Return the tasks that must go on before AWAITED can happen; NIL if unknown.")
   (:method (awaited)
     (declare (ignore awaited))
     '()))
@@ -25,8 +24,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
     '()))
 
 (defun all-preemptors (task)
-  "Return the tasks that keep TASK, or a task around TASK, from running, because they own a resource
-that TASK needs."
+  "Return the tasks that keep TASK, or a task around it, from running by owning what it needs."
   (loop for each in (lineage task)
         append (loop for frame in (frame-chain (task-frame each))
                      append (preemptors each (frame-data frame)))))
@@ -44,8 +42,7 @@ that TASK needs."
       (all-preemptors task)))
 
 (defun stuck-tasks (task)
-  "Return a list of TASK and the tasks in a cycle of waits with TASK; or NIL if some of them can go
-on."
+  "Return TASK and the tasks in a cycle of waits with it; or NIL if some of them can go on."
   (let ((stuck '()) (open (list task)))
     (loop while open
           do (let* ((next (pop open)) (others (obstacles next)))
@@ -101,8 +98,7 @@ on."
         others))
 
 (defun warn-of-remaining-cycle (task)
-  "Queue a warning if the remaining parts of TASK wait in a cycle through TASK. One part has just
-ended."
+  "Queue a warning if the parts of TASK left after the end of one wait in a cycle through TASK."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
@@ -144,8 +140,7 @@ ended."
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun end-wait-advice (name part tasks)
-  "Return the text of the form that waits for the end of the command NAME on PART, or NIL if TASKS
-wait for that."
+  "Return the text of a form that waits for the end of command NAME on PART; NIL if TASKS do so."
   (let ((text (wait-for-end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
@@ -242,8 +237,7 @@ wait for that."
     (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
 
 (defun wait-forever (task)
-  "Let TASK wait forever, because it got something other than a fluent to wait for. Queue a warning,
-once for each form."
+  "Let TASK wait forever, as it got no fluent to wait for. Queue a warning, once for each form."
   (park task +no-fluent+)
   (warn-of-wait task (no-fluent-advice task)))
 

@@ -53,8 +53,7 @@ MEMORY" :writable :export))
 
 (addition task task-p)
 (define-record (task (:constructor make-task (name node)
-                     "Return a new task with the given name and node that has not started: see
-SPAWN."))
+                     "Return a new task with this name and node, not yet started: see SPAWN."))
   "A task: one run of an expression of a plan."
   (name nil t "the name of the task: its tag, the name of its procedure, or
 NIL" :writable :addition)
@@ -67,8 +66,7 @@ NIL" :writable :addition)
   (level 0 (integer 0 7) "the level of the task: 0 for the plan itself; for a policy, one above the
 level of its body" :writable :export)
   (index 0 fixnum
-         "the number of the task among the parts of the task around it, from 0
-on" :writable :export)
+         "the number of the task among the parts of the task around it, from 0" :writable :export)
   (frame nil (or null frame) "the innermost frame of the task, NIL if the task is
 over" :writable :export)
   (value nil t "the value with which the task's innermost frame goes on" :writable)

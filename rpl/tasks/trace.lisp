@@ -140,8 +140,7 @@ each (chunk fill), newest first."
         (chronicle-fill trace) 0))
 
 (defun add-trace-entry (trace tick event task form subject value)
-  "Add to TRACE, a chronicle, that EVENT happened to TASK, the number of a task. The agent is
-*ASKER*."
+  "Add to the chronicle TRACE that EVENT happened to TASK, a task's number. The agent is *ASKER*."
   (declare #.*hot* (type chronicle trace))
   (when (> (+ 7 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (asker *asker*))

@@ -42,8 +42,7 @@ TRACE-ENTRY; they are evaluated only if there is a trace."
         (lambda (kind fluent value) (trace-running-task runner kind fluent value))))
 
 (defun start-trace (runner)
-  "Start a trace of RUNNER. Tasks that already run appear to start now. Does nothing if RUNNER keeps
-a trace already."
+  "Start a trace of RUNNER, unless RUNNER keeps one. Tasks that already run appear to start now."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)

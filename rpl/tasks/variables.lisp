@@ -4,10 +4,9 @@
 
 (export '(*calling-task* install-task-variable make-task-bindings task-variable task-variable-p))
 
-;;; Special variables belong to the thread, which all tasks share. A task variable is looked up
-;;; from the calling task outwards: in its frames (those that bind variables have TASK-BINDINGS as
-;;; their DATA), in what it has set, in the frames of the task around it, and so on. A binding is
-;;; gone with its frame.
+;;; All tasks share the thread and its special variables. A task variable is sought from the calling
+;;; task outwards: in its frames (those that bind variables have TASK-BINDINGS as DATA), in what it
+;;; has set, in the frames of the task around it, and so on. A binding is gone with its frame.
 
 (define-record (task-bindings (:constructor make-task-bindings (cells)))
   "The data of a frame that binds task variables. CELLS is a list of conses (name . value)."
