@@ -64,7 +64,7 @@ attempts to return."))
   (and (get-properties (rest (second form)) (list key)) t))
 
 (defun at-location-text (place there go attempts body)
-  "Return plan text that runs BODY at PLACE. GO brings the robot there, and THERE is true there."
+  "Return plan text that runs BODY at PLACE. GO brings the robot there; THERE is true at PLACE."
   (with-gensyms (at most left here stay done again lost)
     `(let* ((,at ,place) (,most (check-attempts ,attempts)) (,left ,most)
             (,here (whereabouts)) (,stay nil))

@@ -7,7 +7,7 @@
 
 (addition policy-p)
 (define-record (policy (:constructor %make-policy (name lambda-list init check recover clean-up)))
-  "A policy: a condition that must hold while part of a plan runs, and the reactions if it fails."
+  "A policy: a condition that must hold while part of a plan runs, and reactions if it does not."
   (name nil symbol
         "the name of the policy, a symbol; NIL if MAKE-POLICY made the policy" :writable :addition)
   (lambda-list '() list "the lambda list of the policy's clauses" :writable :addition)

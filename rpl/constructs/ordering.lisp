@@ -113,7 +113,7 @@ it is a fluent. WATCHER waits for EARLIER."
 ;;; Reading the constraints.
 
 (defun constraint-list (constraints)
-  "Return CONSTRAINTS, (:order a b) forms or lists of such forms, as one list of them."
+  "Return CONSTRAINTS, (:order a b) forms or lists of such forms, as one list of such forms."
   (loop for constraint in constraints
         if (and (consp constraint) (consp (first constraint)))
           append constraint

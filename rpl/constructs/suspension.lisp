@@ -72,7 +72,7 @@ effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)
    (inside (values (frame-up frame) value))))
 
 (defun evaporate-body (task frame)
-  "Evaporate the part of TASK that runs the body of FRAME, because it must not continue from there."
+  "Evaporate the part of TASK that runs the body of FRAME, because this part must not go on."
   (when (eq frame (task-frame task))
     (setf (frame-data frame) nil)
     (mapc #'evaporate (task-children task))))

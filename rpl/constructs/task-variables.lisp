@@ -15,8 +15,8 @@
 visible in that task and in the tasks that it starts, and nowhere else. In other tasks the value is
 VALUE, or the value set outside of plans. WITH-TASK-VARIABLES binds the variable. (Special variables
 belong to the whole thread, and LET cannot bind them around forms that wait.) Functions that plans
-call see the variable too, if they are compiled after its definition. Evaluating it again sets the
-value, as DEFPARAMETER does. (From CRAM, except for the effect of setting the variable in a task.)"
+call see the variable too, if they are compiled after its definition. Evaluating the definition
+again sets the value, as DEFPARAMETER does. (From CRAM, except for setting the variable in a task.)"
   (check-task-variable name)
   (unless (typep documentation '(or null string))
     (reject-clause (title "define-task-variable" name) documentation

@@ -203,7 +203,7 @@ argument, or a view with :ALWAYS as FLUENT, BODY runs once for each event."
 ;;;; Waiting for any condition
 
 (defun wait-until-text (condition)
-  "Return plan text that waits until the form CONDITION is true, and returns the value."
+  "Return plan text that waits until the form CONDITION is true, and returns its value."
   (with-gensyms (met again value)
     `(block ,met
        (tagbody

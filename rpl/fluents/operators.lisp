@@ -151,14 +151,14 @@ further thunks when the result is certain. From the first fluent on, the result 
 (define-lifted not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
-  "Do as Lisp's AND. If one of FORMS is a fluent, return a network of it and the remaining forms."
+  "Do as Lisp's AND. If a form's value is a fluent, return a network of it and the remaining forms."
   (cond ((null forms) t)
         ((null (rest forms)) (first forms))
         (t `(lift-junction 'and #'every-value nil
                            (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
-  "Do as Lisp's OR. If one of FORMS is a fluent, return a network of it and the remaining forms."
+  "Do as Lisp's OR. If a form's value is a fluent, return a network of it and the remaining forms."
   (if (rest forms)
       `(lift-junction 'or #'some-value t
                       (list ,@(loop for form in forms collect `(lambda () ,form))))

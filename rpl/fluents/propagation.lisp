@@ -10,7 +10,7 @@
 ;;; whose watcher was called for a true value will wake, whatever happens to the fluent afterwards.
 ;;;
 ;;; A pulse notifies the watchers of all dependent fluents that are true at its instant, even if it
-;;; does not change them. The change back then notifies the watchers of what was false.
+;;; does not change them. The change back notifies the watchers of what was false at the instant.
 
 (defvar *propagating* nil
   "NIL, or, while a change spreads through networks, a list of one element. The element is the list

@@ -92,7 +92,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
   (entity-token entity))
 
 (defun add-twin (entity realm twin)
-  "Make TWIN the twin of ENTITY in REALM, unless there is one already. Return the twin in REALM."
+  "Make TWIN the twin of ENTITY in REALM, unless there is a twin already. Return the twin in REALM."
   (let ((token (ensure-token entity)))
     (with-lock ((realm-lock realm))
       (or (gethash token (realm-twins realm))

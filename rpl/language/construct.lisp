@@ -25,7 +25,7 @@
       (reject-name "state" name names)))
 
 (defun with-node-form (name clauses forms)
-  "Return a form that runs FORMS with the parts and states that CLAUSES define for a node NAME."
+  "Return a form that runs FORMS with the parts and states that CLAUSES give nodes of type NAME."
   (let ((states (mapcar #'first (clause :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))

@@ -128,7 +128,7 @@ anything. The second value is a list of (variable word) for each word that must 
 (define-user-macro def-interp-macro ((name &rest pattern) &body template)
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
 bound while TEMPLATE is evaluated. A pattern may end in a dot and ?x for all remaining forms. The
-plan text to use is its value. A documentation string may come before TEMPLATE (manual D.8)."
+value of TEMPLATE is the plan text. A documentation string may come before TEMPLATE (manual D.8)."
   (check-plan-name (title "def-interp-macro" name) name)
   (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)

@@ -51,7 +51,7 @@ of FLUENT-VALUE return values, and so do calls of lifted operators with them."
          (every (lambda (argument) (known-value-p argument environment)) (rest form)))))
 
 (defun as-fluents (form)
-  "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent, no value."
+  "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent, not a value."
   (cond ((and (consp form) (or (operator-in-p form '("FLUENT-VALUE")) (eq 'quote (first form))))
          (second form))
         ((and (consp form) (proper-list-p form))

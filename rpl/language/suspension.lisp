@@ -15,7 +15,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "A table, by names and symbols of users, of the operators with a special meaning in plans.")
+  "A table of the operators with special meanings in plans, by their names or users' symbols.")
 
 (defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Names of functions that may make other tasks ready.")
@@ -57,7 +57,7 @@ variable, or a binding of something that cannot be bound."
                    "an operator as the first element; write data as '(...) or (list ...)")))
 
 (defun call-suspends (form scope environment)
-  "Return :MUST, :MAY or NIL for FORM, a call or special form, without its parts: see SUSPENSION."
+  "Return :MUST, :MAY or NIL for FORM itself, a call or special form: see SUSPENSION."
   (let ((name (first form)))
     (cond ((local-function-p name environment)
            (and (assoc name (scope-procedures scope)) :must))

@@ -110,7 +110,7 @@ failure counts as the number of steps that take as long. So a plan that only fai
                        (mapcar #'frame-data (frame-chain (task-frame task))))))
 
 (defun repair-watchers (runner tasks)
-  "Register the waits of TASKS of RUNNER with their fluents again. Wake those that missed events."
+  "Register the waits of TASKS of RUNNER with their fluents again. Wake tasks that missed events."
   (repair-fluents runner (mapcan #'own-watchers tasks)
                   (lambda (watcher)
                     (let ((client (watcher-client watcher)))
@@ -166,7 +166,7 @@ no more parts."
                (make-ready-first task))))))
 
 (defun end-plan-of (task)
-  "Evaporate the whole plan of TASK, which is ready. If the plan was cleaning up, abandon that."
+  "Evaporate the whole plan of TASK, which is ready, and abandon a cleanup in progress."
   (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
     (when (and cleaner (not (task-over-p cleaner))) (give-up-cleanup cleaner))))

@@ -204,7 +204,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
     (and timer (timer-due timer))))
 
 (defun outside-request-p (runner)
-  "True if something is posted to RUNNER, or the end of a task is requested. For any thread."
+  "True if something is posted to RUNNER, or the end of a task is requested. Any thread may ask."
   (and (or (runner-ends-requested runner) (posted-p runner)) t))
 
 (defun runner-idle-p (runner)

@@ -54,8 +54,8 @@ with the task, a column and STREAM."
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun probable-slip-p (type class)
-  "True if the symbol TYPE, which does not match CLASS, may be a slip for CLASS: a similar name that
-differs not only in digits; another ending, as STUCK and STUCKED; or only one is a keyword."
+  "True if the symbol TYPE, no match for CLASS, may be a slip for CLASS: a similar name that differs
+not only in digits; another ending, as STUCK and STUCKED; or only one of the two is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))

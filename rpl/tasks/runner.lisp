@@ -222,7 +222,7 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
        (<= (task-slice task) 0)))
 
 (defun take-ready (runner)
-  "Return RUNNER's next task to run, or NIL. Put aside blocked tasks and those past their slice."
+  "Return RUNNER's next task to run, or NIL. Put aside tasks blocked or with no slice left."
   (declare #.*hot* (type plan-runner runner))
   (loop
     (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))

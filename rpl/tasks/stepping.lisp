@@ -136,7 +136,7 @@ true."
 
 (defun check-interruptions (task frame value)
   "Evaporate TASK if requested, or let TASK yield to a higher level or because it has used its
-steps. FRAME and VALUE are what the last step returned. Return those with which RUN-STEPS goes on."
+steps. FRAME and VALUE are what the last step returned. Return what RUN-STEPS goes on with."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))

@@ -6,9 +6,9 @@
           report-stillness +no-fluent+ wait-forever warn-of-awaited-value waiting-parts
           text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
 
-;;; A task is stuck if what it waits for can only come from tasks that are stuck. A task with parts
-;;; is stuck if all of them are, not counting policies, which only watch. If it is unknown what
-;;; could wake a task, it does not count as stuck; the report of deadlocks covers it in the end.
+;;; A task is stuck if what it waits for can only come from stuck tasks. A task with parts is stuck
+;;; if all of them are, not counting policies, which only watch. If it is unknown what could wake a
+;;; task, it is not stuck; the report of deadlocks covers it when nothing runs any more.
 
 (defgeneric tasks-awaited (awaited)
   (:documentation "Return the tasks that must go on before AWAITED can happen; NIL if unknown.")
@@ -37,7 +37,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         (list task))))
 
 (defun obstacles (task)
-  "Return the tasks that must go on before TASK itself, without its parts, can; NIL if unknown."
+  "Return the tasks that must go on before TASK itself, apart from its parts, can; NIL if unknown."
   (or (and (task-awaiting task) (tasks-awaited (task-awaiting task)))
       (all-preemptors task)))
 
