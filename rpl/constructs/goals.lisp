@@ -100,7 +100,7 @@ NIL" :writable)
        (not (goal-covers-p goal other))))
 
 (defun choose-goal (operator instance)
-  "Return the goal for OPERATOR and INSTANCE, and the values of its variables. NIL if none matches."
+  "Return the goal for OPERATOR and INSTANCE, and the values of its variables; or NIL."
   (let ((best nil) (values '()))
     (dolist (goal (operator-goals operator) (values best values))
       (multiple-value-bind (matches found)

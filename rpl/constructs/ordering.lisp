@@ -100,7 +100,7 @@ it is a fluent. WATCHER waits for EARLIER."
       (watch (order-watcher order)))))
 
 (defun checked-orders (pairs task)
-  "Return an order of TASK for each of PAIRS (earlier. later). Signals WRONG-ARGUMENT and MISUSE."
+  "Return an order of TASK for each of PAIRS (earlier . later). Signals WRONG-ARGUMENT and MISUSE."
   (loop for (earlier . later) in pairs
         do (check-argument partial-order earlier (or (task-p earlier) (fluent-p earlier))
                            "a task, such as the name of a :tag, or a fluent")

@@ -55,8 +55,8 @@ next call, also in running plans (manual D.2)."
 
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
-  "Return a plan procedure without a name. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees
-the variables around INTERP-LAMBDA, but not the blocks, tags and local plans. Run it by CALL-PLAN."
+  "Return a nameless plan procedure. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees the
+variables around INTERP-LAMBDA, not blocks, tags and local plans. Run the procedure by CALL-PLAN."
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
                                       (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))

@@ -60,7 +60,7 @@ layers of its scope. REPLACED is NIL, or a list of the replacing form and the or
                   :replaced '())))
 
 (defun tags-in (forms)
-  "Return the names of the tags in FORMS. not in a WITH-TAGS, PAR-LOOP or similar construct."
+  "Return the names of the tags in FORMS, but not in a WITH-TAGS, PAR-LOOP or similar construct."
   (let ((names '()))
     (labels ((search-in (form)
                (cond ((atom form))

@@ -89,7 +89,7 @@ has happened. If thinking is not charged, do nothing. Returns nothing. Signals W
   (values))
 
 (defun count-steps (steps runner task)
-  "Count STEPS more steps of RUNNER for TASK, or for no task if NIL, unless steps are not counted."
+  "Count STEPS more steps of RUNNER for TASK, or for no task if TASK is NIL, if steps are counted."
   (when (and (runner-charged-p runner)
              (runner-budget runner)
              (not (and task (task-uncounted-p task))))

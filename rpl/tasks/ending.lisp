@@ -55,7 +55,7 @@
         (t (make-ready parent))))
 
 (defun end-with-signal (parent signal)
-  "Evaporate the children of PARENT, which waits for them. Then send SIGNAL to PARENT."
+  "Evaporate the children of PARENT, which waits for them. When all are gone, send PARENT SIGNAL."
   (setf (task-signal parent) signal
         (task-awaiting parent) nil)
   (if (task-newest-child parent)

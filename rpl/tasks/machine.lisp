@@ -43,7 +43,7 @@ environment."))
 (declaim-final leaf)
 
 (defvar *leaves-offer-restarts* nil
-  "True while plans may enter the debugger. Leaves then offer to run again or to return a value.")
+  "True while plans may enter the debugger. Leaves then offer restarts: rerun or return a value.")
 
 (declaim (inline call-leaf))
 (defun call-leaf (leaf environment)

@@ -153,7 +153,7 @@ that returns true is responsible for reporting a failure of the task. The functi
 any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "If TASK, a top-level task just ended, has failed, report it. AWAITED-P is as for REPORT-FAILURE."
+  "Report the failure, if any, of TASK, a top-level task just ended. AWAITED-P: see REPORT-FAILURE."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))

@@ -98,7 +98,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         others))
 
 (defun warn-of-remaining-cycle (task)
-  "Queue a warning if the parts of TASK left after the end of one wait in a cycle through TASK."
+  "When a part of TASK has ended, queue a warning if the others wait in a cycle through TASK."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-working-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
