@@ -10,8 +10,7 @@
 (defgeneric read-argument (type datum robot)
   (:documentation
    "Return the argument of type TYPE, a keyword, that the typed DATUM stands for. Parts of ROBOT are
-typed by number. Signal BAD-LINE if DATUM is not valid for TYPE. Without a method for TYPE, return
-DATUM.")
+typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE, return DATUM.")
   (:method (type datum robot)
     (cond ((part-type-p type)
            (element-numbered datum (parts-of-kind robot type) (part-kind-text type) robot))
@@ -69,8 +68,7 @@ DATUM.")
   (error "#~C is for programs" char))
 
 (defun read-data-from-string (text start)
-  "Read the Lisp datum in TEXT at START. Return the datum and the position of its end. Nothing is
-evaluated: #. and #S signal errors."
+  "Return the Lisp datum in TEXT at START and the position of its end. Signal errors for #. and #S."
   (let ((*read-eval* nil) (*readtable* (copy-readtable)))
     ;; That makes objects by calling functions.
     (set-dispatch-macro-character #\# #\S #'refuse-syntax)
@@ -98,7 +96,6 @@ not evaluated, so a quote before the datum does not matter."
                    (arguments-text line)))))
 
 (defun integer-if-whole (value)
-  "Return VALUE, converted to an integer if VALUE is a float without a fraction, such as 1e3."
   (if (and (floatp value) (quantity-p value) (= value (round value)))
       (round value)
       value))
@@ -127,8 +124,7 @@ not evaluated, so a quote before the datum does not matter."
   (if (eq type :file) (native-name (path-of-name token)) token))
 
 (defun read-line-parameter (parameter text start line)
-  "Return the argument for PARAMETER of LINE that begins in TEXT at START, and the position of its
-end."
+  "Return the argument for PARAMETER of LINE in TEXT at START, and the position of its end."
   (typecase (line-parameter-type parameter)
     (rest-type (values (string-trim " " (subseq text start)) (length text)))
     (keyword (let* ((end (token-end text start))
@@ -156,8 +152,7 @@ end. Numbers with units are converted to the simulator's own units."
        (session-robot)))
 
 (defun reject-surplus-text (line text)
-  "Signal BAD-LINE because TEXT follows the last argument of LINE. List the units if a unit could
-stand there."
+  "Signal BAD-LINE because TEXT follows the last argument of LINE. List any units possible there."
   (let* ((parameter (first (last (line-parameters line))))
          (dimension (and parameter (dimension-of (line-parameter-type parameter)))))
     (if (and dimension (alpha-char-p (char text 0)))
@@ -167,7 +162,6 @@ stand there."
                      (and (string= "GO" (line-name line)) "GO-TO x y drives to a place.")))))
 
 (defun read-arguments (line text)
-  "Return the arguments in TEXT, which follows the name of LINE."
   (let ((position (skip-blanks text 0)))
     (flet ((over-p () (= position (length text)))
            (advance (value end) (setf position (skip-blanks text end)) value))

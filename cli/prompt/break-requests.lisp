@@ -37,8 +37,7 @@
                               (short-error-text (printable-report restart))))))
 
 (defun show-break (session break-request)
-  "Show the condition and the restarts of BREAK-REQUEST in SESSION, and change its prompt to
-Break>."
+  "Show the condition and restarts of BREAK-REQUEST in SESSION, and change its prompt to Break>."
   (let ((console (session-console session)))
     (setf (break-request-told-p break-request) t)
     (write-fitted console "~A" (break-text session break-request))
@@ -55,8 +54,7 @@ Break>."
     (restore-prompt console)))
 
 (defun break-summary (session break-request)
-  "Return a line with the condition of BREAK-REQUEST, and with its thread unless that is the thread
-of SESSION."
+  "Return a line with the condition of BREAK-REQUEST and, if not the thread of SESSION, its thread."
   (let ((words (break-condition-text (break-request-condition break-request))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
             (break-thread-text session break-request))))
@@ -78,8 +76,7 @@ Any thread may call this function."
                        collect (format nil "~D ~A" number (plain-name (restart-name restart))))))))
 
 (defun simulator-broken-p (session)
-  "True if SESSION's user is asked about a break in the simulator's thread. Any thread may call this
-function."
+  "True if SESSION's user is asked about a break in the simulator's thread. Callable in any thread."
   (some (lambda (break-request) (simulator-thread-p session (break-request-thread break-request)))
         (breaks-for-session session)))
 
@@ -160,8 +157,7 @@ prompt may share HOOK."
 for each line, or, without a terminal or window, reads from the original input."))
 
 (defun ask-for-answer ()
-  "Ask a prompt's user for the line that a program reads. Return the typed line, or NIL if the user
-has gone."
+  "Ask a prompt's user for a program's input line. Return the line, or NIL if the user has gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
       :report "Give it the text that follows, or is typed next."

@@ -12,8 +12,7 @@
 evaluated, newest first. NEW-P is true if the name had no value when found.")
 
 (defun handle-warning (condition)
-  "Muffle the compiler's report on CONDITION if users get a message on CONDITION. Warnings about
-definitions become messages."
+  "Muffle the compiler's CONDITION if users get a message. Definition warnings become messages."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
@@ -52,7 +51,6 @@ report the names in these forms that are still undefined."
 evaluated."))
 
 (defun names-location-p (condition)
-  "True if CONDITION itself names the file and line of the error."
   (or (typep condition 'file-trouble)
       (and (typep condition 'malformed-definition)
            (malformed-definition-place condition))))
@@ -165,8 +163,7 @@ evaluates, and the errors in files that it compiles."
     (evaluate session form)))
 
 (defun check-legible (session text start end)
-  "Signal BAD-LINE if TEXT has bytes from START to END that are not UTF-8. TEXT ends with the last
-line read in SESSION."
+  "Signal BAD-LINE if TEXT from START to END is not UTF-8. TEXT ends with the last line of SESSION."
   (let ((place (position +illegible+ text :start start :end end)))
     (when place
       (note-trouble-line (session-account session)

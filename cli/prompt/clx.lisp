@@ -51,8 +51,7 @@ which may be NIL."
 
 (defun clx-trouble (&optional (clx (find-library "CLX"))
                       (lisp-version (lisp-implementation-version)))
-  "Return a text that says why the system CLX does not work on SBCL of LISP-VERSION, and what to do;
-NIL if no problem is known."
+  "Return text on why CLX fails on SBCL LISP-VERSION and what to do; NIL if no problem is known."
   (when (and clx
              (uiop:version<= "2.4.7" (leading-numbers lisp-version))
              (null (asdf:find-component clx "common")))

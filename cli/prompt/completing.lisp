@@ -18,7 +18,6 @@ single completion.")
 ;;; Listing.
 
 (defun name-without-directory (text)
-  "Return TEXT, without the directory if TEXT is the name of a file."
   (let ((slash (position #\/ text :from-end t :end (max 0 (1- (length text))))))
     (if slash (subseq text (1+ slash)) text)))
 
@@ -80,9 +79,8 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
 
 ;;;; What there is
 
-;;; The first word is the name of a command; each other word has the type of its argument;
-;;; inside parentheses are symbols, in quotes file names. Parts that make no sense are not
-;;; completed.
+;;; The first word is the name of a command; each other word has the type of its argument; inside
+;;; parentheses are symbols, in quotes file names. Senseless parts are not completed.
 
 (defun text-of-choice (choice)
   (typecase choice
@@ -145,7 +143,6 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
 ;;; Lisp.
 
 (defun keywords-of (operator)
-  "Return the keywords that the function OPERATOR, a symbol, takes, as far as is known."
   (loop for type in (and operator (fboundp operator) (function-arguments operator))
         when (and (consp type) (keywordp (first type)))
           collect (first type)))
@@ -155,8 +152,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun meaningful-symbols ()
-  "Return the symbols of the current package. Omit its own symbols that name no variable or
-function."
+  "Return the symbols of the current package, except its own that name no variable or function."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
       (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))

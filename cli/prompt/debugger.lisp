@@ -26,15 +26,13 @@
   (signal-semaphore (break-request-posted break-request)))
 
 (defun call-in-broken-thread (session break-request function)
-  "Make the thread of BREAK-REQUEST call FUNCTION. Wait until FUNCTION has returned or the thread
-continues."
+  "Make BREAK-REQUEST's thread call FUNCTION. Wait until FUNCTION returns or the thread continues."
   (cond ((broken-here-p break-request) (funcall function))
         (t (post-call-to-thread session break-request function)
            (wait-on-semaphore (break-request-done break-request)))))
 
 (defun restart-named (word break-request)
-  "Return the restart of BREAK-REQUEST that WORD, a number or the beginning of a name, stands for.
-Signals BAD-LINE."
+  "Return the restart of BREAK-REQUEST with the number or name prefix WORD. Signals BAD-LINE."
   (let ((number (ignore-errors (parse-integer word)))
         (restarts (break-request-restarts break-request)))
     (or (and number (<= 0 number) (nth number restarts))
@@ -107,8 +105,7 @@ other threads wait until FUNCTION returns."
         (show-break session (first (session-breaks session)))))))
 
 (defun answer-earlier-breaks (session break-request)
-  "Read lines that answer the breaks in other threads that came before BREAK-REQUEST, a break in
-this thread."
+  "Read lines that answer other threads' breaks that precede BREAK-REQUEST, a break in this thread."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)
@@ -119,16 +116,14 @@ this thread."
                 session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session break-request)
-  "Report BREAK-REQUEST, a break in another thread, in SESSION. Show the restarts of BREAK-REQUEST
-if the user can answer now."
+  "Report in SESSION BREAK-REQUEST of another thread, and its restarts if the user can answer now."
   (if (or (break-state-own (session-break-state session))
           (not (eq break-request (first (session-breaks session)))))
       (report-waiting-break session break-request)
       (show-break session break-request)))
 
 (defun remove-break (session break-request)
-  "Remove BREAK-REQUEST from SESSION, because its thread continues, perhaps after an answer at
-another prompt."
+  "Remove BREAK-REQUEST from SESSION: its thread continues, perhaps after another prompt's answer."
   (let* ((console (session-console session)) (state (session-break-state session))
          (first-p (eq break-request (first (break-state-others state))))
          (left (removef (break-state-others state) break-request)))
@@ -176,7 +171,6 @@ the same run, else all sessions. Return NIL if the user ended SESSION."
              (remove-if-not #'can-answer-p (running-sessions))))))
 
 (defun break-request-for-condition (condition sessions)
-  "Return a break request for CONDITION in this thread, for the users of SESSIONS."
   (make-break-request condition (restarts-to-offer condition) (current-thread) sessions))
 
 (defun run-debugger-prompt (session break-request)
@@ -199,8 +193,7 @@ the same run, else all sessions. Return NIL if the user ended SESSION."
 
 ;; A line may wait for what has broken elsewhere, as RUN-PLAN does for a plan.
 (defmethod serve-while-waiting ((prompts prompts))
-  "If this thread runs a line of a prompt, read lines that answer breaks in other threads, until no
-break waits."
+  "If this thread runs a prompt's line, read answers to other threads' breaks until no break waits."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-messages-p*))
       (loop for break-request = (first (session-breaks session))
@@ -228,8 +221,7 @@ and Lisp runs other programs, too."
            (and *session* (eq (session-thread *session*) (current-thread))))))
 
 (defun enter-debugger (condition hook)
-  "Ask the user of the prompt how to continue after CONDITION. Lisp calls this hook instead of its
-debugger."
+  "Ask the prompt's user how to continue after CONDITION. Lisp calls this hook, not its debugger."
   ;; The question needs stack that is not there.
   (when (typep condition 'storage-condition) (abort-by-restart condition))
   (let* ((*asking-how-to-continue-p* t) (sessions (sessions-to-ask)))
@@ -245,8 +237,7 @@ debugger."
           (*session* (debugger-disabled-hook condition hook)))))
 
 (defun make-process-own ()
-  "Mark this Lisp, which is about to be saved as an image, as a process that runs only this
-program."
+  "Mark this Lisp, about to be saved as an image, as a process that runs only this program."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
 
@@ -272,8 +263,7 @@ program."
 (defvar *reported-lock* (make-lock "reported thread errors"))
 
 (defun report-thread-error (condition)
-  "Write a message on CONDITION to the error output, unless it was written before. Write nothing
-after +MOST-THREAD-ERRORS+ messages."
+  "Write a message on CONDITION, if new, to the error output, up to +MOST-THREAD-ERRORS+ times."
   (let* ((text (thread-error-text condition))
          (count (with-lock (*reported-lock*)
                   (unless (or (member text *reported-thread-errors* :test #'string=)

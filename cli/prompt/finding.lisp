@@ -19,21 +19,17 @@
                        :test #'string= :from-end t)))
 
 (defun items-with-prefix (start items key)
-  "Return the ITEMS whose names begin with START. KEY is a function that returns the name of an
-item."
   (remove-if-not (lambda (item)
                    (let ((name (funcall key item)))
                      (and name (starts-with-subseq start name))))
                  items))
 
 (defun reject-ambiguous (name names &optional hint)
-  "Signal BAD-LINE because the typed NAME is the beginning of several NAMES."
   (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
                names hint))
 
 (defun reject-unknown-name (kind name names &optional hint)
-  "Signal BAD-LINE because NAME is not among NAMES, the known names. KIND is a word for the kind of
-object, such as plan."
+  "Signal BAD-LINE because NAME is not among NAMES. KIND names the kind of object, such as plan."
   (reject-line "There is no ~A ~A.~@[ Did you mean ~A?~]~@[ ~A~]" kind (string-upcase name)
                (nearest-name name names) hint))
 
@@ -71,8 +67,7 @@ object, such as plan."
     (("SET" "SETQ" "SETF" "PARAM" "PARAMETER")
      "PARAMS lists the parameters; Lisp such as (setq motion-noise* 0) sets a parameter.")
     (("PRINT" "ECHO" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
-  "Lists (words hint): words that newcomers type although no line command has the name, and a
-hint.")
+  "Lists (words hint): words that newcomers type although they name no line command, and a hint.")
 
 (defun hint-for (name)
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *newcomer-hints*)))
@@ -168,8 +163,7 @@ line commands, return the one whose name is the beginning of all the others. Sig
 ;; Lisp's own STEP and GO, which are called like lines, do nothing with a number. An undefined
 ;; function is reported before its arguments, such as DEG, are evaluated.
 (defun check-line-in-parentheses (form)
-  "Signal BAD-LINE if FORM, as typed, is a line command in parentheses, such as (step 5) or (turn 90
-deg)."
+  "Signal BAD-LINE if FORM, as typed, is a line command in parentheses, such as (step 5)."
   (when (and (typep form '(cons symbol))
              (or (typep form '(cons (member step go) (or null (cons real))))
                  (not (fboundp (first form))))

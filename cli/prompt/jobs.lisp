@@ -5,8 +5,7 @@
 ;;; A command is issued and the prompt returns at once. These wait until the continuation of the
 ;;; command is called before they read the next line: a patient session, a session with pasted lines
 ;;; left, and a session in a headless simulation. REPEAT waits in the same way. Tracking a grasp
-;;; lasts until the grasp is lost, so only its beginning is waited for. Plans are jobs, too: see
-;;; plans.lisp.
+;;; lasts until the grasp is lost, so only its start is awaited. Plans are jobs, too (plans.lisp).
 
 (defparameter *wait-limit* 100000
   "How many ticks a headless prompt waits for one command to complete.")

@@ -14,8 +14,7 @@ that runs by itself and signals the error, or NIL."
   (tick 0 :type integer))
 
 (defun item-at-fault (message)
-  "Return the item of MESSAGE that names the code at fault, if that code runs by itself, as a kicker
-does; else NIL."
+  "Return the item of MESSAGE that names faulty code that runs by itself, as a kicker does; or NIL."
   (find-if #'recurring-code (message-items message)))
 
 (defun message-tick (message)
@@ -37,15 +36,13 @@ does; else NIL."
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
 (defun repeated-often-p (message counts)
-  "Count MESSAGE in the table COUNTS. Return true if MESSAGE is to be hidden because it has come too
-often."
+  "Count MESSAGE in the table COUNTS. Return true if MESSAGE has come too often to be shown."
   (let* ((tally (tally-for message counts)) (count (incf (tally-count tally))))
     (setf (tally-tick tally) (message-tick message))
     (and (< 3 count) (not (power-of-ten-p count)))))
 
 (defun repetition-text (message counts)
-  "Return text that says how often MESSAGE was reported according to the table COUNTS; NIL if not
-often."
+  "Return text on how often MESSAGE was reported, from the table COUNTS; NIL if not often."
   (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
@@ -57,7 +54,6 @@ often."
               (and item (recurring-remedy item))))))
 
 (defun reset-line-error-counts (counts)
-  "Remove the errors that lines caused from the table COUNTS."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
 (defun merge-counts (counts others)
@@ -89,8 +85,7 @@ between, a message says how to hide such messages.")
   (quiet-p nil :type boolean)
   ;; The counts of errors, by text, as above: any thread may report, so the lock guards them.
   (error-counts (make-hash-table :test 'equal) :type hash-table :read-only t)
-  ;; How many messages from others' commands were shown since the last line was read; after too
-  ;; many, in all.
+  ;; How many messages of others' commands were shown since the last line; after too many, in all.
   (others-shown 0 :type fixnum)
   (lock (make-lock "session") :read-only t)
   ;; The simulation whose messages are shown as they arrive, and its observer if it is live.
@@ -107,8 +102,7 @@ between, a message says how to hide such messages.")
   (abandoned-p nil :type boolean))
 
 (defun many-messages-hint (listener count)
-  "Count COUNT more messages from commands of plans and programs. Return a hint, once, when there
-are too many messages."
+  "Count COUNT more messages of plans and programs. Return a hint, once, after too many messages."
   (let ((before (listener-others-shown listener)))
     (and (< before +many-messages+)
          (<= +many-messages+ (incf (listener-others-shown listener) count))
@@ -141,8 +135,7 @@ are too many messages."
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE reports the end of a command with a program's continuation, which may handle
-errors."
+  "True if MESSAGE reports the end of a command whose program's continuation may handle errors."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))
@@ -186,8 +179,7 @@ ended. Add file and line number to errors and warnings in a script."
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)
-  "Count the error MESSAGE in LISTENER. If an earlier line caused the error, count it for that
-line."
+  "Count the error MESSAGE in LISTENER, for the earlier line, if any, that caused the error."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
     (when (and account (not (eql (line-of-message account message) (last-line-number account))))
@@ -211,8 +203,7 @@ handle do not count."))
              (if (listener-quiet-p listener) (remove-if #'from-program-p messages) messages)))
 
 (defun notes-on-messages (listener messages)
-  "Return a list of notes on MESSAGES, which LISTENER has shown: on errors that repeat, and on too
-many messages."
+  "Return a list of notes on MESSAGES, shown by LISTENER: on repeated errors and too many messages."
   (remove nil (append (loop for message in messages
                             collect (repetition-text message (listener-error-counts listener)))
                       (and (listener-terminal-p listener)

@@ -29,8 +29,7 @@
        (remove-if-not (lambda (session) (shows-run-p session simulation)) (running-sessions))))
 
 (defun session-with-queue (queue)
-  "Return a running session that shows the messages of the run whose message queue is QUEUE, or
-NIL."
+  "Return a running session that shows messages of the run with the message queue QUEUE, or NIL."
   (find-if (lambda (session)
              (let ((run (session-simulation session)))
                (and run (eq queue (simulation-messages run)))))
@@ -167,7 +166,6 @@ arguments are the session, its run when it last read a line, and its present run
 A run may be NIL. A headless run stands still during the calls.")
 
 (defun call-whereabouts-hooks (session)
-  "Call *WHEREABOUTS-HOOKS* with the run that SESSION is in."
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
     (call-listeners *whereabouts-hooks* session old *simulation*)))
 
@@ -190,15 +188,13 @@ A run may be NIL. A headless run stands still during the calls.")
   (or (session-trial session) (plusp (session-forks session))))
 
 (defun session-in-fork-or-trial (simulation)
-  "Return the session that has entered SIMULATION by the line TRIAL or FORK and is still there, or
-NIL."
+  "Return the session that has entered SIMULATION by TRIAL or FORK and is still there, or NIL."
   (find-if (lambda (session)
              (and (eq simulation (session-whereabouts session)) (in-trial-or-fork-p session)))
            (running-sessions)))
 
 (defun trial-or-fork-text (simulation)
-  "Return \"a trial\" or \"a fork\" if a prompt has entered SIMULATION by the line TRIAL or FORK;
-else NIL."
+  "Return \"a trial\" or \"a fork\" if a prompt has entered SIMULATION by TRIAL or FORK; else NIL."
   (let ((session (session-in-fork-or-trial simulation)))
     (and session (if (session-trial session) "a trial" "a fork"))))
 
@@ -216,8 +212,7 @@ else NIL."
 ;;; a line say so at once, and show messages from there; each switches before it runs the next line.
 
 (defvar *replaced-runs* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from each run that the line WORLD has replaced to a list of the new run and the name of
-the robot in the new run.")
+  "A table from each run that the line WORLD replaced to a list: the new run and its robot's name.")
 
 (defun live-run-of-robot (name)
   "Return the live run that the robot named NAME is in now, or NIL."
@@ -245,15 +240,12 @@ the name of the robot that the prompt then commands. Return NIL if there is no s
       (restore-prompt console))))
 
 (defun tell-other-sessions (session simulation text)
-  "Show TEXT, a line about what SESSION has done to SIMULATION, in the other sessions of
-SIMULATION."
   (dolist (other (remove session (sessions-showing simulation)))
     (show-line-in-session other text)))
 
 (defun announce-run (session simulation robot-name)
   "Tell the user of SESSION that the prompt continues with the robot ROBOT-NAME of SIMULATION, and
-show messages of SIMULATION. Do nothing if SESSION already shows these messages. Any thread may call
-this function."
+show messages of SIMULATION. Do nothing if SESSION already shows these messages. For any thread."
   (unless (eq simulation (session-simulation session))
     (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
                                           (run-description simulation)))
@@ -268,8 +260,7 @@ this function."
         *world* (simulation-world simulation)))
 
 (defun continue-in-next-run (session)
-  "If the run of SESSION is over, continue in the run that follows, if there is one. Only the thread
-of SESSION may call this function."
+  "If the run of SESSION is over, continue in any run that follows. Only for the thread of SESSION."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
       (when simulation

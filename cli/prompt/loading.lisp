@@ -66,8 +66,7 @@ NIL if it contains Lisp or lines of the prompt."
 ;;;; Loading
 
 (defun call-recording-location (place function)
-  "Call FUNCTION. During the call, error reports get the file and line being loaded from the
-function PLACE."
+  "Call FUNCTION, while error reports get the file and line being loaded by calling PLACE."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))
@@ -97,8 +96,7 @@ does not end, return the number of the line of START, where the form begins."
                       (max start (1- (grown-position stream))))))
 
 (defun read-form-in-file (stream file)
-  "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if the form cannot be
-read."
+  "Return the next form of STREAM, the text of FILE. Signals FILE-TROUBLE if reading fails."
   (let ((start (grown-position stream)))
     (call-locating-errors (lambda () (read-preserving-whitespace stream)) file
                           (lambda (condition) (line-of-read-error condition stream start)))))

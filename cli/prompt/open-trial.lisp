@@ -91,8 +91,7 @@
 ;;; Has a line changed the run? Then it is no longer the experiment's.
 
 (defun trial-state ()
-  "Return a list that determines how the current simulation goes on: the digest of its state, and
-its pending requests."
+  "Return a list that determines how the current run goes on: state digest and pending requests."
   (list (state-digest *simulation* t) (timeline-inbox (timeline-of *simulation*))))
 
 (defun report-changed-trial (session trial before)
@@ -106,12 +105,10 @@ its pending requests."
 ;;; Lines.
 
 (defun serve-other-threads ()
-  "Serve requests of other threads, such as a window's, to the current simulation."
   (answer-questions (timeline-custody (timeline-of *simulation*))))
 
 (defun await-typed-line (session seconds)
-  "Wait until a line is typed for SESSION, for SECONDS at most. Return true if a line was typed in
-time."
+  "Wait for SECONDS at most until a line is typed for SESSION. Return true if a line was typed."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session) (prompt-unanswered-p console))
       (with-lock ((session-lock session)) (show-prompt console "Robot> "))))
@@ -163,8 +160,7 @@ time."
         (+ (max (open-trial-due trial) (- (seconds-now) 0.25d0)) (/ 1d0 rate)))))
 
 (defun wait-for-tick (session trial)
-  "Wait until the next tick is due in TRIAL. Return NIL if a line was typed before the tick was
-due."
+  "Wait until the next tick is due in TRIAL. Return NIL if a line was typed before that tick."
   (let ((left (if (eq :free (open-trial-rate trial)) 0 (- (open-trial-due trial) (seconds-now)))))
     (if (can-poll-input-p session)
         (unless (call-outside-trial (lambda () (await-typed-line session left)))

@@ -2,10 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; A plan is a job, like a command to the robot. Live, a thread watches each plan and reports
-;;; its end. Now and then, between two reactions of the plans, it checks whether they can still
-;;; continue; a plan that cannot is ended if the session waits for it. Headless, the prompt checks
-;;; after each tick.
+;;; A plan is a job, like a command to the robot. Live, a thread watches each plan and reports its
+;;; end. Now and then, between two reactions, it checks whether the plans can still continue; a plan
+;;; that cannot is ended if the session waits for it. Headless, the prompt checks after each tick.
 ;;;
 ;;; A plan should recover from errors of its commands. So a session that waits for a plan does not
 ;;; count those errors, only the plan's own failure: see VERDICT.
@@ -42,8 +41,7 @@ yet.")
 ;;; A plan may end before BEGIN-PLAN has returned its task.
 
 (defun note-plan-end (task)
-  "Notify the waiting sessions that TASK, a plan, is over. Return true if a prompt has started
-TASK."
+  "Notify sessions that wait for TASK, a plan that is over. Return true if a prompt started TASK."
   (flet ((started-p (job)
            (if (plan-job-task job)
                (eq task (plan-job-task job))
@@ -61,16 +59,14 @@ TASK."
 ;;; What is told.
 
 (defun call-in-user-syntax (function)
-  "Return the string that FUNCTION makes. Names and numbers in the string are printed as users type
-them."
+  "Return the string that FUNCTION makes, with names and numbers printed as users type them."
   (let ((*package* (user-package))
         (*read-default-float-format* 'double-float)
         (*print-pretty* nil))
     (printing-text () (funcall function))))
 
 (defun user-text (function object)
-  "Return the string that FUNCTION makes of OBJECT on one line, with names and numbers as users type
-them."
+  "Return FUNCTION's string for OBJECT on one line, with names and numbers as users type them."
   (cut (one-line (call-in-user-syntax (lambda () (funcall function object)))) 300))
 
 (defun failure-reason-text (failure)
@@ -106,8 +102,7 @@ them."
                          (some #'job-verdict-p (jobs-under-way session))))))))
 
 (defun note-failure (job failure)
-  "Let the line PLANS report FAILURE, of the plan of JOB, in each session that shows the plan's
-run."
+  "Let the line PLANS report FAILURE of JOB's plan in each session that shows the plan's run."
   (dolist (session (adjoin (plan-job-session job)
                            (sessions-showing (plan-job-simulation job))))
     (setf (session-failure session) (list failure (plan-job-plan job)))))

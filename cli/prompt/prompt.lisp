@@ -41,8 +41,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     rest))
 
 (defun read-next-line (session)
-  "Return the next line of SESSION, or NIL at the end. For a line that is too long, return an
-outline and the condition LINE-TOO-LONG."
+  "Return SESSION's next line; NIL at the end; for too long a line, an outline and LINE-TOO-LONG."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
@@ -69,13 +68,11 @@ outline and the condition LINE-TOO-LONG."
                    (not (session-terminal-p session)))))))
 
 (defun run-nested-line (session)
-  "Call RUN-NEXT-LINE while another line still runs. Requests of the nested line are not counted for
-the other line."
+  "Call RUN-NEXT-LINE within another line, which does not count the nested line's requests."
   (let ((*asker* nil) (*request-origin* nil)) (run-next-line session)))
 
 (defun stopped-by-error-p (session)
-  "Wait until the requests of SESSION have ended. Return true if SESSION stops at errors and has had
-an error."
+  "Wait for the requests of SESSION. Return true if SESSION stops at errors and has had an error."
   (when (reader-stop-p (session-reader session))
     (await-session-commands session)
     (show-messages session)

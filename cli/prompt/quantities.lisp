@@ -34,8 +34,7 @@
     (:speed  :pace   "Time is counted in ticks; RATE says how many ticks pass in a second.")
     (:length :time   "GO-FORWARD 5 drives for 5 ticks.")
     (:angle  :length "GO 5 m drives 5 metres."))
-  "Lists (expected-dimension typed-dimension sentence): advice for a quantity of the wrong
-dimension.")
+  "Lists (expected-dimension typed-dimension sentence): advice for a wrong dimension.")
 
 (defun dimension-of (type)
   (second (find type *quantities* :key #'first :test #'same-name-p)))
@@ -60,8 +59,7 @@ dimension.")
       (and (realp value) value))))
 
 (defun leading-number (text)
-  "Return the number at the beginning of TEXT, and the position of its end. If TEXT begins without
-digits, the number is 1, or -1 after a minus sign."
+  "Return the number at the beginning of TEXT, by default 1 or -1, and the position of its end."
   (let ((end (or (position-if-not (lambda (char) (find char "0123456789.+-/")) text)
                  (length text))))
     (values (cond ((zerop end) 1)
@@ -71,8 +69,7 @@ digits, the number is 1, or -1 after a minus sign."
             end)))
 
 (defun parse-pi (text)
-  "If TEXT begins with PI, or PI/ and a number, return the value of that and the rest of TEXT.
-Otherwise return 1 and TEXT."
+  "If TEXT begins with PI or PI/number, return that value and the rest of TEXT; else 1 and TEXT."
   (if (starts-with-subseq "PI" text)
       (let* ((over-p (starts-with-subseq "PI/" text))
              (start (if over-p 3 2))
@@ -96,8 +93,7 @@ Return NIL if NAME is no quantity."
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, that follows POSITION in TEXT after blanks, and the position of its end.
-Return NIL if no unit follows."
+  "Return the unit, a list, after POSITION and blanks in TEXT, and its end; NIL if no unit follows."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))

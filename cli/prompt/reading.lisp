@@ -43,9 +43,8 @@ to BEFORE, the text that the line continues, or NIL."
     line))
 
 (defun read-input (session prompt &optional before)
-  "Return the next line of SESSION, or NIL at the end. The line continues the text BEFORE, if there
-is one. Show PROMPT, except in a batch. First wait for the commands of earlier lines if SESSION
-waits for commands."
+  "Return the next line of SESSION, or NIL at the end. The line continues the text BEFORE, if any.
+Show PROMPT, except in a batch. First await earlier commands if SESSION waits for commands."
   (let ((console (session-console session)))
     (unless (or (session-batch-p session)
                 (and (prompt-unanswered-p console) (string= prompt (console-prompt console))))
@@ -131,8 +130,7 @@ long, return an outline and the condition LINE-TOO-LONG."
            (skip-rest session text start))))
 
 (defmacro skipping-rest ((session text start) &body body)
-  "Run BODY, which reads the form in TEXT at START. If the form cannot be read, skip the rest of the
-form."
+  "Run BODY, which reads the form in TEXT at START. Skip the rest of a form that cannot be read."
   `(handler-bind ((error (lambda (condition)
                            (skip-unreadable-rest condition ,session ,text ,start))))
      ,@body))
@@ -182,7 +180,6 @@ return the form (VALUES). Skip an unreadable form to its end."
 ;;; are removed here, and lines are read until they end.
 
 (defun block-comment-at-p (text position)
-  "True if a comment between #| and |# begins in TEXT at POSITION."
   (let ((end (+ 2 position)))
     (and (<= end (length text))
          (string= "#|" text :start2 position :end2 end))))

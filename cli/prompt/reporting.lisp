@@ -29,8 +29,7 @@ or NIL if the number is not known."
   (and *simulation* (simulation-tick *simulation*)))
 
 (defun report-object (account type &rest properties)
-  "If ACCOUNT reports objects, write an object of TYPE, a string, with the plist PROPERTIES, and
-return T."
+  "If ACCOUNT reports objects, write an object of TYPE, a string, with PROPERTIES, and return T."
   (when (reports-objects-p account)
     (with-console (stream (account-console account))
       (write-object (list* :type type properties) stream))
@@ -41,7 +40,6 @@ return T."
   (and (plusp (account-line account)) (account-line account)))
 
 (defun report-message (account kind text &optional (line (last-line-number account)))
-  "Report a message of KIND with TEXT, caused by LINE."
   (report-object account "message" :kind kind :text text :tick (current-tick) :line line))
 
 (defun report-values (account texts)
@@ -62,8 +60,7 @@ NIL or no line is running."
   (when account (setf (account-trouble-line account) line)))
 
 (defun text-with-location (account text &optional (line (running-line-number account)))
-  "Return TEXT, which is about an error in LINE. If LINE is in a script, begin with the name of the
-script and the line number."
+  "Return TEXT, about an error in LINE. For a script, begin with its name and the line number."
   (if (and account (account-file account) line)
       (format nil "~A, line ~D: ~A" (account-file account) line text)
       text))
@@ -122,9 +119,8 @@ and then :OK or :FAILED. Otherwise END is NIL."
 
 ;;;; Who asks
 
-;;; What a line requests while time stands still ends under a later line, such as RESUME. So where
-;;; lines are counted, each has its own asker text: equal to that of others, but another
-;;; object.
+;;; Requests of a line while time stands still end under a later line, such as RESUME. So each
+;;; counted line has its own asker text: equal to others, but another object.
 
 (define-constant +prompt-asker+ "the prompt" :test #'string=
   :documentation "The text by which messages name lines of the prompt as the asker of a request.")
@@ -134,8 +130,7 @@ and then :OK or :FAILED. Otherwise END is NIL."
   "The asker of requests that lines other than Lisp make, in sessions that do not count lines.")
 
 (defvar *lines-of-askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from the asker of each counted line to a list: account, line number, and true unless the
-line is Lisp.")
+  "A table from the asker of each counted line to a list: account, line number, true if not Lisp.")
 
 (defun asker-for (account &key typed-p (text +prompt-asker+))
   "Return the asker, a string equal to TEXT, for requests of the running line of ACCOUNT, which may
@@ -161,7 +156,6 @@ be NIL. TYPED-P is true for a line that is not Lisp."
   (and (equal asker +prompt-asker+) (not (line-asker-p asker))))
 
 (defun asked-by-lisp-of-line-p (asker account)
-  "True if ASKER, the asker of a request, belongs to Lisp in the running line of ACCOUNT."
   (destructuring-bind (&optional whose line typed-p) (gethash asker *lines-of-askers*)
     (and (eq whose account) (eql line (account-line account)) (not typed-p))))
 
@@ -169,8 +163,7 @@ be NIL. TYPED-P is true for a line that is not Lisp."
   (when account (push (cons (asker-note plan) (last-line-number account)) (account-plans account))))
 
 (defun line-of-message (account message)
-  "Return the number of the line that caused MESSAGE, or else of the running line; NIL if ACCOUNT is
-NIL."
+  "Return the number of the line that caused MESSAGE, else the running line; NIL if ACCOUNT is NIL."
   (when account
     (let* ((asker (message-asker message))
            (plan (assoc asker (account-plans account) :test #'equal)))

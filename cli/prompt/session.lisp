@@ -115,8 +115,7 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (jobs '() :type list)
   (lisp-p nil)
-  ;; After a rewind of a run whose plans it waits for: the function to call first, with this
-  ;; session.
+  ;; After a rewind of a run with awaited plans: the function to call first, with this session.
   (after-rewind nil :type (or null function))
   (over-p nil)
   ;; The robot to continue with, in batch mode, when this one's lines are over.
@@ -145,8 +144,7 @@ and writes to OUTPUT. With BATCH, the session shows no prompt. If PATIENT, by de
 each command completes before the next line is read. With ECHO, lines are shown as they are read.
 ACCOUNT, if any, records the running line. With STOP, the session ends at the first error in a line.
 PLACE, if any, is a function to call before each line. Lines are read in PACKAGE, by default
-ARS-USER. COLOR is :AUTO, :ALWAYS or :NEVER; :AUTO writes in colours on a terminal, unless the
-environment has NO_COLOR."
+ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO: on a terminal, unless the environment has NO_COLOR."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :console console :terminal-p (typed-by-hand-p input)
@@ -163,8 +161,7 @@ environment has NO_COLOR."
   (break-state-others (session-break-state session)))
 
 (defun breaks-for-session (session)
-  "Return the breaks that wait for SESSION. The first break is the one that the user is asked
-about."
+  "Return the breaks that wait for SESSION. The user is asked about the first break."
   (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
     (cond ((null own) others)
           ((break-request-told-p own) (cons own others))
@@ -184,8 +181,7 @@ that Lisp at the prompt runs may have no such robot."
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
 
 (defun session-robot ()
-  "Return the robot that the prompt commands. Signals BAD-LINE if there is no robot, or if the run
-is over."
+  "Return the robot that the prompt commands. Signals BAD-LINE without a robot or after the run."
   (check-run-not-over)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (and robots (robot-commanded))

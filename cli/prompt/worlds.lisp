@@ -6,8 +6,7 @@
 
 ;;; The variable of a robot is a symbol of the package in which its world was written. ARS-USER
 ;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) works. A
-;;; user's own definition of such a name stays as it is; a robot that the user defines under it is
-;;; another one.
+;;; user's own definition of such a name stays; a robot that the user defines under it is another.
 
 (defun user-package () (find-package :ars-user))
 
@@ -53,8 +52,7 @@ robot's name by a new symbol of ARS-USER."
 ;;; Others come from files: Lisp files that define a map and at least one robot in it.
 
 (defun package-of-caller ()
-  "Return the package for a prompt opened here: the current package if it uses the simulator's,
-otherwise ARS-USER."
+  "Return a new prompt's package: the current package if it uses the simulator's, else ARS-USER."
   (if (eq 'simulator (find-symbol (string 'simulator) *package*))
       *package*
       (user-package)))
@@ -67,8 +65,7 @@ otherwise ARS-USER."
     (nisp:in-readtable :nisp)
     (funcall function)))
 
-;;; A file is read with the floats of (load ...), so that it defines the same world however it is
-;;; loaded.
+;;; A file is read with the floats of (load ...), so that it always defines the same world.
 
 (defun load-lisp (path)
   "Load the Lisp file at PATH in the package ARS-USER and Nisp's syntax, unless the file says
@@ -78,8 +75,7 @@ otherwise. Signals BAD-LINE if the file is not Lisp."
                     (lambda () (call-quietly (lambda () (load-forms path))))))
 
 (defun blueprints-defined-by (function)
-  "Call FUNCTION. Return, in order, the blueprints that FUNCTION defined and that are still
-defined."
+  "Call FUNCTION. Return, in order, the blueprints defined by FUNCTION that are still defined."
   (let* ((defined '())
          (*definition-listener* (lambda (object) (push object defined))))
     (funcall function)
@@ -87,8 +83,7 @@ defined."
       (remove-if-not (lambda (object) (member object blueprints)) (reverse defined)))))
 
 (defun load-world (path)
-  "Load the Lisp file at PATH. Return the names of the robots that the file defines, in order.
-Signals BAD-LINE if the file defines no robots."
+  "Load the Lisp file at PATH. Return its robots' names in order. Signals BAD-LINE without robots."
   (or (mapcar #'blueprint-name (blueprints-defined-by (lambda () (load-lisp path))))
       (reject-line "~A defines no robot; a world's file has a DEFROBOT."
                    (native-name path))))

@@ -137,8 +137,7 @@ step."
     interface))
 
 (defun fork-with-question (question)
-  "Return a fork of the run of QUESTION, which is asked outside of plans. The fork contains a copy
-of QUESTION."
+  "Return a fork, with a copy of QUESTION, of the run of QUESTION, which is asked outside of plans."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-operator* (question-operator question)))
@@ -160,8 +159,7 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
 ;;;; Doing what goes best
 
 (defun question-of-branches (task forms options)
-  "Return the question of TASK which of FORMS is the best, with OPTIONS. Return NIL if there is only
-one form."
+  "Return the question of TASK which of FORMS is best, with OPTIONS; NIL if there is only one form."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)

@@ -25,13 +25,11 @@ without waiting" :addition)
   (result nil t "a value or a failure")
   (ticks 0 real "how many ticks the rollout took" :addition)
   (cost nil (or null real)
-        "the number that the function :COST returned at the end, or NIL without such a
-function" :addition)
+        "the number that the function :COST returned at the end; NIL without :COST" :addition)
   (steps 0 integer "how many steps of plans count")
   (ways '() list "where robots went")
   (broken nil (or null keyword)
-          "the option, :COST or :WORLD, whose function signalled the error that ended the rollout,
-or NIL"))
+          "the option, :COST or :WORLD, whose function's error ended the rollout, or NIL"))
 
 (define-shared scene rollout)
 
@@ -123,15 +121,13 @@ the rollout's state."
     (stable-sort (nreverse counts) #'> :key #'cdr)))
 
 (defun mean-or-infinity (numbers)
-  "Return the exact mean of the list NUMBERS, or NIL for an empty list. If a number is infinite,
-return infinity."
+  "Return the exact mean of the list NUMBERS; NIL for (), and infinity if a number is infinite."
   (cond ((find-if #'positive-infinity-p numbers))
         (numbers (/ (reduce #'+ (mapcar #'rational numbers)) (length numbers)))))
 
 (addition projection-mean-ticks)
 (defun projection-mean-ticks (projection)
-  "Return the mean number of ticks of the rollouts of PROJECTION that succeeded, a rational; NIL if
-none succeeded."
+  "Return the mean ticks, a rational, of successful rollouts of PROJECTION; NIL if none succeeded."
   (mean-or-infinity
    (mapcar #'rollout-ticks
            (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
@@ -171,7 +167,6 @@ mean ticks of success, or NIL."
           (t (projection-mean-ticks projection)))))
 
 (defun better-projection-p (projection other)
-  "True if PROJECTION succeeds more often than OTHER, or as often and at a lower mean cost."
   (let ((successes (projection-successes projection)) (others (projection-successes other))
         (price (mean-cost projection)) (other-price (mean-cost other)))
     (cond ((/= successes others) (> successes others))

@@ -20,8 +20,7 @@ ENDED and RESULT say how the branch or plan that the asking task tries has ended
   (result nil))
 
 (defvar *rolling-out* nil
-  "True while this thread runs a rollout. In a rollout, TRY-BEST chooses at random, and PROJECT
-makes no rollouts.")
+  "True while this thread runs a rollout: TRY-BEST is random then, and PROJECT makes no rollouts.")
 
 (defvar *current-question* nil
   "The question of a plan for which this thread runs rollouts, or NIL.")
@@ -46,15 +45,13 @@ makes no rollouts.")
                     (question-arguments question)))))))
 
 (defun note-ended (question state result)
-  "Record, in a rollout, that the branch or plan that QUESTION tries has ended in STATE with
-RESULT."
+  "Record, in a rollout, that the branch or plan tried by QUESTION has ended in STATE with RESULT."
   (when question
     (setf (question-ended question) state
           (question-result question) result)))
 
 (defun note-signal (question signal)
-  "Record, in a rollout, that SIGNAL has ended the branch or plan that QUESTION tries. A RETURN-FROM
-counts as a success."
+  "Record, in a rollout, that SIGNAL has ended QUESTION's branch or plan. RETURN-FROM is a success."
   (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
         ((escape-p signal) (note-ended question :succeeded nil))
         ((eq signal :evaporate) (note-ended question :evaporated nil))))
@@ -96,9 +93,8 @@ and :HORIZON. Values may be fluents. Signals WRONG-ARGUMENT."
     (ldb (byte 62 0) (digest-value digest))))
 
 (defun seed-of-trial (question trial)
-  "Return the seed of rollout number TRIAL of QUESTION. The seed is derived from the option :SEED
-or, without the option, from the run's seed, the tick, and the number of earlier questions in that
-tick."
+  "Return the seed of rollout number TRIAL of QUESTION. The seed comes from the option :SEED or else
+from the run's seed, the tick, and the number of earlier questions in that tick."
   (let* ((interface (wish-interface question))
          (simulation (if interface (interface-simulation interface) *simulation*))
          (seed (option question :seed)))
@@ -112,8 +108,7 @@ tick."
 ;;;; Answers
 
 (defun charge-for-rollouts (projections question)
-  "Charge the steps in rollouts of PROJECTIONS to the plans that ask QUESTION, if steps of plans
-have a budget."
+  "Charge steps in rollouts of PROJECTIONS to the plans that ask QUESTION, if steps have a budget."
   (count-steps (loop for projection in projections
                      sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps))
                (interface-runner (wish-interface question))
@@ -129,8 +124,7 @@ have a budget."
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
 (defun report-function-errors (question projections)
-  "Report in one message in how many rollouts of PROJECTIONS the functions given to QUESTION failed,
-and the first error."
+  "Report in one message in how many rollouts QUESTION's functions failed, and the first error."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
                            projections))
          (broken (remove-if-not #'rollout-broken rollouts)))
@@ -141,8 +135,7 @@ and the first error."
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)
-  "Return a list of projections, one for each branch of QUESTION; a question about a plan has one
-projection."
+  "Return a list of projections, one for each branch of QUESTION, or one for its plan."
   (let ((projections (loop for branch below (max 1 (length (question-branches question)))
                            collect (project-branch question moment branch))))
     (report-function-errors question projections)
@@ -159,8 +152,7 @@ projection."
                   (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)
-  "Answer QUESTION, which a plan asks, by rollouts. Return :LATER if the answer is not needed any
-more."
+  "Answer QUESTION, asked by a plan, by rollouts. Return :LATER if the answer is needed no more."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
                       (let ((*fork-operator* (question-operator question)))

@@ -16,8 +16,7 @@ ended, or else the asking plan. Return NIL if nothing has ended yet."
     (real t)))
 
 (defun question-cost (question)
-  "Return the value of the function :COST of QUESTION, or NIL without such a function. Signals
-WRONG-ARGUMENT."
+  "Return the value of QUESTION's function :COST, or NIL without :COST. Signals WRONG-ARGUMENT."
   (let ((function (option question :cost)))
     (when function
       (let ((cost (funcall function)))
@@ -27,9 +26,8 @@ WRONG-ARGUMENT."
         cost))))
 
 (defun failed-rollout-values (condition &optional option)
-  "Return four values for a rollout that the error CONDITION has ended: :FAILED, a failure with
-CONDITION, NIL for the cost, and OPTION. OPTION is the option whose function has signalled
-CONDITION, or NIL."
+  "Return the values of RUN-QUESTION-TO-END for a rollout that the error CONDITION has ended. OPTION
+is the option whose function signalled CONDITION, or NIL."
   (values :failed (make-condition 'lisp-failure :condition condition) nil option))
 
 (defun add-cost (question how result)
@@ -90,8 +88,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
 ;;; read, but not changed or commanded. Fluents have a realm for each rollout.
 
 (defun object-of-run (object)
-  "Return OBJECT if OBJECT belongs to a run. If OBJECT is a list or vector, return an element that
-belongs to a run. Otherwise return NIL."
+  "Return OBJECT, or an element of the list or vector OBJECT, that belongs to a run; otherwise NIL."
   (let ((seen (make-hash-table :test 'eq)))
     (labels ((look (object)
                (typecase object
@@ -108,8 +105,7 @@ belongs to a run. Otherwise return NIL."
       (look object))))
 
 (defun check-known-in-belief (question)
-  "Signal WRONG-ARGUMENT if QUESTION is about an object of this run, which does not exist in
-believed worlds."
+  "Signal WRONG-ARGUMENT if QUESTION is about an object of this run, which believed worlds lack."
   (let ((object (or (question-subject question)
                     (object-of-run (list (question-plan question)
                                          (question-arguments question))))))

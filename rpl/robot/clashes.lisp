@@ -66,8 +66,7 @@ many takeovers, let time pass."
       (exhaust-reaction runner))))
 
 (defun waits-for-tick-p (interface)
-  "True if plans have taken over a part so often in this tick that they must wait for the next
-tick."
+  "True if plans have taken over a part too often in this tick and must wait for the next tick."
   (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
        (loop for (nil . count) in (interface-takeovers interface)
                thereis (< *most-takeovers* count))))
@@ -80,8 +79,7 @@ with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
 (defun commands-in-tick (runner task)
   "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
-issued in this tick. Commands in the ticks before count too if takeovers have cut these ticks
-short."
+issued in this tick. Commands in earlier ticks that takeovers cut short count, too."
   (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
     (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
       (setf note (setf (runner-note runner 'commands) (list tick))))
@@ -190,8 +188,7 @@ NIL; reactions outside of WHOLE do not count."
 
 (defun ticks-before-replacement (older newer)
   "If a task has cut its action OLDER short by its action NEWER, most likely by mistake, return how
-many ticks OLDER had: 0 or 1. Return NIL if the task may mean that, for example in a reaction to an
-event."
+many ticks OLDER had: 0 or 1. Return NIL if the task may mean that, as in a reaction to an event."
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))
@@ -207,8 +204,7 @@ event."
          ticks)))
 
 (defun warn-of-hasty-command (interface older newer)
-  "Warn once if the action NEWER of INTERFACE has cut OLDER short before OLDER began, or just
-after."
+  "Warn once if action NEWER of INTERFACE has cut OLDER short before or just after OLDER began."
   (let ((ticks (and newer (ticks-before-replacement older newer))))
     (when ticks
       (warn-once-in-run

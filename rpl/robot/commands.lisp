@@ -74,8 +74,7 @@
   destination)
 
 (defun record-hand-exit (hand)
-  "Record that HAND has left the container that it was in. Return the container that HAND is still
-in, or NIL."
+  "Record that HAND has left its container. Return the container that HAND is still in, or NIL."
   (first (setf (hand-way-in hand)
                (last (hand-way-in hand) (container-depth hand)))))
 

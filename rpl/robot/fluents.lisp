@@ -13,8 +13,7 @@ part is a symbol, NIL for the robot itself.")
 (pushnew '*fluent-variables* *variables-to-restore*)
 
 (defun fluent-kind (kind)
-  "Return the name of the kind of part named KIND, or NIL for ROBOT. Signals an error if there is no
-such kind."
+  "Return the name of the kind of part KIND; NIL for ROBOT. Signals an error if KIND is unknown."
   (unless (same-name-p kind 'robot)
     (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))

@@ -21,8 +21,7 @@
            (simulation-participants simulation)))
 
 (defun same-era-p (task interface)
-  "True if the task of INTERFACE with the number of TASK, a task of another run, is the counterpart
-of TASK."
+  "True if the task of INTERFACE with the number of TASK, of another run, is TASK's counterpart."
   (let ((number (task-serial task)))
     (eq (era-of-task-number number (runner-client (task-runner task)))
         (era-of-task-number number interface))))
@@ -62,8 +61,7 @@ start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
       (car (first (last (interface-eras other))))))
 
 (defun begin-era (old new)
-  "Begin an era in the run NEW, which replaces the run OLD: later tasks of NEW differ from tasks of
-OLD."
+  "Begin an era in the run NEW, which replaces OLD: later tasks of NEW differ from tasks of OLD."
   (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
     (let ((before (interface-of-robot (interface-robot interface) old))
           (number (runner-serial (interface-runner interface))))
@@ -85,8 +83,7 @@ OLD."
       (with-plans (interface) (react-fully interface)))))
 
 (defun record-plan-action (interface function &rest arguments)
-  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats the current
-action."
+  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats the action."
   (apply #'record-outside-act (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
@@ -147,8 +144,7 @@ Return FLUENT itself if no variable holds FLUENT."
 (add-listener *rewind-hooks* drop-fluents-of-old-run)
 
 (defun copy-fluents-back (old new)
-  "Set the fluents of OLD, a rewound run, to their values in NEW, the run that has replaced OLD and
-is over."
+  "Set the fluents of OLD, a rewound run, to their values in NEW, its replacement, which is over."
   (let ((from (realm-of-simulation new)) (realm (realm-of-simulation old)))
     (unless (or (null realm) (eq from realm)) (copy-back-values from realm))))
 

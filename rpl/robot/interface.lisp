@@ -100,8 +100,7 @@ prompt was given another robot later")
           (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
-  "Call FUNCTION as the holder of the plans of INTERFACE, which this thread has locked. FUNCTION can
-be interrupted."
+  "Call FUNCTION, interruptibly, as the holder of the plans of INTERFACE, which this thread locked."
   (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held))
     (declare (dynamic-extent held))
     (in-any-case
@@ -124,15 +123,13 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
     (and (realp tick) tick)))
 
 (defun ready-p (interface)
-  "True if plans of INTERFACE are ready, have posts to apply, or wait for time. Any thread may call
-this function."
+  "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."
   (and (or (interface-next-tick interface)
            (outside-request-p (interface-runner interface)))
        t))
 
 (defun in-debugger-p (interface)
-  "True if the thread of the plans of INTERFACE waits for an answer in a debugger. Any thread may
-call this function."
+  "True if the thread of INTERFACE's plans waits for an answer in a debugger. For any thread."
   (let ((calls (interface-calls interface)))
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
 
@@ -144,8 +141,7 @@ call this function."
 ;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
 ;; shows it elsewhere.
 (defun check-not-in-debugger (interface)
-  "Signal MISUSE if the plans of INTERFACE, which run in another thread, have stopped in a
-debugger."
+  "Signal MISUSE if the plans of INTERFACE, in another thread, have stopped in a debugger."
   (when (and (in-debugger-p interface)
              (foreign-hook)
              (not (eq (current-thread) (interface-thread interface))))
@@ -160,8 +156,7 @@ debugger."
       (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))
 
-;; A time limit may interrupt this at any moment: the count must come out even, or the plans' thread
-;; would yield forever.
+;; A time limit may interrupt this: the count must come out even, or plans would yield forever.
 (defun call-wanting-plans (function interface)
   "Count this thread among the threads that want the plans of INTERFACE, and call FUNCTION with a
 function without arguments. FUNCTION must call that function when this thread has the plans.
@@ -203,8 +198,7 @@ a plan that waits in a debugger can be answered meanwhile."
     (signal-semaphore (interface-wake-up interface))))
 
 (defun plans-thread (interface)
-  "Return the thread of the plans of INTERFACE, :STARTING while the thread is being started, or
-NIL."
+  "Return the thread of the plans of INTERFACE, or :STARTING while the thread starts, or NIL."
   (let ((thread (interface-thread interface)))
     (unless (or (member thread '(nil :starting)) (thread-alive-p thread))
       (swap-if-eq (interface-thread interface) thread nil))
@@ -230,14 +224,10 @@ NIL."
          t)))
 
 (defun warn-once-in-run (interface key control &rest arguments)
-  "Warn with the text formatted from CONTROL and ARGUMENTS, once for each KEY in the run of
-INTERFACE."
   (warn-once key (simulation-world (interface-simulation interface))
              (apply #'format nil control arguments)))
 
 (defun usable-interface-p (interface)
-  "True if INTERFACE is not NIL, is valid, and belongs to the current world if there is a current
-world."
   (and interface
        (interface-valid-p interface)
        (or (null *world*)

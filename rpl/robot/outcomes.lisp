@@ -9,7 +9,6 @@
 ;;; is defined by DEFINE-OUTCOME, in the table of commands.lisp.
 
 (defun fluent-for-part (variable part)
-  "Return the fluent in VARIABLE; if VARIABLE holds a vector, return the fluent for PART."
   (let ((value (symbol-value variable)))
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
@@ -71,8 +70,7 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
       (and action (action-resource action)))))
 
 (defun expected-argument-text (interface type argument)
-  "Return text that says what a plan of INTERFACE must give instead of ARGUMENT, which is not of
-TYPE."
+  "Return text on what a plan of INTERFACE must give instead of ARGUMENT, which is not of TYPE."
   (let ((camera (and (null argument)
                      (same-name-p type 'designator)
                      (search-under-way interface))))
@@ -113,15 +111,13 @@ TYPE."
                                    (:when form clause...)")))))
 
 (defun clause-fluents (clauses &optional (kinds '(:set :error :pulse)))
-  "Return the variables of the fluents that CLAUSES of KINDS set. A variable may occur several
-times."
+  "Return the variables, perhaps repeated, of the fluents that CLAUSES of KINDS set."
   (loop for (kind . more) in clauses
         append (cond ((member kind kinds) (list (first more)))
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))
 
 (defun fluent-in-plan (variable part)
-  "Return the form by which plans refer to the fluent in VARIABLE. If VARIABLE holds a vector, the
-form refers to the fluent for PART."
+  "Return a plan's form for the fluent in VARIABLE; for PART's fluent if VARIABLE holds a vector."
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
 (defun fluent-form (kind clauses part)

@@ -66,8 +66,7 @@ not served."))
            (interface-wishes interface)))
 
 (defun serve-next-wish (interface)
-  "Serve the oldest wish of INTERFACE whose task can go on, if any. Return true if the task goes
-on."
+  "Serve the oldest wish of INTERFACE whose task can go on, if any. Return true if a task goes on."
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))
@@ -95,8 +94,7 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
     (setf (interface-resting-p interface) nil)))
 
 (defun obsolete-wish-p (wish)
-  "True if no task needs the result of WISH any more, because its plan, the interface or the run
-ends."
+  "True if no task needs the result of WISH, because its plan, the interface or the run ends."
   (let* ((interface (wish-interface wish)) (task (wish-task wish))
          (simulation (interface-simulation interface)))
     (or (interface-closing-p interface)
@@ -138,9 +136,8 @@ of the run share a random state."
                                             0))))))))
 
 (defun react-fully (interface)
-  "Let the plans of INTERFACE react to time and to all that was posted, until all of them wait or
-have used their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a reaction, do
-nothing."
+  "Let the plans of INTERFACE react to time and to all that was posted, until all wait or have used
+their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a reaction, do nothing."
   (if (eq interface *reacting-interface*)
       :idle
       (let ((runner (interface-runner interface))

@@ -78,9 +78,8 @@ the task before anything else can happen."
 
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
-  "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. In a
-headless run, the plan runs as ticks pass; in a live run, in the thread of the plans. Signals
-UNKNOWN-NAME."
+  "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. PLAN runs
+as ticks pass in a headless run, and in the plans' thread in a live run. Signals UNKNOWN-NAME."
   (let ((interface (ensure-interface)))
     (prog1 (begin-plan-in-interface interface plan arguments #'identity)
       (warn-if-no-ticks-pass plan interface))))
@@ -173,13 +172,11 @@ calls from outside can wake the plans."
     state))
 
 (defvar *on-plan-failure* (constantly nil)
-  "A function that RUN-PLAN calls with the task of a plan that has failed. Trials bind this
-variable.")
+  "A function that RUN-PLAN calls with the task of a failed plan. Trials bind this variable.")
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun warn-of-failure (interface task)
-  "Warn that TASK, which RUN-PLAN ran for a program, has failed. Give the warning once for each plan
-of a run."
+  "Warn, once for each plan of a run, that TASK, which RUN-PLAN ran for a program, has failed."
   (let ((simulation (interface-simulation interface)))
     (funcall *on-plan-failure* task)
     (unless (or *asker*
@@ -233,8 +230,7 @@ the run is over before it begins."
       (tasks-of-interface interface))))
 
 (defun request-plan-end (interface task)
-  "Request that TASK of INTERFACE evaporates, or all tasks if TASK is NIL. The plan runner ends the
-tasks later."
+  "Request that the plan runner later evaporates TASK of INTERFACE, or all tasks if TASK is NIL."
   (check-not-secluded (interface-simulation interface))
   (record-plan-action interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of-interface interface)))
@@ -242,16 +238,14 @@ tasks later."
   (stop-plan (interface-runner interface) task))
 
 (defun end-plans-of-interface (interface task)
-  "Evaporate TASK of INTERFACE, or all tasks if TASK is NIL: now, or later in the thread of the
-plans."
+  "Evaporate TASK of INTERFACE, or all tasks if TASK is NIL: now, or later in the plans' thread."
   (request-plan-end interface task)
   (unless (or (holding-p interface) (plans-thread interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
 (defun repeat-end (subject)
-  "End SUBJECT in a repeated run, as in the original run. SUBJECT is a task, or a plan runner for
-all of its plans."
+  "End SUBJECT, a task or a plan runner with all plans, in a repeated run, as in the original run."
   (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)

@@ -5,8 +5,7 @@
 (export '(*robot-to-drive*))
 
 (defun end-plans-in-this-thread (interface)
-  "End the plans of INTERFACE, which is closing, in this thread. An interrupt breaks off one cleanup
-at most."
+  "End the plans of the closing INTERFACE in this thread. An interrupt ends one cleanup at most."
   (flet ((end ()
            (with-plans (interface) (react-fully interface))))
     (in-any-case (end)
@@ -76,14 +75,12 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 
 ;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
 (defun do-traced (traced-p function &rest arguments)
-  "Call FUNCTION with ARGUMENTS, and trace plans if TRACED-P."
   (let ((*trace-plans* (or traced-p *trace-plans*)))
     (apply function arguments)))
 
 ;; A repeated run gives the eras that it had, so that its tasks are recognized.
 (defun drive-in-eras (robot eras)
-  "Let plans drive ROBOT, as RPL-INIT-ROBOT does. ERAS are the eras of the tasks. Return the new
-interface."
+  "Let plans drive ROBOT, as RPL-INIT-ROBOT does, with the ERAS of tasks. Return the new interface."
   ;; Other threads may set the variable meanwhile.
   (let ((simulation (robot-simulation robot)) (before *interface*))
     (record-outside-act simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
@@ -130,7 +127,6 @@ another world than the current one."
 ;;;; Taking part in the simulation
 
 (defun time-to-wake-p (interface)
-  "True if waiting plans of INTERFACE are to wake in this tick."
   (or (interface-tick-wanted-p interface) (woken-by-tick-p interface)))
 
 (defun advance-without-reaction (interface)

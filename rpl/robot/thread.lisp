@@ -45,8 +45,7 @@
                         (form-text (task-form task)) (task-path task))))
 
 (defun abort-step (interface steps)
-  "Abort the Lisp code of a plan of INTERFACE in this thread, if the plans are still at step number
-STEPS."
+  "Abort the Lisp code of INTERFACE's plan in this thread, if the plans are still at step STEPS."
   (when (and (eql steps (runner-steps (interface-runner interface)))
              (holding-p interface))
     (abort)))
@@ -105,8 +104,7 @@ to run; NIL if the reaction was aborted."
                :over)))))
 
 (defun wake-idle-simulation (interface)
-  "If a plan waits for a tick, and the live simulation is idle because no event is pending, wake the
-simulation."
+  "Wake the live simulation if it is idle for lack of events while a plan waits for a tick."
   (let ((simulation (interface-simulation interface)))
     (when (and (or (interface-tick-wanted-p interface)
                    (wake-tick interface))

@@ -46,7 +46,6 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
     (removef (interface-actions interface) action)))
 
 (defun action-open-p (action)
-  "True if ACTION is in progress, and its end was not reported to plans."
   (not (or (action-told-p action) (action-over-p action))))
 
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
@@ -58,8 +57,7 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
 ;;; Answers.
 
 (defun final-answer-p (command err)
-  "True if an answer to COMMAND with the error code ERR is the last answer. A track is answered when
-it begins, and again when it ends."
+  "True if an answer with ERR is COMMAND's last. A track is answered at its beginning and its end."
   (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
@@ -88,8 +86,7 @@ time is carried out first, and a command in the background goes on."
 ;;; interrupted command sets only the fluents for the state of the robot: no error fluent, no pulse.
 
 (defun note-pulses (interface action settings)
-  "Record which fluents are pulsed in this tick by SETTINGS, the settings at the end of ACTION of
-INTERFACE."
+  "Record which fluents are pulsed in this tick by SETTINGS at the end of ACTION of INTERFACE."
   (when (action-task action)
     (loop with plan = (task-serial (task-top (action-task action)))
           for (kind fluent) in settings
@@ -186,8 +183,7 @@ the robot is gone, end the plan at work."
     (funcall function)))
 
 (defun issue-action (interface command resource arguments outcome issue)
-  "Issue COMMAND on RESOURCE; OUTCOME returns the settings of fluents at the end. ISSUE records the
-command in the trace."
+  "Issue COMMAND on RESOURCE. OUTCOME returns the end's fluent settings. ISSUE is the trace record."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
          (action (make-action command resource outcome task cleanup-p issue
@@ -205,8 +201,7 @@ command in the trace."
     (interrupt-older-actions interface resource :except action)))
 
 (defun grab (interface resource)
-  "Interrupt all commands on RESOURCE, including commands that take no time or go on in the
-background."
+  "Interrupt all commands on RESOURCE, including those that take no time or run in the background."
   (call-on-robot interface
                  (lambda () (grab-resource resource (interface-simulation interface))))
   (interrupt-older-actions interface resource :test (constantly t)))

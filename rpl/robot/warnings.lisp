@@ -24,8 +24,7 @@ that it calls. SEEN is a table of objects that have been examined."
          (may-set-fluents-p (fdefinition object) seen))))
 
 (defvar *known-kickers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from each interface to an alist from kickers to true or false: whether the kicker may
-change fluents.")
+  "A table from each interface to an alist from kickers to whether they may change fluents.")
 
 (defun kicker-sets-fluents-p (kicker interface)
   (let ((known (assoc kicker (gethash interface *known-kickers*) :test #'eq)))
@@ -49,8 +48,7 @@ change fluents.")
 (defparameter *harmless-error-codes*
   '(:interrupt :not-moving :goto-local :already-tracking
     :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
-  "Error codes that are no failures, because plans make use of them, as in the manual's appendix
-D.")
+  "Error codes that are no failures, because plans use them, as in the manual's appendix D.")
 
 (defun command-failed-p (command err)
   "True if COMMAND, which ended with ERR, could not do what it is for."
@@ -159,8 +157,7 @@ supersedes that of an earlier end of the same command."
         (rest (simulation-participants simulation)))))
 
 (defun waits-for-robot-only-p (task)
-  "True if TASK waits only for fluents that the robot alone changes, or for a value that never
-changes."
+  "True if TASK waits only for fluents that only the robot changes, or for an unchanging value."
   (or (eq +no-fluent+ (task-awaiting task))
       (let ((fluents (fluents-awaited (list task))))
         (and fluents (every #'robots-fluent-p fluents)))))
@@ -210,7 +207,6 @@ changes."
             when parts collect (list task parts)))))
 
 (defun warn-of-stranded-plans (interface)
-  "Warn of the plans of INTERFACE that were begun and wait in vain."
   (loop for (task parts) in (stranded-plans interface)
         do (warn-of-stranded interface task parts)))
 
@@ -218,8 +214,7 @@ changes."
   (unless (simulation-over simulation) (warn-of-stranded-plans interface)))
 
 (defun stranded-plan-text ()
-  "Return a sentence about a plan, begun in the current simulation, that waits in vain; NIL if there
-is no such plan."
+  "Return a sentence on a plan, begun in the current simulation, that waits in vain, or NIL."
   (let ((interface (usable-interface)))
     (destructuring-bind (&optional task parts) (and interface (first (stranded-plans interface)))
       (and task (format nil "At the end ~A" (stranded-task-text task parts))))))

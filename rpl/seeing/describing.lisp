@@ -71,8 +71,7 @@ frame with that environment. FRAMES begin with the innermost frame."
 
 (defun stack-entries (task)
   "Return a list of lists (form variable...) for the expressions that TASK is evaluating, innermost
-first. Each variable, a list (name value), is listed with the outermost expression in which it is
-visible."
+first. Each variable, a list (name value), comes with the outermost expression where it is visible."
   (let ((visible (visible-variables (frame-chain (task-frame task))))
         (around (and (task-parent task) (task-frame (task-parent task))))
         (known '())
@@ -99,8 +98,7 @@ innermost first, without shadowed variables. Return () when TASK is over."
 ;;;; What DESCRIBE tells
 
 (defun write-lines (stream &rest items)
-  "Write ITEMS, in which names and texts alternate, to STREAM: a name and its text on each line.
-Leave out names whose text is NIL."
+  "For each name in ITEMS and the text after it, write a line to STREAM unless the text is NIL."
   (loop for (name text) on items by #'cddr
         when text do (format stream "  ~A: ~A~%" name text)))
 

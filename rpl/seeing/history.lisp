@@ -69,8 +69,7 @@ trace was kept."
 
 (addition task-failures)
 (defun task-failures (which &key runner)
-  "Return a list of the failures that happened in WHICH and its parts, in order, including those
-that were handled. See TRACE-OF."
+  "Return a list of failures in WHICH and its parts, in order, also of handled ones. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-entry (issue trace)
@@ -111,8 +110,7 @@ Each element is a list of number, name or NIL, and expression. See TRACE-OF."
 ;;;; Bars over time
 
 (define-record (span (:constructor make-span (kind start text &optional end)))
-  "A period of a task from tick START to END, in which it waited, was blocked, cleaned up or ran a
-command."
+  "A period, from tick START to END, of a task that waits, is blocked, cleans up or runs a command."
   (kind :waiting keyword "what a span is of: :waiting, :parts (waiting for them), :blocked,
 :cleaning, :failure (it takes no time) or :command" :export)
   (start 0 real "the tick at which a span begins" :export)
@@ -166,8 +164,7 @@ expression, by default a short text."
         (bar-end bar) tick))
 
 (defun note-in-bar (bar entry)
-  "Add ENTRY, a trace entry of the task of BAR, to BAR. Entries for starts and commands are handled
-elsewhere."
+  "Add ENTRY, an entry of the task of BAR, to BAR. Starts and commands are handled elsewhere."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
       ;; What decides a construct ends the wait for its parts without a wake-up.
@@ -219,8 +216,7 @@ elsewhere."
 (defun call-at-depth (span depth) (nth depth (span-calls span)))
 
 (defun split-by-call (spans depth)
-  "Split SPANS, the spans of commands, into lists of spans that follow each other in the same call
-at DEPTH."
+  "Split SPANS, of commands, into lists of successive spans in the same call at DEPTH."
   (loop while spans
         collect (let ((call (call-at-depth (first spans) depth)))
                   (loop while (and spans (eq call (call-at-depth (first spans) depth)))
@@ -247,8 +243,7 @@ ends at UNTIL at the latest."
                                 (reduce #'max run :key #'span-end)))))
 
 (defun finish-bar (bar now)
-  "Put the spans, commands and parts in BAR, and in its parts, in order. Set the end of what has not
-ended to NOW."
+  "Order spans, commands and parts in BAR and its parts; set the end of what has not ended to NOW."
   (unless (bar-end bar) (end-bar bar nil now))
   (setf (bar-spans bar) (nreverse (bar-spans bar))
         (bar-commands bar) (nreverse (bar-commands bar))

@@ -97,8 +97,7 @@ a step of its own.")
           nil))))
 
 (defun note-frame-return (course task frame)
-  "If TASK, about to take a step at FRAME, has returned to the frame UNTIL of COURSE, record that in
-COURSE."
+  "If TASK, before a step at FRAME, has returned to COURSE's frame UNTIL, record that in COURSE."
   (let ((until (stepping-course-until course)))
     (when (and (frame-p until)
                (eq task (stepping-course-within course))
@@ -157,7 +156,6 @@ this task."
 ;;; Which tasks are stepped through.
 
 (defun stepping-courses (runner)
-  "Return the courses of RUNNER whose tasks are not over."
   (and (runner-stepper runner)
        (remove-if #'task-over-p (funcall (runner-stepper runner) nil nil)
                   :key #'stepping-course-task)))

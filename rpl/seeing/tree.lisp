@@ -20,8 +20,7 @@ the running plan, or else the runner in use. Signals MISUSE if there is none."
                    the prompt.")))
 
 (defun task-holding-value (value runner)
-  "Return the task of RUNNER with a variable whose value is or contains VALUE, and the name of the
-variable; or NIL."
+  "Return a task of RUNNER and its variable's name, whose value is or contains VALUE; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
           for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
@@ -139,7 +138,6 @@ are among FOLDED are left out. No task may go on meanwhile."
                      :plans (length plans) :tasks (runner-alive runner))))
 
 (defun runner-change-mark (runner)
-  "Return a list that is no longer EQUAL after a change of the tasks of RUNNER. Any thread may call
-this function."
+  "Return a list that is no longer EQUAL after tasks of RUNNER change. Callable in any thread."
   (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))
