@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-;;; The Lisp reader reads arguments, without evaluating anything (manual E). Numbers stand for
-;;; cameras, hands, storage bins and designators. A comment begins with a semicolon, or with a #
-;;; that stands alone.
+;;; The Lisp reader reads arguments, evaluating nothing (manual E). Numbers stand for cameras,
+;;; hands, storage bins and designators. A comment begins with a semicolon, or with a lone #.
 
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)

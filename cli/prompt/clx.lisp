@@ -6,8 +6,7 @@
 ;;; that is longer than 32 bytes. Newer ones read with READ-SEQUENCE, in the file common.lisp.
 ;;; Debian 13 has SBCL 2.5.2 and CLX 0.7.5.
 
-;;; cli/build.lisp loads this file, too, into a bare SBCL: it needs the answer before it compiles
-;;; McCLIM.
+;;; cli/build.lisp, too, loads this file, into a bare SBCL, for its answer before compiling McCLIM.
 
 (defpackage :ars-magna.clx
   (:documentation "Checks which version of the library CLX ASDF finds, and whether it works on this
@@ -38,8 +37,7 @@ SBCL.")
   (uiop:symbol-call :quicklisp :quickload "mcclim/looks"))
 
 (defun library-text (name &optional (system (find-library name)))
-  "Return text with NAME, the name of a library, and the version and directory of its ASDF SYSTEM,
-which may be NIL."
+  "Return text: NAME of a library, and version and directory of its ASDF SYSTEM, which may be NIL."
   (format nil "~A~@[ ~A~]~@[ in ~A~]" name
           (and system (asdf:component-version system))
           (and system (asdf:system-source-directory system))))

@@ -207,8 +207,7 @@ unit, or if the unit is still being typed."
     (if (and end (< end (length text))) end position)))
 
 (defun argument-end (parameter text start)
-  "Return the end of the argument for PARAMETER that begins in TEXT at START; NIL if the argument
-may continue after TEXT."
+  "Return the end of the argument for PARAMETER in TEXT at START; NIL if the end may be missing."
   (let ((end (typecase (line-parameter-type parameter)
                (rest-type nil)
                (keyword (token-end text start))

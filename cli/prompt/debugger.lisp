@@ -277,8 +277,7 @@ and Lisp runs other programs, too."
 ;; The rest of the program recognises by this name that there is no debugger.
 (defun debugger-disabled-hook (condition hook)
   "Report CONDITION. Continue if CONDITION is no error; otherwise abort the work of this thread.
-Lisp calls this hook instead of its debugger when there is no terminal or window, or while a break
-is being answered."
+Lisp calls this hook, not its debugger, without a terminal or window, or while a break is answered."
   (declare (ignore hook))
   (cond (*session*
          (report-session-error *session* (format nil "Break: ~A" (condition-text condition))))

@@ -54,8 +54,7 @@ MESSAGE and the sessions in its run; if there are none, SESSION."
       (list session)))
 
 (defun deliver-messages (session messages)
-  "Show MESSAGES, which SESSION has taken from a queue: each message in the sessions that RECEIVERS
-returns."
+  "Show MESSAGES, which SESSION has taken from a queue, each in the sessions from RECEIVERS."
   (let ((receivers (mapcar (lambda (message) (receivers message session)) messages)))
     (dolist (receiver (remove-duplicates (cons session (apply #'append receivers))))
       (print-messages receiver (loop for message in messages

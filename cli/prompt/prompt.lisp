@@ -16,8 +16,7 @@ of SESSION, and INBOX the waiting requests of the simulation."
        t))
 
 (defun run-with-time-notice (session text)
-  "Run TEXT, a line of SESSION. Tell a user at a terminal or window if requests of the line wait
-because time stands still."
+  "Run TEXT, a line of SESSION. Tell an interactive user if TEXT waits because time stands still."
   (let ((jobs (session-jobs session)) (inbox (waiting-requests))
         (break-request (first (session-breaks session))))
     (if break-request

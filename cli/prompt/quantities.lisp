@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-;;; An angle, length, speed or time may be typed with a unit, without a space or as the next
-;;; word, and with pi in it. A number alone is in the simulator's own units: radians, metres (a cell
-;;; is one wide), ticks.
+;;; An angle, length, speed or time may be typed with pi, and with a unit, joined or as the next word. A
+;;; number alone is in the simulator's own units: radians, metres (widths of cells), ticks.
 
 (defparameter *quantities*
   '((angle     :angle  "0.5, pi/2 or 90 deg")

@@ -51,8 +51,7 @@ or NIL if the number is not known."
   (and account (account-text account) (last-line-number account)))
 
 (defun faulty-line-number (account)
-  "Return the number of the invalid line in the form or line that is being run; NIL if ACCOUNT is
-NIL or no line is running."
+  "Return the number of the invalid line in what is running; NIL without ACCOUNT or running line."
   (let ((line (running-line-number account)))
     (and line (or (account-trouble-line account) line))))
 

@@ -125,8 +125,7 @@ McDermott's projection of reactive plans, 1992.)"
 ;;; From outside.
 
 (defun interface-for-projection (plan)
-  "Return the interface whose plans are to be projected with PLAN. Signals MISUSE inside of a plan's
-step."
+  "Return the interface whose plans are projected with PLAN. Signals MISUSE inside a plan's step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
                        (runner-client (task-runner plan))

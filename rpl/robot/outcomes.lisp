@@ -178,8 +178,7 @@ robot. See reading 179."
 
 (defun advice-on-command (name)
   "Return sentences on how plans can issue the command that NAME, a symbol that begins with RPL-,
-seems to stand for: the name of the function, or how to define the function. Return NIL if NAME
-stands for no command."
+seems to stand for: by which function, or how to define the function; NIL if NAME is no command."
   (let* ((text (symbol-name name))
          (command (and (starts-with-subseq "RPL-" text)
                        (find-command (subseq text (length "RPL-")) nil)))

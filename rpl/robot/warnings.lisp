@@ -114,9 +114,8 @@ supersedes that of an earlier end of the same command."
 
 ;;;; Commands that go on after their plan
 
-;;; That is allowed (reading 185), but most often a wait has been forgotten. Not counted are
-;;; commands that take no time and do more than look, go on in the background, stop the robot, or
-;;; were given to clean up.
+;;; That is allowed (reading 185), but most often a wait was forgotten. Excluded: commands that take
+;;; no time and do more than look, go on in the background, stop the robot, or clean up.
 
 (defun unawaited-actions (interface task)
   "Return the actions in progress of the top-level TASK of INTERFACE that a plan should wait for."

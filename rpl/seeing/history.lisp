@@ -25,8 +25,7 @@
       (reject-use "There was no task ~A in this trace." number)))
 
 (defun ancestor-entries (number trace)
-  "Return the entries of TRACE for the starts of the task NUMBER and the tasks around it, innermost
-first."
+  "Return the entries of TRACE for the starts of task NUMBER and tasks around it, innermost first."
   (loop for each = number then (trace-entry-value start)
         while each
         for start = (start-entry each trace)
@@ -223,8 +222,7 @@ expression, by default a short text."
                         collect (pop spans)))))
 
 (defun call-bar (bar spans depth until)
-  "Return a bar, as a part of BAR, for the call at DEPTH that issued the commands SPANS. The bar
-ends at UNTIL at the latest."
+  "Return a bar, part of BAR, for the call at DEPTH that issued SPANS, ending at UNTIL or before."
   (let ((call (make-bar (bar-serial bar) bar nil (call-at-depth (first spans) depth)
                         (span-start (first spans)) (1+ (bar-depth bar)))))
     (setf (bar-call-p call) t
