@@ -66,7 +66,7 @@ NIL if it contains Lisp or lines of the prompt."
 ;;;; Loading
 
 (defun call-recording-location (place function)
-  "Call FUNCTION, while error reports get the file and line being loaded by calling PLACE."
+  "Call FUNCTION, while error reports get the file and line being loaded from the function PLACE."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; An angle, length, speed or time may be typed with pi, and with a unit, joined or as the next word. A
+;;; An angle, length, speed or time may be typed with pi, and a unit, joined or as the next word. A
 ;;; number alone is in the simulator's own units: radians, metres (widths of cells), ticks.
 
 (defparameter *quantities*
@@ -58,7 +58,8 @@
       (and (realp value) value))))
 
 (defun leading-number (text)
-  "Return the number at the beginning of TEXT, by default 1 or -1, and the position of its end."
+  "Return the number at the beginning of TEXT, and the position of its end. If TEXT begins without
+digits, the number is 1, or -1 after a minus sign."
   (let ((end (or (position-if-not (lambda (char) (find char "0123456789.+-/")) text)
                  (length text))))
     (values (cond ((zerop end) 1)

@@ -64,7 +64,7 @@ none. Without an interactive debugger, such failures are messages.")
 (add-listener *failure-hooks* consider-break)
 
 ;;; A runner with plans to be stepped has a STEPPER, which is called before each step of any of its
-;;; tasks (see INSTRUMENTED-STEP); other runners have no such cost. Only steps that begin an expression
+;;; tasks (see INSTRUMENTED-STEP); other runners cost nothing. Only steps that begin an expression
 ;;; count. Leaves have no steps of their own: a stop comes before those that are steps of a body.
 
 (addition *step-plans*)

@@ -20,7 +20,7 @@ the running plan, or else the runner in use. Signals MISUSE if there is none."
                    the prompt.")))
 
 (defun task-holding-value (value runner)
-  "Return a task of RUNNER and its variable's name, whose value is or contains VALUE; or NIL."
+  "Return a task of RUNNER, and the name of its variable that is or contains VALUE; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
           for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
