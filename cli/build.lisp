@@ -3,8 +3,7 @@
 ;;; Those scripts load this file into a bare SBCL. The environment says where compiled files go. For
 ;;; the tests, any warning ends the build with status 2, also that of an undefined function. It
 ;;; removes the project's compiled files, so that the next build finds it again. For users, who may
-;;; have another SBCL, what ASDF accepts is accepted; the tests compile files again that had
-;;; warnings then.
+;;; have another SBCL, what ASDF accepts is accepted; the tests compile files with warnings again.
 
 (require "asdf")
 
@@ -55,8 +54,7 @@
     (format nil "~{~A~^ ~}" (remove "" words :test #'string=))))
 
 (defun call-or-quit (function &optional (where ""))
-  "Call FUNCTION. If FUNCTION signals an error, print WHERE and the error on one line, and exit with
-status 2."
+  "Call FUNCTION. After an error, print WHERE and the error on one line, and exit with status 2."
   (handler-case (funcall function)
     (error (condition)
       (format t "~&~A~%" (text-on-one-line (format nil "~A~A" where condition)))
@@ -169,7 +167,6 @@ and of ASDF's configuration directories. The options have ASDF's format."
 ;;; Compiling.
 
 (defun delete-fasls (fasls)
-  "Delete FASLS, a directory of compiled files, if *CACHE-DIRECTORY* is set."
   (when *cache-directory*
     (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
 
@@ -188,8 +185,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
        (< (file-write-date *load-truename*) *start-time*)))
 
 (defun warnings-marker ()
-  "Return the path of a marker file. The file exists while the cache has compiled files of sources
-that caused warnings."
+  "Return the path of a file that exists while the cache has fasls whose sources caused warnings."
   (merge-pathnames "warned" (project-fasls)))
 
 (defun make-warnings-marker ()
@@ -200,8 +196,7 @@ that caused warnings."
       (declare (ignorable out)))))
 
 (defun call-counting-warnings (function)
-  "Call FUNCTION. Return the number of warnings that FUNCTION signalled, and true if it signalled an
-error."
+  "Call FUNCTION. Return the number of warnings, and true if FUNCTION signalled an error."
   (let ((count 0))
     (handler-bind ((sb-ext:compiler-note #'muffle-warning)
                    (warning (lambda (warning)
@@ -302,8 +297,7 @@ and try again. If the second try fails, too, exit with status 2."
 ;;; The manual.
 
 (defun write-manual ()
-  "Write the manual into the directory named in ARS_MAGNA_MANUAL. Exit with status 1 after an
-error."
+  "Write the manual into the directory named in ARS_MAGNA_MANUAL. Exit with status 1 on an error."
   (load-project "ars-magna/manual")
   (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 

@@ -35,7 +35,6 @@ Control-C and similar keys are signals instead.")
     (enter-key-mode :interrupts interrupts)))
 
 (defun redraw-after-suspension (stream)
-  "Draw the line being typed into STREAM again, after this process was suspended."
   (set-paste-marking (edited-console stream) t)
   (change-typed-line (edited-console stream) (constantly nil)))
 
@@ -64,8 +63,7 @@ Control-C and similar keys are signals instead.")
              (stream-error () nil)))))
 
 (defun make-octet-reader (stream)
-  "Return a function that returns the next octet of STREAM. Called with an octet, the function puts
-the octet back into STREAM."
+  "Return a function that returns the next octet of STREAM, or puts its argument, an octet, back."
   (lambda (&optional octet)
     (if octet
         (progn (put-back-octet (edited-ahead stream) octet) nil)
@@ -86,8 +84,7 @@ the octet back into STREAM."
   (:method ((stream edited-text))))
 
 (defun set-paste-marking (console on)
-  "Switch bracketed paste mode of the terminal of CONSOLE on, or off if ON is NIL. In this mode the
-terminal marks pasted text."
+  "Make the terminal of CONSOLE mark pasted text (bracketed paste mode), or no longer if ON is NIL."
   (with-console (stream console)
     (write-string (paste-marking-code on) stream)
     (finish-output stream)))
@@ -101,7 +98,6 @@ terminal marks pasted text."
   (drawn-line-text (drawn-line-of stream)))
 
 (defun replace-line-text (stream text point)
-  "Make TEXT the line being typed, with the cursor at POINT."
   (setf (edited-listed stream) nil)
   (change-typed-line (edited-console stream)
                      (lambda (line)
@@ -162,8 +158,7 @@ ends the line; other values are ignored.")
 ;;; The history.
 
 (defun show-history-entry (stream from to)
-  "Show the first history entry in the slot FROM of STREAM. Push the text shown until now onto the
-slot TO."
+  "Show the first entry in slot FROM of STREAM, and push the text shown before onto slot TO."
   (let ((entry (first (slot-value stream from))))
     (when entry
       (pop (slot-value stream from))
@@ -190,8 +185,7 @@ slot TO."
 ;;; Reading a line.
 
 (defun insert-pasted-text (stream text)
-  "Insert TEXT, which was pasted. Report if lines at the end of TEXT are taken for output and left
-out."
+  "Insert TEXT, which was pasted. Report if the last lines are taken for output and left out."
   (let ((count (count-output-lines text)))
     (when (plusp count)
       (write-fresh (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken ~
@@ -234,9 +228,8 @@ out."
       (ensure-key-mode stream :interrupts t))))
 
 (defun insert-available-text (stream text)
-  "Insert TEXT and all characters that are available after it, and draw the line once. Drawing only
-once keeps unmarked pasted text fast. If the key after the text ends the line, return the text of
-the line, or :EOF."
+  "Insert TEXT and all characters available after TEXT, and draw the line once, to keep unmarked
+pasted text fast. If the key after the text ends the line, return the line's text, or :EOF."
   (let ((texts (list text)) (next :none))
     (loop while (and (eq next :none) (octets-available-p stream))
           do (let ((key (read-key (make-octet-reader stream))))
@@ -304,8 +297,7 @@ entry found and the position of SOUGHT in the entry; NIL if there is none."
     (values entry (and entry (search sought entry :test #'char-equal)))))
 
 (defun show-search-result (stream sought skipped)
-  "Show and return the history entry that FIND-HISTORY-ENTRY returns for SOUGHT and SKIPPED, or
-NIL."
+  "Show and return the entry that FIND-HISTORY-ENTRY returns for SOUGHT and SKIPPED, or NIL."
   (multiple-value-bind (entry place) (find-history-entry stream sought skipped)
     (change-typed-line (edited-console stream)
                        (lambda (line)
@@ -318,8 +310,7 @@ NIL."
     entry))
 
 (defun read-search-keys (stream)
-  "Read a search text key by key, and show the entry found. Return the first key that does not
-belong to the search."
+  "Read a search text key by key, and show the entry found. Return the first key after the search."
   (loop with sought = "" and skipped = 0
         for key = (read-key (make-octet-reader stream))
         do (cond ((stringp key) (setf sought (uiop:strcat sought key)

@@ -24,8 +24,7 @@ appended after a newline, or NIL at the end of the stream."))
   (loop for char across line do (vector-push-extend char text)))
 
 (defun make-growing-text (text start more)
-  "Return a stream of TEXT from START on. The function MORE returns further lines, as in
-GROWING-TEXT."
+  "Return a stream of TEXT from START on. MORE returns further lines, as in GROWING-TEXT."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
 (defmethod stream-read-char ((stream growing-text))
@@ -44,19 +43,17 @@ GROWING-TEXT."
 
 ;;;; The history
 
-;;; A Lisp form typed in several lines is one entry. So an entry is written to the file when the
-;;; next one begins, or the session ends. The file has an entry on each line, with \n for a newline
-;;; and \\ for a backslash. Several sessions may add to it at once. A file that cannot be read or
-;;; written is ignored.
+;;; A Lisp form in several lines is one entry. So an entry is written when the next one begins, or
+;;; the session ends. The file has an entry on each line, with \n for a newline and \\ for a
+;;; backslash. Several sessions may write at once. A file that cannot be read or written is ignored.
 
 (defparameter *history-limit* 1000 "The largest number of entries in the history.")
 
 (defstruct (line-history (:conc-name history-) (:copier nil)
                          (:constructor %make-history))
-  "The history: ENTRIES are typed lines, newest first. FILE is the pathname of the history file, or
-NIL. UNSAVED-P is true if the newest entry is not in the file. If the last line was appended to the
-newest entry, GROWING is the text before that line, and the entry has a fill pointer; else GROWING
-is NIL."
+  "ENTRIES are typed lines, newest first. FILE is the history file's pathname, or NIL. UNSAVED-P is
+true if the newest entry is not in the file. If the last line was appended to the newest entry,
+GROWING is the text before that line, and the entry has a fill pointer; else GROWING is NIL."
   (entries '() :type list)
   (growing nil :type (or null string))
   (file nil :type (or null pathname) :read-only t)

@@ -2,11 +2,10 @@
 
 (in-package :ars-magna.cli)
 
-;;; A key is one of these: the text that it types, a string; a keyword such as :UP or :CONTROL-A, or
-;;; :META-F for one after Escape; a list (:PASTE text); or (:ENTRY text) for a line that was chosen
-;;; elsewhere, as from a menu, which no terminal sends. NEXT, in what follows, is a function that
-;;; returns the terminal's next octet, as a character, or NIL at the end. Called with an octet, it
-;;; puts that back.
+;;; A key is one of these: the text it types, a string; a keyword like :UP or :CONTROL-A, or :META-F
+;;; for one after Escape; a list (:PASTE text); or (:ENTRY text) for a line chosen elsewhere, as in
+;;; a menu, which no terminal sends. NEXT, below, is a function that returns the terminal's next
+;;; octet, a character, or NIL at the end. Called with an octet, NEXT puts that back.
 
 (defparameter *key-codes*
   '(("A" :up) ("B" :down) ("C" :right) ("D" :left) ("H" :home) ("F" :end)
@@ -24,8 +23,7 @@
           until (or (alpha-char-p char) (char= char #\~)))))
 
 (defun read-utf-8-character (lead next)
-  "Read from NEXT the rest of the UTF-8 character that begins with the octet LEAD. Return the
-character as a string."
+  "Return the UTF-8 character of the octet LEAD and of octets read from NEXT, as a string."
   (utf-8-decoded (with-output-to-string (out)
              (write-char lead out)
              (loop repeat (let ((code (char-code lead)))
@@ -120,8 +118,7 @@ string is empty if no terminal has KEY."
 (defparameter *control-c* (code-char 3))
 
 (defstruct (octet-queue (:copier nil) (:constructor make-octet-queue ()))
-  "A queue of octets. OCTETS is a list of characters, LAST is its last cons, INTERRUPTS the number
-of Control-C in OCTETS."
+  "OCTETS is a list of characters, LAST its last cons, INTERRUPTS its number of Control-C."
   (octets '() :type list)
   (last '() :type list)
   (interrupts 0 :type (integer 0)))

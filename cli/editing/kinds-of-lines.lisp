@@ -110,8 +110,7 @@ error, return an empty string."
   (starts-with-subseq +continuation-prompt+ text))
 
 (defun without-pasted-prompt (text before)
-  "Return TEXT, a typed line, without a pasted prompt. BEFORE is true if TEXT continues another
-line."
+  "Return the typed line TEXT without a pasted prompt. BEFORE is true if TEXT continues a line."
   (cond ((null before) (text-without-prompts text))
         ((continuation-prompt-p text) (subseq text (length +continuation-prompt+)))
         (t text)))
@@ -133,9 +132,8 @@ so far, returns the next line of the form, or signals an error at the end."
       (error () nil))))
 
 (defun split-after-form (text lines)
-  "Divide LINES, which were pasted below TEXT. Return the lines that complete the form begun in
-TEXT, without prompts, and the lines after the form. A line typed at a prompt does not belong to the
-form."
+  "Divide LINES, pasted below TEXT. Return the lines that complete the form begun in TEXT, without
+prompts, and the lines after the form. A line typed at a prompt does not belong to the form."
   (let ((taken '()))
     (flet ((next-of-form (text)
              (declare (ignore text))
@@ -162,17 +160,15 @@ an incomplete form are taken for the rest of the form."
                          rest)))
 
 (defun typed-lines (lines)
-  "Return the typed lines among LINES, which were pasted. These are the lines before the first
-prompt, lines with prompts except messages, and lines that complete a form. If no line has a prompt,
-return LINES."
+  "Return those of the pasted LINES that were typed: lines before the first prompt, lines with
+prompts except messages, and lines that complete a form. If no line has a prompt, return LINES."
   (let ((start (position-if #'text-after-prompt lines)))
     (if start
         (append (subseq lines 0 start) (lines-typed-at-prompts (nthcdr start lines)))
         lines)))
 
 (defun count-output-lines (text)
-  "Return the number of lines of TEXT, which was pasted, that follow the last prompt and are taken
-for output."
+  "Count the lines after the last prompt of TEXT, which was pasted, that are taken for output."
   (let* ((lines (lines-in text))
          (start (position-if #'text-after-prompt lines :from-end t))
          (last (and start (nthcdr start lines)))

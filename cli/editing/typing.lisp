@@ -26,7 +26,6 @@ typed, POINT the cursor's position in TEXT."
     (insert-in-text text (ahead-text ahead) (ahead-point ahead))))
 
 (defun add-type-ahead-lines (ahead lines)
-  "Append LINES to the finished lines of AHEAD."
   (setf (ahead-lines ahead) (append (ahead-lines ahead) lines)))
 
 (defun reopen-last-line (ahead)
@@ -92,7 +91,6 @@ argument, the function steps back by a character."
 ;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
 (defun escape-codes-p (stream)
-  "True if STREAM is a terminal that interprets escape codes."
   (and (interactive-stream-p stream)
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
@@ -106,8 +104,7 @@ argument, the function steps back by a character."
     (and name (string/= name "") (native-path name))))
 
 (defun make-standard-input (console plain)
-  "Return a stream of the lines of the standard input. Lines are edited on CONSOLE if the terminal
-allows it and PLAIN is NIL."
+  "Return a stream of standard input, edited on CONSOLE if the terminal allows it and PLAIN is NIL."
   (let ((octets (octet-input-stream 0)))
     (if (and (not plain) (console-window console) (escape-codes-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
@@ -186,8 +183,7 @@ becomes the line being typed."
       (when (funcall next) (add-octets (edited-ahead input) octets)))))
 
 (defun discard-waiting-lines (input)
-  "Remove the waiting lines from INPUT, and add them to the history as one entry. Return the number
-of lines."
+  "Move the waiting lines from INPUT to the history, as one entry. Return the number of lines."
   (let ((lines (take-waiting-lines input)))
     (when lines (add-to-history input (format nil "~{~A~^~%~}" lines) nil))
     (length lines)))
@@ -229,8 +225,7 @@ The history file is that of the prompt at the terminal."
   (parse-type-ahead octets (history-entries (edited-history stream))))
 
 (defun send-key (stream key)
-  "Send KEY, a key as in keys.lisp, to STREAM. While STREAM reads no line, KEY is kept as
-type-ahead."
+  "Send KEY (see keys.lisp) to STREAM. While STREAM reads no line, KEY is kept as type-ahead."
   (flet ((with-key (octets)
            (if (reading-line-p stream)
                (uiop:strcat octets (octets-of-key key))

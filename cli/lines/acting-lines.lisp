@@ -3,8 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun warn-of-rewind (point simulation)
-  "Queue a warning that the robot no longer goes to POINT, because a rewind has replaced
-SIMULATION."
+  "Queue a warning that the robot no longer goes to POINT: a rewind has replaced SIMULATION."
   (let ((*message-queue* (simulation-messages (latest-successor simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
                               longer goes there. Type the line again to send it there."
@@ -14,8 +13,7 @@ SIMULATION."
   (error-set (make-verdict (format nil "go-to: ~?" control (cons point arguments)))))
 
 (defun report-arrival (err robot point)
-  "Queue a message about the end of a drive of ROBOT to POINT, a text. ERR is an error code, or
-NIL."
+  "Queue a message about the end of ROBOT's drive to POINT, a text. ERR is an error code, or NIL."
   (case err
     ((nil) (message-set (format nil "go-to: Robot is near ~A, by its odometer" point)))
     (:no-way (report-failed-way "There is no way to ~A for ~A" point robot))
@@ -41,9 +39,8 @@ NIL."
 
 ;;;; MANIPULATE
 
-;;; The methods of a manipulation determine what is typed: the number of a designator for each
-;;; object; then the number of the part that acts, 0 if left out, or nothing if the robot acts; then
-;;; the other arguments.
+;;; The methods determine what is typed: a designator's number for each object; then the number of
+;;; the acting part, 0 if left out, or nothing if the robot acts; then other arguments.
 
 (defun part-variable-p (by)
   "True if BY, a list (variable type) of a method, stands for a part of the robot."
@@ -68,8 +65,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
                    "MANIPULATE lists all.")))
 
 (defun method-arguments (method data robot)
-  "Return the arguments for METHOD from DATA, the typed values, for ROBOT; NIL if the number of
-values is wrong."
+  "Return METHOD's arguments for ROBOT from DATA, the typed values; NIL if their number is wrong."
   (multiple-value-bind (objects by others) (method-signature method)
     (let* ((count (length objects))
            (extra (- (length data) count (length others))))

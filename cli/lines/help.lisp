@@ -82,8 +82,7 @@ place type, attribute, value, error code, name of Lisp ..."
   "The largest number of topics that APROPOS lists for a word that is only in their descriptions.")
 
 (defun topics-matching (word)
-  "Return two lists: the topics with WORD in their names, and those with WORD only in their
-descriptions."
+  "Return two lists: topics with WORD in their names, and those with WORD only in descriptions."
   (flet ((in-p (text) (search word text :test #'char-equal)))
     (let ((topics (all-topics)))
       (values (remove-if-not (lambda (topic) (in-p (topic-name topic))) topics)

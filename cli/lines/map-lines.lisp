@@ -5,8 +5,7 @@
 ;;; On a terminal a map is made to fit, and has colours; elsewhere it shows the whole world.
 
 (defun terminal-size (session)
-  "Return the numbers of columns and lines of the terminal of SESSION; 80 and NIL without a
-terminal."
+  "Return the numbers of columns and lines of SESSION's terminal; 80 and NIL without a terminal."
   (flet ((size-said (variable)
            (ignore-errors (parse-integer (environment-value variable)))))
     (multiple-value-bind (columns lines)
@@ -23,8 +22,7 @@ terminal."
 
 (defun complete-word (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
-BAD-LINE if there is none. TAKES is a format control that describes what LINE takes; its argument
-is WORDS."
+BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE takes."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
       (reject-line "~A does not take ~A.~@[ Did you mean ~A?~] It takes ~?." line text
@@ -94,8 +92,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
 ;;; WATCH.
 
 ;;; On a terminal each map replaces the one before, and a key ends this. Messages that arrive
-;;; meanwhile are shown afterwards, the last line of them at once. Elsewhere the maps follow one
-;;; another.
+;;; meanwhile are shown afterwards, their last line at once. Elsewhere, maps follow one another.
 
 (defconstant +shortest-frame-seconds+ 0.1d0
   "The shortest time for which a map is shown, in seconds.")
@@ -112,8 +109,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
   (and (time-passes-p session simulation) (idle-p simulation)))
 
 (defun pass-or-await-tick (session simulation)
-  "Pass a tick of SIMULATION. If the clock of SIMULATION passes ticks, wait for the next tick, or
-until SIMULATION is idle."
+  "Pass a tick of SIMULATION. If its clock passes ticks, wait for a tick, or until the run is idle."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
     (await-test (lambda ()
@@ -134,7 +130,6 @@ until SIMULATION is idle."
 ;;; In place.
 
 (defun can-redraw-in-place-p (session)
-  "True if SESSION has a terminal on which maps can be redrawn in place and keys can be read."
   (and (can-poll-input-p session)
        (terminal-stream-p (session-input session))
        (not (session-batch-p session))
@@ -149,7 +144,6 @@ until SIMULATION is idle."
             (subseq said 0 (min columns (length said))))))
 
 (defun seconds-between-maps (session simulation)
-  "Return the number of seconds between two maps of SIMULATION."
   (let ((rate (simulation-rate simulation)))
     (if (time-passes-p session simulation)
         +shortest-frame-seconds+

@@ -53,8 +53,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Which trial is meant.
 
 (defun experiment-names (start)
-  "Return the names of experiments that begin with START. If START itself is a name, return only
-that."
+  "Return the names of experiments that begin with START; only START if START itself is a name."
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
@@ -96,7 +95,6 @@ that."
           (condition-name (open-trial-condition trial))))
 
 (defun write-fitted-line (session control &rest arguments)
-  "Format CONTROL with ARGUMENTS, and write the text as lines that fit the window of SESSION."
   (format t "~&~A~%" (fit-to-window (apply #'format nil control arguments)
                                     (session-console session))))
 
@@ -263,9 +261,8 @@ opens one of them."
 
 ;;;; FORK
 
-;;; In a fork the prompt is in a headless run: time passes as its lines need it. The forked run
-;;; stands still meanwhile. As with a trial, the line that enters a fork runs until another line
-;;; leaves it.
+;;; In a fork the prompt is in a headless run: time passes as lines need it. The forked run stands
+;;; still meanwhile. As with a trial, the line that enters a fork runs until a line leaves it.
 
 (defun read-lines-in-fork (session)
   (format (session-console session)
@@ -277,8 +274,7 @@ opens one of them."
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
-  "Run SESSION in FORK until a line leaves the fork. Earlier jobs of SESSION are set aside
-meanwhile."
+  "Run SESSION in FORK until a line leaves FORK. Earlier jobs are set aside meanwhile."
   (let ((jobs (shiftf (session-jobs session) '()))
         (depth (session-forks session)))
     (setf (session-forks session) (1+ depth))

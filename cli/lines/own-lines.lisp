@@ -47,8 +47,7 @@ too."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun parse-switch (name word)
-  "Return true if WORD, typed after the line NAME, is ON, NIL if WORD is OFF. Signals BAD-LINE for
-another word."
+  "True if WORD, typed after NAME, is ON, NIL if WORD is OFF. Signals BAD-LINE for another word."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
         (t (reject-line "~A takes ON or OFF, not ~A." name word))))

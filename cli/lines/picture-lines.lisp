@@ -13,8 +13,7 @@ PICTURE, or BARE, which omits the default layers, or the beginning of such a wor
                            line "a file, a scale, and words: ~{~A~^, ~}")))
 
 (defun picture-options (text &optional (line "PICTURE"))
-  "Return the options of SAVE-PICTURE for TEXT, the words typed after LINE and the name of the
-file."
+  "Return the options of SAVE-PICTURE for TEXT, the words typed after LINE and the file's name."
   (loop for word in (split-words (or text ""))
         for number = (parse-typed-number word)
         if number collect number into numbers
@@ -78,8 +77,7 @@ saves the film even if definitions have changed since the run began."
 
 (defun call-or-reject (function trouble)
   "Call FUNCTION, which compiles and loads libraries, with Lisp's standard syntax and without
-output. If FUNCTION signals an error, signal BAD-LINE with TROUBLE, a format control whose argument
-is the text of the error."
+output. After an error, signal BAD-LINE with TROUBLE, a format control for the error's text."
   (handler-case
       (let ((*standard-output* (make-broadcast-stream)) (*error-output* (make-broadcast-stream))
             (*package* (find-package :cl-user))
@@ -104,8 +102,7 @@ is the text of the error."
   "A text that tells how to install McCLIM.")
 
 (defun ensure-window-system ()
-  "Load the code that opens windows, if needed. Signals BAD-LINE without X server, McCLIM or a
-working CLX."
+  "Load the code for windows, if needed. Signals BAD-LINE without X server, McCLIM or working CLX."
   (unless *display-opener*
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~
@@ -126,8 +123,7 @@ working CLX."
 ;;;; WINDOW
 
 (defun find-running-robot (name)
-  "Return the robot named NAME of this run or of another live run. Signals BAD-LINE if there is
-none."
+  "Return the robot NAME of this or another live run. Signals BAD-LINE if there is none."
   (let* ((name (find-robot-named name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)

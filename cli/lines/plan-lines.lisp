@@ -14,8 +14,7 @@ package. Return NIL if there is no such plan."
   (remove-duplicates (mapcar #'procedure-name (all-procedures)) :test #'same-name-p))
 
 (defun resolve-plan (name)
-  "Return the plan procedure named NAME, or the only one whose name begins with NAME. Signals
-BAD-LINE."
+  "Return the plan named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
   (let ((candidates (items-with-prefix (string-upcase name) (plan-names) #'string)))
     (cond ((find-plan-named name))
           ((null candidates) (reject-unknown-name "plan" name (plan-names) "PLAN lists all plans."))

@@ -11,8 +11,7 @@
     simulation))
 
 (defun time-description (session simulation &optional (tick (simulation-tick simulation)))
-  "Return a text with TICK, a tick of SIMULATION, the run of SESSION, and how time passes in that
-run."
+  "Return a text with TICK, of SIMULATION, the run of SESSION, and how time passes in SIMULATION."
   (format nil "Tick ~D, ~A." tick
           (cond ((session-trial session) (trial-pace-text (session-trial session)))
                 ((simulation-over simulation) (simulation-over simulation))
@@ -51,8 +50,7 @@ trial to its end."
       (resume-run session)))
 
 (defun step-run (session count)
-  "Pass COUNT ticks of the run of SESSION, and print the tick. If not all of the ticks have passed,
-also print how time passes."
+  "Pass COUNT ticks of SESSION's run and print the tick; if fewer passed, also how time passes."
   (check-run-not-over)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))
@@ -78,8 +76,7 @@ also print how time passes."
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
 (defun rate-after-resume-text (session simulation)
-  "If SIMULATION, the run of SESSION, is paused, return as text the rate at which RESUME continues;
-else return NIL."
+  "Return as text the rate after RESUME if SIMULATION, the run of SESSION, is paused; else NIL."
   (let ((trial (session-trial session)))
     (cond ((and trial (not (open-trial-running-p trial))) (rate-text (open-trial-rate trial)))
           ((and (null trial) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
@@ -187,8 +184,7 @@ is a function of a tick that shows the progress at the terminal of SESSION."
         (when progress (end-progress progress))))))
 
 (defun replay-with-progress (session journal anyway)
-  "Repeat the run of JOURNAL, and show the progress. Return the last tick and the digest of the
-state."
+  "Repeat JOURNAL's run, and show the progress. Return the last tick and the state's digest."
   (flet ((repeat (tell)
            (call-with-replay (lambda () (values (simulation-tick *simulation*) (state-digest)))
                              journal

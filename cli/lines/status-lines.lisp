@@ -5,7 +5,6 @@
 ;;; The layouts are those of the session in manual E.
 
 (defun write-parts (heading writer reader)
-  "Write HEADING, then call WRITER with each part that READER returns for the robot."
   (let ((robot (session-robot)))
     (while-still
       (format t "~A~%-----~%" heading)
@@ -56,9 +55,8 @@
 
 ;;;; STATUS and THINGS
 
-;;; The layout of STATUS is that of the session in manual E. A line for the estimated change of
-;;; position is added, which the manual lists and its session omits. The contents are those of
-;;; (status).
+;;; The layout of STATUS is that of the session in manual E. The estimated change of position is
+;;; added, which the manual lists and its session omits. The contents are those of (status).
 
 (defun write-views (cameras)
   (loop for camera in cameras
@@ -75,8 +73,7 @@
         (write-trimmed-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun command-entry-text (entry control)
-  "Return as text ENTRY, an element of :UNDER-WAY or :INTERRUPTED: its part, then CONTROL
-formatted."
+  "Return ENTRY, of :UNDER-WAY or :INTERRUPTED, as text: its part, then CONTROL formatted."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
@@ -173,8 +170,7 @@ point is inside a wall."
   '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
     (:lists :view :contents :slots :data)
     (:truths :live :closed))
-  "Lists (kind key...): keys of (status) whose values JSON shows as arrays of objects, as arrays, or
-as true or false.")
+  "Lists (kind key...): keys of (status) that JSON shows as arrays of objects, arrays or booleans.")
 
 (defun lists-to-arrays (value)
   (if (and (consp value) (null (cdr (last value))))
@@ -189,15 +185,13 @@ as true or false.")
     (t (if (eq key :failed) (object-for-json value) (lists-to-arrays value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with its values converted, so that WRITE-JSON writes them as *JSON-KINDS-OF-KEYS*
-says."
+  "Return PLIST with values that WRITE-JSON writes as *JSON-KINDS-OF-KEYS* says."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))
 
 (defun report-status-object (session robot)
-  "If SESSION reports objects, report the status of ROBOT, whose world stands still, as an object
-and return true."
+  "If SESSION reports objects, report ROBOT's status, while the world is still, and return true."
   (let ((account (session-account session)))
     (when (reports-objects-p account)
       (apply #'report-object account "status"

@@ -81,7 +81,6 @@
             (mapcar #'command-name commands))))
 
 (defun error-code-explanation (code)
-  "Return a text that tells what CODE, an error code of a command, means and what to try."
   (let ((keyword (error-code-keyword code)))
     (if (error-code-meaning keyword)
         (format nil "~A~@[ ~A~]" (error-code-meaning keyword) (error-code-remedy keyword))
@@ -118,8 +117,7 @@
                      :test #'string= :from-end t))
 
 (defun documented-names ()
-  "Return the documented names of the simulator, the worlds and the user, sorted, without
-parameters."
+  "Return the documented names of simulator, worlds and user, sorted, without parameters."
   (let ((names '()))
     (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
@@ -156,8 +154,7 @@ parameters."
   (write-paragraphs (lisp-name-description symbol) 2))
 
 (defun write-paragraphs (text indent)
-  "Write TEXT, indented by INDENT columns. Lines that begin with a blank are kept, others are
-filled."
+  "Write TEXT, indented by INDENT columns. Lines that begin with a blank are kept, others filled."
   (let ((paragraph '()))
     (flet ((end-paragraph ()
              (when paragraph
@@ -217,8 +214,7 @@ last prints its help. TITLE is a text or a function of an object.")
   (funcall (fourth (topic-kind topic)) (topic-object topic)))
 
 (defun name-without-marks (name)
-  "Return NAME in upper case, without colons, stars and quotes: RED for :red, MAX-SPEED for
-max-speed*."
+  "Return NAME upcased, without colons, stars and quotes: RED for :red, MAX-SPEED for max-speed*."
   (string-trim ":*'()" (string-upcase name)))
 
 (defun topics-named (name)

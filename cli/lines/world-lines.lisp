@@ -16,8 +16,7 @@
     (end-simulation old "the prompt has gone elsewhere")))
 
 (defun end-replaced-run (session old robot)
-  "End the run OLD, which SESSION has left for the run of ROBOT. Move the other prompts of OLD to
-the run of ROBOT, too."
+  "End the run OLD, left by SESSION for ROBOT's run. Move OLD's other prompts to ROBOT's run, too."
   (setf (gethash old *replaced-runs*) (list (robot-simulation robot) (robot-name robot)))
   (end-abandoned-run old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))

@@ -12,8 +12,7 @@
   "Pairs (kind . text) that describe the kinds of parameters.")
 
 (defun shortest-number-text (value)
-  ;; A double-float made from a single-float is written like the single-float, which has fewer
-  ;; digits.
+  ;; A double-float made from a single-float is written like the latter, which has fewer digits.
   (let ((value (if (and (typep value 'double-float) (= value (coerce value 'single-float)))
                    (coerce value 'single-float)
                    value))

@@ -38,8 +38,7 @@ ended.")
     (:experiments "Shipped experiments" "Experiments that you can run as they are.")
     (:names "Functions, variables, types" "All other names of ARS and NISP, by layer.")
     (:worlds-names "Other names of the worlds" "What else ARS-WORLDS has: things, and functions."))
-  "Lists (key title introduction), in order. A link from a name leads to the first chapter with
-it.")
+  "Lists (key title introduction), in order. A name is linked to its first chapter.")
 
 (defun chapter-title (chapter)
   "Return the title of CHAPTER, a key of *CHAPTERS*."
@@ -54,7 +53,6 @@ it.")
   (format nil "~A#~A" (chapter-file (entry-chapter entry)) (anchor (entry-name entry))))
 
 (defun entry-key (entry)
-  "Return the key by which ENTRY is found: its name in lower case."
   (string-downcase (entry-name entry)))
 
 ;;; What is known of symbols.

@@ -42,8 +42,7 @@ be variables of the block. ID is the id of the heading above the block."
             do (return nil))))
 
 (defun name-in-bold (tokens)
-  "Return the name in TOKENS, a bold element; NIL if the element contains more than one piece of
-code."
+  "Return the name in TOKENS, a bold element; NIL for an element with several pieces of code."
   (when (tag-named-p "code" (second tokens))
     (multiple-value-bind (element left) (split-element (rest tokens))
       (when (null (rest left)) (first-name (html-text element))))))
@@ -64,8 +63,7 @@ code."
     (#\; (or (position #\Newline text :start start) (length text)))))
 
 (defun call-with-each-name (function text)
-  "Call FUNCTION with name, start and end of each name in TEXT, Lisp code, outside strings and
-comments."
+  "Call FUNCTION with name, start and end of each name in TEXT, Lisp, outside strings and comments."
   (loop with i = 0
         while (< i (length text))
         do (let ((skipped (string-or-comment-end text i)))
@@ -84,8 +82,7 @@ like a name of the simulator."
       (and (plusp start) (find (char text (1- start)) "('"))))
 
 (defun names-in-lisp (text &optional (test (constantly t)))
-  "Return the names in TEXT, Lisp code, each once. TEST is a predicate of a name, TEXT and its
-start."
+  "Return the names in TEXT, Lisp code, each once. TEST is a predicate of name, TEXT and start."
   (let ((names '()))
     (call-with-each-name (lambda (name start end)
                            (declare (ignore end))
@@ -130,8 +127,7 @@ names. EXAMPLES are the examples found, the last first."
   (examples '() :type list))
 
 (defun set-names (state names &key keep)
-  "Let the following blocks be examples of NAMES. If KEEP, keep names that no block has followed
-yet."
+  "Let the next blocks be examples of NAMES. If KEEP, keep names that no block has followed yet."
   (when names
     (setf (search-names state) (if (and keep (not (search-used-p state)))
                                    (append (search-names state) names)

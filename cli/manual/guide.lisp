@@ -55,8 +55,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
     ("src/host/README.md" "host.html" "SBCL's internals" :inside)
     ("src/readings.md" "readings.html" "How the manual of 1992 is read" :inside)
     ("cli/manual/README.md" "about.html" "About this manual" :about))
-  "Lists (source file title part) of pages. All other README.md files are pages, too, and are titled
-by their headings.")
+  "Lists (source file title part) of pages. Other README.md files have their headings as titles.")
 
 (defun project-root () (asdf:system-relative-pathname "ars-magna" ""))
 
@@ -70,8 +69,7 @@ by their headings.")
         #'string<))
 
 (defun page-sources ()
-  "Return the source files of the guide: the existing ones of *KNOWN-PAGES*, then all other
-README.md files."
+  "Return the guide's source files: those of *KNOWN-PAGES* that exist, then other README.md files."
   (let ((known (remove-if-not (lambda (name) (existing-path (project-path name)))
                               (mapcar #'first *known-pages*))))
     (append known (remove-if (lambda (name) (member name known :test #'string=))
@@ -81,8 +79,7 @@ README.md files."
   (rest (assoc source *known-pages* :test #'string=)))
 
 (defun page-part (page)
-  "Return the part of the contents that lists PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or
-:ABOUT."
+  "Return the part of the contents with PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
   (let ((source (page-source page)))
     (cond ((third (known-page source)))
           ((starts-with-subseq "tests/" source) :inside)
@@ -115,8 +112,7 @@ README.md files."
                       token))))
 
 (defun headings (tokens)
-  "Return lists (level id text words) for the headings in TOKENS. WORDS is the text below the
-heading."
+  "Return lists (level id text words) of headings in TOKENS. WORDS is the text below a heading."
   (loop for rest on tokens
         for token = (first rest)
         when (and (heading-level token) (attribute-value "id" token))

@@ -26,7 +26,6 @@
                (incf i (if entity (length (cdr entity)) 1))))))
 
 (defun javascript-string (text)
-  "Return TEXT as a JavaScript string, in double quotes."
   (with-output-to-string (out) (write-json-string text out :in-page t)))
 
 ;;; Anchors.
@@ -97,7 +96,6 @@ of an id needs escaping in addresses."
         (unescape-html (subseq tag start (position #\" tag :start start)))))))
 
 (defun set-tag-attribute (attribute value tag)
-  "Return TAG with its ATTRIBUTE set to VALUE."
   (let* ((mark (format nil " ~A=\"" attribute))
          (start (search mark tag))
          (end (if start
@@ -119,8 +117,7 @@ of an id needs escaping in addresses."
           finally (return (values element (rest rest))))))
 
 (defun split-into-elements (tokens whole-p)
-  "Divide TOKENS into lists: an element whose first tag satisfies WHOLE-P is a list, as is each
-other token."
+  "Divide TOKENS into lists: elements whose first tag satisfies WHOLE-P, and single other tokens."
   (loop with rest = tokens
         while rest
         collect (if (funcall whole-p (first rest))

@@ -12,8 +12,7 @@ names in lower case to entries. FILES are the project's files to copy beside the
   (files '() :type list))
 
 (defun table-of-entries (entries)
-  "Return a hash table from names to ENTRIES. Of several entries with the same name, the table has
-the first."
+  "Return a hash table from names to ENTRIES; to the first of several entries with the same name."
   (let ((table (make-hash-table :test #'equal)))
     (dolist (entry entries table)
       (unless (gethash (entry-key entry) table)
@@ -28,7 +27,6 @@ the first."
 ;;; Addresses. Pages of the project refer to other pages, or to files that are copied.
 
 (defun resolve-dots (name)
-  "Return NAME, a file name, with . and .. resolved."
   (let ((parts '()))
     (dolist (part (uiop:split-string name :separator "/"))
       (cond ((string= ".." part) (pop parts))
@@ -101,8 +99,7 @@ return the address of its page, or of the first page."
 ;;; Pages of the guide.
 
 (defun link-tokens (tokens page book)
-  "Return TOKENS, of PAGE, with links changed to addresses in the manual and names linked to
-entries."
+  "Return TOKENS, of PAGE, with links into the manual and with names linked to entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
     (loop for part in (split-into-elements tokens #'linked-p)
           for token = (first part)
@@ -123,8 +120,7 @@ entries."
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
-  "Return TOKEN. If TOKEN is a picture on PAGE, its address is changed to that of the manual's
-copy."
+  "Return TOKEN, of PAGE. If TOKEN is a picture, its address becomes that of the manual's copy."
   (if (tag-named-p "img" token)
       (set-tag-attribute "src" (manual-address (attribute-value "src" token) page book) token)
       token))
@@ -136,8 +132,7 @@ copy."
   (or (alphanumericp char) (find char "-*+!?%:./_=<>")))
 
 (defun citation-address (word next book)
-  "If WORD and NEXT cite a section of the manual of 1992 or a reading, return the address to link
-to."
+  "If WORD and NEXT cite a section of the 1992 manual or a reading, return the address to link to."
   (let ((number (parse-integer next :junk-allowed t)))
     (cond ((string-equal "reading" word)
            (and number (find-page "src/readings.md" book)

@@ -103,8 +103,7 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
 
 (defstruct (row (:constructor make-row (name kind address sentence &optional (words "")))
                 (:copier nil))
-  "A row that the search may show: NAME, linked to ADDRESS, then KIND and SENTENCE. WORDS are
-searched as well as NAME."
+  "A row of the search: NAME, linked to ADDRESS, then KIND and SENTENCE. WORDS are searched, too."
   (name "" :type string :read-only t)
   (kind "" :type string :read-only t)
   (address "" :type string :read-only t)

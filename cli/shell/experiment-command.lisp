@@ -117,8 +117,7 @@ UNDER-WAY is a text about a trial that took long, or NIL."
         (print-notice "stopped; ~@[~A; ~]nothing is kept without --out DIR." under-way))))
 
 (defun call-reporting-interruption (function command arguments options)
-  "Call FUNCTION, which runs COMMAND with ARGUMENTS. Return the exit status, or 130 after an
-interrupt."
+  "Call FUNCTION, which runs COMMAND with ARGUMENTS. Return the exit status, 130 if interrupted."
   (let ((under-way nil))
     (flet ((look (condition)
              (declare (ignore condition))
@@ -191,9 +190,8 @@ interrupt."
                     (option-value :plot options))
     0))
 
-;;; Comparing. Two words are directories, of two versions of the code. Other words are conditions or
-;;; values of a factor, then results or an experiment. With --by, all words say where the results
-;;; are.
+;;; Comparing. Two words are directories, of versions of the code. Others are conditions or values
+;;; of a factor, then results or an experiment. With --by, all words say where the results are.
 
 (defparameter *compare-options*
   '(("--by" :by identity) ("--against" :against identity)
@@ -208,8 +206,7 @@ interrupt."
         (t word)))
 
 (defun results-from-words (words options)
-  "Return the results named by WORDS: those in a directory, or those of an experiment, which is
-run."
+  "Return the results named by WORDS: those in a directory, or of an experiment, which is run."
   (if (and (null (rest words))
            (uiop:directory-exists-p (native-path-of-directory (first words)))
            (directories-with-rows (first words)))

@@ -18,8 +18,7 @@ EXPERIMENTS, which files loaded by FILE define."
       experiments))
 
 (defun load-experiments (path)
-  "Load the Lisp file at PATH. Return the experiments that the file defines. Signals BAD-LINE if
-there are none."
+  "Load the Lisp file PATH and return its experiments. Signals BAD-LINE if there are none."
   ;; Output of the file goes to the error output.
   (let ((before (all-experiments)) (*standard-output* *error-output*))
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
@@ -73,8 +72,7 @@ experiments, NAME names the one to return. Signals BAD-LINE if there is no such 
 ;;; What is said of results.
 
 (defun report-results (results plot)
-  "Print RESULTS. If RESULTS have a directory, write the same text into a file there, and if PLOT,
-save pictures there."
+  "Print RESULTS; if they have a directory, write the text and, if PLOT, pictures into files there."
   (print-results results *standard-output*)
   (when (results-directory results)
     (overwrite-file (lambda (out) (call-with-page-width (lambda () (print-results results out))))

@@ -47,16 +47,14 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
 (defun load-files-before-prompt (names)
-  "Load the Lisp files NAMES before the prompt starts. Signals USAGE-ERROR if a file cannot be
-loaded."
+  "Load the files NAMES before the prompt starts. Signals USAGE-ERROR if one cannot be loaded."
   (dolist (name names)
     (handler-case (load-lisp (find-lisp-file name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
 (defun find-robot-from-options (session options)
   "Return the name of the robot that OPTIONS ask for. If that robot is not defined, load the files
-of the option --load now, because they may define it. Signals USAGE-ERROR if the robot is still not
-defined."
+of --load now, because they may define it. Signals USAGE-ERROR if the robot is still not defined."
   (handler-case (robot-from-options options)
     (bad-line (condition)
       (let ((files (shiftf (reader-files (session-reader session)) '())))
@@ -182,8 +180,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
         (t (run-prompt options))))
 
 (defun script-p (argument)
-  "True if ARGUMENT, the first argument of this process or NIL, is a script: a file, but not a
-command."
+  "True if ARGUMENT, this process's first argument or NIL, is a script: a file, but no command."
   (and argument
        (not (find argument *shell-commands* :key #'first :test #'string=))
        (or (string= argument "-")
@@ -231,7 +228,6 @@ command."
     (short-error-text (ending-condition-text condition))))
 
 (defun report-ending (condition status)
-  "Write the message of CONDITION to the error output, and return STATUS."
   (ignore-errors (say-on-error-output (ending-message condition)))
   status)
 
@@ -260,8 +256,7 @@ print a message and return the status for that case."
           (t (report-ending trouble (max 1 status))))))
 
 (defun call-fitting-tables (function console)
-  "Call FUNCTION. If CONSOLE is on a terminal, tables that FUNCTION prints are made to fit the
-window."
+  "Call FUNCTION. If CONSOLE is on a terminal, tables that FUNCTION prints fit the window."
   (if (terminal-stream-p (console-stream console))
       (call-with-page-width function (1- (window-size)))
       (funcall function)))

@@ -57,8 +57,7 @@ is optional, an empty value counts as left out.")
         (values argument nil))))
 
 (defun read-option-value (option arguments table)
-  "Return the value of OPTION, an element of TABLE, and the remaining arguments. ARGUMENTS follow
-the option."
+  "Return the value of OPTION, an element of TABLE, and the rest of ARGUMENTS, which follow OPTION."
   (destructuring-bind (name key parser &optional optional) option
     (declare (ignore key))
     (cond ((null parser) (values nil arguments))
@@ -70,8 +69,7 @@ the option."
           (t (values (first arguments) (rest arguments))))))
 
 (defun read-option (argument arguments table)
-  "Return a list (key value) for the option ARGUMENT, and the remaining arguments. ARGUMENTS follow
-the option."
+  "Return (key value) for the option ARGUMENT, and the rest of ARGUMENTS, which follow ARGUMENT."
   (multiple-value-bind (name value) (split-option argument)
     (let ((option (or (find name table :key #'first :test #'string=)
                       (reject-usage "~A is not an option.~@[ Did you mean ~A?~]" name
@@ -119,8 +117,7 @@ OTHERS is true, an argument that is not an option becomes (:other argument). Sig
   (second (assoc name *shell-texts* :test #'string=)))
 
 (defun insert-settings (text settings)
-  "Return TEXT, of a script, with its mark @SETTINGS@ replaced by SETTINGS, lists (variable value
-comment)."
+  "Return a script's TEXT with @SETTINGS@ replaced by SETTINGS, lists (variable value comment)."
   (let ((mark "@SETTINGS@"))
     (with-output-to-string (out)
       (write-string text out :end (search mark text))

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-;;; A script is a batch: each line has completed before the next is read, and the same lines and
-;;; seed give the same run.
+;;; A script is a batch: each line ends before the next is read; lines and seed determine the run.
 
 (defun script-path (name)
   (let ((path (native-path name)))
@@ -19,12 +18,10 @@
                                    :external-format :latin-1))))
 
 (defun make-object-console ()
-  "Return a console that writes its output as objects to the standard output."
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
 (defun report-session-end (session status)
-  "Report as an object that SESSION is over, with the exit STATUS. Return the status; if output has
-failed, at least 1."
+  "Report as an object that SESSION ends with STATUS. Return STATUS, at least 1 if output failed."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
     (report-object (session-account session) "end" :status status
                                                    :errors (session-errors session))
@@ -32,8 +29,7 @@ failed, at least 1."
 
 ;;;; The time limit
 
-;;; A thread looks now and then at what the session does, as another watches a live run
-;;; (src/time/pacing.lisp).
+;;; A thread watches the session now and then, as another watches a live run (src/time/pacing.lisp).
 
 (defparameter *slow-call-seconds* 3
   "The time in seconds after which a batch reports a call of users' code that has not returned.")
@@ -54,9 +50,8 @@ form; NIL if there is nothing to name."
           ((and simulation (live-p simulation)) (users-code-in-progress simulation)))))
 
 (defun watch-for-blocking-code (session calls ended)
-  "Report users' code that blocks SESSION, as recorded in CALLS, until the semaphore ENDED is
-signalled. Code counts as blocking if the same call is seen four times, a third of
-*SLOW-CALL-SECONDS* apart."
+  "Report users' code that blocks SESSION, as recorded in CALLS, until ENDED is signalled. Code
+blocks if the same call is seen four times, a third of *SLOW-CALL-SECONDS* apart."
   (loop with seen = nil and looks = 0
         until (wait-on-semaphore ended (/ *slow-call-seconds* 3))
         do (multiple-value-bind (whose count) (running-code-text session calls)
@@ -89,8 +84,7 @@ the session cannot be ended, end this process."
           (end-process +time-limit-status+))))))
 
 (defun report-running-code-on-interrupt (session calls)
-  "Make Control-C report the users' code running in SESSION, as recorded in CALLS, before it ends
-this process at once."
+  "Let Control-C report users' code running in SESSION (from CALLS) before it ends this process."
   (setf *before-ending-at-once*
         (lambda ()
           (report-stop session (running-code-text session calls) "Control-C was pressed again"))))

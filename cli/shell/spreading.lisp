@@ -47,14 +47,12 @@ experiment. Signals BAD-LINE if the program cannot be saved."
 ;;; experiment, so that a second start finds the same ones.
 
 (defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
-  "Lists (script trials least): the number of trials in a shard, and the smallest number of
-shards.")
+  "Lists (script trials least): the number of trials in a shard, and the least number of shards.")
 
 (defconstant +default-largest-shard-count+ 1000 "The largest number of shards by default.")
 
 (defun default-shards (experiment trials script)
-  "Return the default number of shards for SCRIPT, if EXPERIMENT has TRIALS trials of each
-condition."
+  "Return SCRIPT's default number of shards for TRIALS trials of each condition of EXPERIMENT."
   (destructuring-bind (size least)
       (rest (assoc script *shards-of-scripts* :test #'string=))
     (min trials
@@ -104,9 +102,8 @@ condition."
     path))
 
 (defun run-by-script (experiment words options script template settings)
-  "Write SCRIPT, which runs EXPERIMENT, named by the arguments WORDS, on many processors, and run
-it. TEMPLATE is the template of the script, SETTINGS a function that returns its settings. Return
-the exit status."
+  "Write SCRIPT, which runs EXPERIMENT, named by WORDS, on many processors, and run it. TEMPLATE is
+the script's template, SETTINGS a function that returns its settings. Return the exit status."
   (let ((directory (ensure-results-directory (option-value :out options))))
     ;; Rows must not be replaced by a program that cannot continue them.
     (check-same-code experiment directory)

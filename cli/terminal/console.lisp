@@ -49,24 +49,21 @@ newest first."))
       "True while a program, not the prompt, reads what is typed on the console.")
 
 (defun make-console (stream &optional window)
-  "Return a console that writes to STREAM; STREAM itself if it is a console. WINDOW is as in
-CONSOLE."
+  "Return a console that writes to STREAM, or STREAM if it is a console. WINDOW is as in CONSOLE."
   (if (typep stream 'console) stream (make-instance 'console :stream stream :window window)))
 
 (defvar *leave-without-output-p* nil
   "True in a thread that ends this process when output cannot be written.")
 
 (defun try-to-write (function console)
-  "Call FUNCTION with the stream of CONSOLE, unless an earlier write failed. Return true if FUNCTION
-fails now."
+  "Call FUNCTION with CONSOLE's stream, unless a write has failed. Return true if FUNCTION fails."
   (with-lock ((console-lock console))
     (unless (console-trouble console)
       (handler-case (progn (funcall function (console-stream console)) nil)
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
 
 (defun discard-output (console)
-  "Discard all further output to CONSOLE, because its stream may be closed. A write by another
-thread is completed first."
+  "Once no thread writes to CONSOLE, discard all further output, as the stream may be closed."
   (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
 
 (defun call-with-console (function console)
@@ -120,8 +117,6 @@ thread is completed first."
 ;;; The line that is being typed.
 
 (defun call-with-line-and-window (function console stream)
-  "Call FUNCTION with the line of CONSOLE, STREAM, and the numbers of columns and rows of the
-window."
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
 (defgeneric erase-typed-line (console stream)
@@ -218,8 +213,7 @@ shown.")
 ;;; Writing.
 
 (defun write-below-now (string console stream start end)
-  "Write STRING from START to END to STREAM, the stream of CONSOLE. The line being typed must be
-erased."
+  "Write STRING from START to END to STREAM, of CONSOLE, whose line being typed has been erased."
   ;; The cursor is there already.
   (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
     (reset-row console)
@@ -229,15 +223,13 @@ erased."
   (unless (console-line console) (setf (console-overwritten-p console) t)))
 
 (defun write-or-hold-back (string console stream &optional (start 0) (end (length string)))
-  "Write STRING from START to END to STREAM, the locked stream of CONSOLE. Keep STRING instead if
-CONSOLE holds back output."
+  "Write STRING from START to END to CONSOLE's locked STREAM; keep STRING if output is held back."
   (cond ((= start end))
         ((console-held-back-p console) (hold-back (subseq string start end) console))
         (t (erase-typed-line console stream)
            (write-below-now string console stream start end))))
 
 (defun write-on-new-line (text console stream)
-  "Write TEXT like WRITE-OR-HOLD-BACK, but at the beginning of a line."
   (when (plusp (console-column console)) (write-or-hold-back (string #\Newline) console stream))
   (write-or-hold-back text console stream))
 

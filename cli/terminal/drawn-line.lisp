@@ -30,8 +30,7 @@ last" :writable))
 
 (defun break-into-rows (label text point columns)
   "Break LABEL and TEXT into rows of at most COLUMNS. Return a list of lists (string end): END is
-:NEWLINE, or NIL for a full row or the last row. Also return the row and the column of POINT, a
-position in TEXT."
+:NEWLINE, or NIL for a full row or the last row. Also return the row and column of POINT, in TEXT."
   (let ((rows '()) (out (make-string-output-stream)) (column 0) (place-row 0) (place-column 0))
     (labels ((end-row (how)
                (push (list (get-output-stream-string out) how) rows)
@@ -64,8 +63,7 @@ position in TEXT."
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
 (defun rows-to-show (label text point columns height)
-  "Return the rows of a line to show in a window of COLUMNS and HEIGHT, and the cursor's row and
-column."
+  "Return a line's rows to show in a window of COLUMNS and HEIGHT, and the cursor's row and column."
   (multiple-value-bind (rows row column) (break-into-rows label text point columns)
     (multiple-value-bind (rows start) (visible-rows rows row height)
       (values rows (- row start) column))))
@@ -76,8 +74,7 @@ column."
   "Write ROWS to STREAM. Afterwards the cursor is in the last row."
   (loop for ((text how) . more) on rows
         do (write-string text stream)
-           ;; The cursor leaves a full row only when the next character is written, and then not
-           ;; always for the next row.
+           ;; The cursor leaves a full row only at the next character, not always for the next row.
            (when (and more (or how (string= "" (first (first more))))) (terpri stream))))
 
 (defun draw-line (line stream columns height)

@@ -4,9 +4,8 @@
 
 (export '(painted-spans unpainted-text broken-text))
 
-;;; Only this file has escape codes. It uses those that all present terminals have. Colours are the
-;;; sixteen that users choose themselves, so that they suit the background; white and black are left
-;;; for plain text.
+;;; Only this file has escape codes, those of all present terminals. Colours are the sixteen that
+;;; users choose themselves, to suit the background; white and black are left for plain text.
 
 (defparameter *inks*
   '(("RED" . "31") ("GREEN" . "32") ("YELLOW" . "33") ("BLUE" . "34") ("VIOLET" . "35")
@@ -30,8 +29,7 @@
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defun paint (text ink)
-  "Return TEXT with codes that show each line in INK, a colour's name; TEXT itself if INK is
-unknown."
+  "Return TEXT with codes that show each line in INK, a colour's name, or TEXT if INK is unknown."
   (let ((code (and ink (string/= text "") (ink-code ink))))
     (flet ((paint-line (line)
              (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))
@@ -186,8 +184,7 @@ of these lines. Further lines are indented like LINE."
         (list line))))
 
 (defun broken-text (text columns &optional (used 0))
-  "Return TEXT with its lines broken at blanks to at most COLUMNS. USED columns of the first line
-are already taken."
+  "Return TEXT with lines broken at blanks to at most COLUMNS; the first line has USED fewer."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns

@@ -52,8 +52,7 @@ available when the last line was read."))
   (interactive-stream-p stream))
 
 (defun outline-char-p (char last)
-  "True if CHAR, which follows LAST, belongs to the outline of a line: Lisp punctuation, or the
-start of a word."
+  "True if CHAR, after LAST, belongs to a line's outline: Lisp punctuation, or the start of a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
     (or (mark-p char) (mark-p last) (char= char #\Newline)
         (and (blank-p last) (not (blank-p char))))))
@@ -137,9 +136,8 @@ the end of the input. Signals BAD-LINE if the line is too long.")
 (defmethod stream-listen ((stream typed-text))
   (or (typed-ahead-p stream) (listen (typed-octets stream))))
 
-;; Only what a user has typed is cleared; what a script or another program sends is kept. But the
-;; rest of a line that a program has begun to read, as Y-OR-N-P reads "yes", is no line for the
-;; prompt.
+;; Only what a user has typed is cleared; what a script or program sends is kept. But the rest of a
+;; line that a program has begun to read, as Y-OR-N-P reads "yes", is no line for the prompt.
 (defmethod stream-clear-input ((stream typed-text))
   (when (or (typed-by-hand-p stream)
             (plusp (typed-position stream)))
@@ -168,8 +166,7 @@ the end of the input. Signals BAD-LINE if the line is too long.")
 
 ;;;; What another thread hands over
 
-;;; A terminal's keys are read from a file, those of a window from such a stream: each character is
-;;; an octet.
+;;; A terminal's keys come from a file, a window's from such a stream, whose characters are octets.
 
 (defclass queued-octets (fundamental-character-input-stream)
   ((lock :initform (make-lock "octets") :reader queued-lock)

@@ -2,10 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-;;; The prompt never reads JSON and writes simple objects only, so forty lines here replace a
-;;; library. A property list becomes an object, with underscores for hyphens in its keys; a vector
-;;; becomes an array; T, :FALSE and NIL become true, false and null; other symbols become strings in
-;;; lower case.
+;;; The prompt never reads JSON and writes simple objects only, so forty lines replace a library. A
+;;; property list becomes an object, with underscores for hyphens in keys; a vector becomes an
+;;; array; T, :FALSE and NIL become true, false and null; other symbols become lower-case strings.
 
 (defun write-json-elements (elements open close stream writer)
   (write-char open stream)

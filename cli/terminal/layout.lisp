@@ -13,8 +13,7 @@
   (:documentation "A line typed at the prompt makes no sense."))
 
 (defun reject-line (control &rest arguments)
-  "Signal BAD-LINE with a text formatted from CONTROL and ARGUMENTS. The text should name the
-remedy."
+  "Signal BAD-LINE with a text, from CONTROL and ARGUMENTS, that should name the remedy."
   (error 'bad-line :text (apply #'format-briefly nil control arguments)))
 
 ;;; Conditions.
@@ -63,8 +62,7 @@ remedy."
   (format nil "~,1F" number))
 
 (defun value-text (value number-text)
-  "Return VALUE, of an attribute, as text for STATUS and THINGS. The function NUMBER-TEXT formats
-numbers."
+  "Return VALUE, of an attribute, as text for STATUS and THINGS. NUMBER-TEXT formats numbers."
   (cond ((eq value t) "Yes")
         ((null value) "No")
         ((symbolp value) (string-capitalize value))
@@ -99,7 +97,6 @@ numbers."
           (t (format nil "Located in ~A." (location-name location))))))
 
 (defun write-trimmed-line (control &rest arguments)
-  "Write a line formatted from CONTROL and ARGUMENTS, without blanks at its end."
   (format t "~A~%" (string-right-trim " " (apply #'format nil control arguments))))
 
 (defun rate-text (rate)

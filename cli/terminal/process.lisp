@@ -19,8 +19,7 @@ happens.")
     (wait-for-input stream seconds)))
 
 (defun say-on-error-output (text)
-  "Write TEXT to the error output as a line that names the program, whatever state the streams are
-in."
+  "Write TEXT to the error output as a line that names the program, whatever the streams' state."
   (flet ((write-to (output)
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
@@ -49,15 +48,13 @@ in."
 
 ;; After Control-C, cleanup must finish before this process ends; Control-C often comes twice.
 (defun take-interrupt ()
-  "Handle Control-C. If this process is already ending, count the interrupt, and exit after too
-many."
+  "Handle Control-C. If this process is ending, count the interrupt, and exit after too many."
   (cond ((null *interrupts-while-ending*) (handle-interrupt))
         ((< (incf *interrupts-while-ending*) +interrupts-before-exit+))
         (t (exit-after-interrupts))))
 
 (defvar *ending-error-output* nil
-  "The stream for this thread's error output; once the process is ending, a stream that discards
-it.")
+  "The stream for this thread's error output. Once the process is ending, that stream discards it.")
 
 (defun begin-ending (condition)
   "Record that CONDITION, an interrupt, ends this process. Discard error output until the final
@@ -135,8 +132,7 @@ press ends it. The second press ends it, too, if the first had no effect and was
 
 (defun enter-key-mode (&key interrupts)
   "Make the terminal pass on each key at once, without echo. If INTERRUPTS, Control-C and similar
-keys are signals instead, which keep pending output. ENTER-KEY-MODE has an effect only within
-CALL-IN-KEY-MODE."
+keys are signals instead, which keep pending output. ENTER-KEY-MODE works only in CALL-IN-KEY-MODE."
   (setf *keys-interrupt-p* interrupts)
   (let ((terminal-mode (terminal-mode))
         (line-flags (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))

@@ -29,8 +29,7 @@
 
 (defun call-with-screen (function console)
   "Call FUNCTION while CONSOLE, on a terminal that passes on keys, shows a separate screen. FUNCTION
-draws the screen by WRITE-AT-ONCE and OVERWRITE-SCREEN-CODE. Other output is held back until the
-end."
+draws by WRITE-AT-ONCE and OVERWRITE-SCREEN-CODE. Other output is held back until the end."
   (call-holding-interrupts
    (lambda ()
      (begin-screen console)
@@ -54,8 +53,7 @@ update, WIDTH the length of the text shown."
   (setf (progress-line-width progress) (length text)))
 
 (defun note-progress (progress control &rest arguments)
-  "If an update is due, show CONTROL formatted with ARGUMENTS in PROGRESS, a progress line. Do
-nothing if PROGRESS is NIL."
+  "If an update is due, show CONTROL formatted with ARGUMENTS in PROGRESS, a progress line or NIL."
   (when (and progress (>= (seconds-now) (progress-line-due progress)))
     (setf (progress-line-due progress) (+ (seconds-now) 0.2d0))
     (rewrite-progress progress (apply #'format nil control arguments))))
