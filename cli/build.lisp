@@ -49,7 +49,6 @@
        :ignore-inherited-configuration))))
 
 (defun text-on-one-line (condition)
-  "Return CONDITION, a condition or a string, as text on one line."
   (let ((words (uiop:split-string (princ-to-string condition) :separator '(#\Space #\Newline))))
     (format nil "~{~A~^ ~}" (remove "" words :test #'string=))))
 

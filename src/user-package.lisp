@@ -79,7 +79,6 @@ symbols. If several packages extend a name, the last one is used. The names SETT
     added))
 
 (defun user-package-options (definition options)
-  "Return the options of DEFPACKAGE for OPTIONS of DEFINE-USER-PACKAGE."
   (let ((bad (find-if-not #'consp options)))
     (when bad
       (reject-clause definition bad "an option of DEFPACKAGE, such as (:export #:kitchen)")))

@@ -23,7 +23,6 @@
   (not (wall-at-p map x y)))
 
 (defun doorway-at (map x y)
-  "Return the place of MAP at (X,Y) if that is a doorway, or NIL."
   (let ((place (and (free-of-walls-p map x y)
                     (ars-magna.world:cell-type (map-cell map x y)))))
     (and place

@@ -26,11 +26,9 @@ the map to draw; NIL is the whole map.")
   (ensure-directories-exist (merge-pathnames name *figures-directory*)))
 
 (defun pictures-of (experiment)
-  "Return the directory of the pictures of EXPERIMENT."
   (worlds-path (format nil "pictures/~(~A~)/" experiment)))
 
 (defun save-page-pictures (experiment results names)
-  "Save the pictures named NAMES of the RESULTS of EXPERIMENT, and no others."
   (dolist (file (save-result-pictures results (pictures-of experiment)))
     (unless (member (pathname-name file) names :test #'string=)
       (delete-file file))))
@@ -41,7 +39,6 @@ the map to draw; NIL is the whole map.")
   (format nil "<!-- ~(~A~) -->" what))
 
 (defun replace-table (lines experiment table)
-  "Return LINES of a page with the table of EXPERIMENT replaced by TABLE, a list of lines."
   (let* ((start (position (comment-line (format nil "table of ~A" experiment)) lines
                              :test #'string=))
             (end (position (comment-line "end of table") lines :test #'string= :start start)))

@@ -185,7 +185,6 @@ for a thing to move away; every third time turn and drive off."
         unless fine-p do (ars-magna.base:reject-argument operator name value expected)))
 
 (defun check-points (plan name points)
-  "Signal WRONG-ARGUMENT unless POINTS, the argument NAME of PLAN, is a list of points."
   (check-arguments plan (list (and (listp points) (list-length points)
                                    (every (lambda (point) (number-list-p point 2)) points))
                               name points "a list of points (x y), such as ((3 4) (5 6))")))

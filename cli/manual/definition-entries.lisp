@@ -204,7 +204,6 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
                    *plain-symbol-texts* :key #'first)))
 
 (defun restart-name-p (symbol)
-  "True if SYMBOL is only the name of a restart."
   (and (null (symbol-kinds symbol)) (null (plain-symbol-text symbol))))
 
 (defun chapter-of-symbol (symbol)

@@ -132,7 +132,6 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
             (whole-sentence (entry-text entry))))
 
 (defun synonym-rows (rows)
-  "Return rows that lead from each synonym to one of ROWS."
   (loop for (name . synonyms) in *synonyms*
         for target = (find name rows :key #'row-name :test #'string-equal)
         when target

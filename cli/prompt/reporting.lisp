@@ -76,7 +76,6 @@ line, or NIL if the line does nothing."
           (account-errors account) errors)))
 
 (defun report-line (account type line text &rest properties)
-  "Write an object of TYPE about the line TEXT. LINE is the number of the line, or NIL."
   (apply #'report-object account type :line line :text text
          (append properties (list :tick (current-tick)))))
 

@@ -98,7 +98,6 @@ otherwise. Signals BAD-LINE if the file is not Lisp."
   (find-map (blueprint-map (find-blueprint robot-name))))
 
 (defun robot-names-in-map (map)
-  "Return the names of the robots that are defined in MAP, a map or its name."
   (loop for body in (all-blueprints)
         when (eq (find-map map) (find-map (blueprint-map body) nil))
           collect (blueprint-name body)))

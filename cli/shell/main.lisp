@@ -25,7 +25,6 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
       (ignore-errors (finish-output *error-output*)))))
 
 (defun command-usage (name)
-  "Return the usage text of the command NAME; the general usage text if NAME is not a command."
   (or (shell-text (format nil "usage-~A.txt" name)) (shell-text "usage.txt")))
 
 ;;; The prompt.

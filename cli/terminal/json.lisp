@@ -14,7 +14,6 @@
   (write-char close stream))
 
 (defun write-json (value stream)
-  "Write VALUE to STREAM as JSON, on one line."
   (flet ((write-pair (pair)
            (destructuring-bind (key value) pair
              (write-json-string (substitute #\_ #\- (string-downcase key)) stream)

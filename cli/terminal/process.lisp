@@ -123,11 +123,9 @@ press ends it. The second press ends it, too, if the first had no effect and was
   "True from the time when a suspended process continues until the prompt has redrawn its line.")
 
 (defun terminal-mode ()
-  "Return the mode of the terminal, a termios object, or NIL if there is no terminal."
   (ignore-errors (sb-posix:tcgetattr 0)))
 
 (defun set-terminal-mode (terminal-mode)
-  "Set the mode of the terminal to TERMINAL-MODE. Do nothing if there is no terminal."
   (ignore-errors (sb-posix:tcsetattr 0 sb-posix:tcsanow terminal-mode)))
 
 (defun enter-key-mode (&key interrupts)

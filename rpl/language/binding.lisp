@@ -182,7 +182,6 @@ procedure's body. If OUTER is true, the first argument is the environment around
                                 (lambda (scope) (binding-body-code body scope))))))
 
 (defun local-procedure-code (definition variable scope)
-  "Return code that completes the procedure in VARIABLE, with the local DEFINITION in SCOPE."
   (destructuring-bind (name parameters . body) definition
     (let ((parameters (untyped-lambda-list parameters (string-downcase name))))
       (check-lambda-list parameters scope)

@@ -103,7 +103,6 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
          (values (frame-up frame) nil)))))
 
 (defun choice-code (form test then else scope)
-  "Return code for FORM, a choice by TEST. THEN and ELSE are lists of forms."
   (if (suspends-p test scope)
       (with-gensyms (value)
         (plan-code (note-expansion `(let ((,value ,test))

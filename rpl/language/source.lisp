@@ -80,8 +80,7 @@ the names of iterate's macros are left out."
 
 (defun reject-suspension (form container)
   (let ((advice (or (advice-for-form container)
-                    "Bind the value by let before this form, so that the plan waits in
-let.")))
+                    "Bind the value by let before this form, so that the plan waits in let.")))
     (call-at-source-location form
                    (lambda ()
                      (error 'misplaced-suspension

@@ -200,7 +200,6 @@ coordinate where box and name end."
         (max (+ x width) (if at (+ at length) 0))))))
 
 (defun command-title (span)
-  "Return the tooltip of SPAN, a command."
   (let ((code (span-error span)))
     (format nil "~A, ticks ~A to ~A~@[: ~(~A~)~]~@[. ~A~]" (span-text span) (span-start span)
             (span-end span) code (and code (error-code-meaning code)))))

@@ -135,7 +135,6 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)
-  "Return a list of projections, one for each branch of QUESTION, or one for its plan."
   (let ((projections (loop for branch below (max 1 (length (question-branches question)))
                            collect (project-branch question moment branch))))
     (report-function-errors question projections)

@@ -74,7 +74,6 @@ above it and its ink. Return NIL if PANE is empty."
 ;;; Painting.
 
 (defun paint-cursor (canvas row column focused-p)
-  "Paint the cursor at ROW and COLUMN. The cursor is hollow unless FOCUSED-P."
   (draw-rectangle canvas draw-gcontext* (column-x column) (+ 2 (* row +line-height+))
                   (if focused-p 2 (1- +character-width+)) (- +line-height+ 2) focused-p))
 

@@ -84,7 +84,6 @@ window of its robot."
 ;;; A window's life.
 
 (defun remove-from-open-windows (window)
-  "Remove WINDOW from the list of open windows. Return true if WINDOW was open."
   (with-lock (*windows-lock*)
     (when (member window *windows*)
       (setf *windows* (remove window *windows*))

@@ -95,7 +95,6 @@ arguments, after each change."
                                          (add-text transcript text))))
 
 (defun erase-last-line (transcript text)
-  "Erase the last line of TRANSCRIPT if it is TEXT."
   (call-changing-transcript
    transcript
    (lambda ()

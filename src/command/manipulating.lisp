@@ -17,7 +17,6 @@
 ;;; Methods for given arguments.
 
 (defun method-takes-p (method arguments)
-  "True if ARGUMENTS have the number and types that METHOD takes."
   (let* ((parameters (method-parameters method))
          (count (length (parameter-list-objects parameters)))
          (typed (parameter-list-typed parameters)))

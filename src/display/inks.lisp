@@ -81,7 +81,6 @@ pixels from X, Y."
   (* +character-width+ (length text)))
 
 (defun fill-with-white (canvas x y width height)
-  "Fill a box with white. Return NIL."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-rectangle canvas draw-gcontext* x y width height t)))
 

@@ -95,7 +95,6 @@ wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than su
 ;;; The legend.
 
 (defun columns-of (entries rows)
-  "Return ENTRIES divided into columns, lists of at most ROWS entries."
   (loop while entries
         collect (loop repeat rows while entries collect (pop entries))))
 

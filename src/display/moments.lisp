@@ -68,7 +68,6 @@ the contents of each bin. FAILURE is the last failure of a command."
         (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
 (defun moments-between (old new robot tick)
-  "Return the moments of ROBOT between its observations OLD and NEW. TICK is the tick of NEW."
   (loop for (kind text code) in (append (changes-of-hands old new) (changes-of-bins old new)
                                         (failures-since old new robot))
         collect (make-moment tick kind text (robot-x robot) (robot-y robot) (robot-name robot)

@@ -230,7 +230,6 @@ the greatest substance parameter of MAP."
         0)))
 
 (defun readings-for-rays (look count)
-  "Return COUNT readings of the view of LOOK, one for each ray."
   (let ((view (coerce (look-view look) 'vector)))
     (loop for ray below count
           collect (if (zerop (length view)) 0 (aref view (floor (* ray (length view)) count))))))

@@ -44,7 +44,6 @@ Return the last value of FUNCTION."
     index))
 
 (defun find-overlapping-item (box index &optional (test (constantly t)))
-  "Return an item of INDEX whose box overlaps BOX and for which TEST returns true, or NIL."
   (flet ((among (entries)
            (loop for (other . item) in entries
                  when (and (overlap-p box other) (funcall test item)) return item)))

@@ -199,7 +199,6 @@ so that one pass finds the old image of each thing."
                   :contents (mapcar #'image-of-thing (storage-bin-contents bin))))
 
 (defun image-of-odometer (robot)
-  "Return the image of the main odometer of ROBOT."
   (let* ((odometer (robot-main-odometer robot))
          (position (get-odometer-pos odometer))
          (angle (get-odometer-ang odometer)))

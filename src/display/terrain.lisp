@@ -233,7 +233,6 @@ substance. LEFT, TOP, RIGHT and BOTTOM, in cells, are the part to draw, by defau
 ;;; the mark a dark shade of the same hue: so marks can be read without telling tints apart.
 
 (defun fill-cell (canvas x y color)
-  "Fill the cell at X, Y with COLOR, if the display has colours."
   (when in-color*
     (with-color color
       (draw-rectangle canvas draw-gcontext* x y graphics-scale* graphics-scale* t))))

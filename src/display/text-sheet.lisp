@@ -109,7 +109,6 @@ of VIEW, row by row. LEGEND is a list of all glyphs used."
   (legend '() :type list))
 
 (defun add-to-legend (sheet glyphs)
-  "Add GLYPHS to the legend of SHEET. Return the first of GLYPHS."
   (dolist (glyph glyphs (first glyphs))
     (pushnew glyph (sheet-legend sheet)
              :test (lambda (a b)

@@ -194,7 +194,6 @@ REPLAY-TRIAL, and MALFORMED-DEFINITION."
       ,@(when (subject-clean subject) '(:clean t)))))
 
 (defun repeat-trial-text (check result)
-  "Return the text of a form that repeats the trial of CHECK that had the result RESULT."
   (let ((subject (check-subject check)))
     (flet ((text (form) (form-text-for-check form check)))
       (if subject

@@ -74,7 +74,6 @@ MODE."
                            "0 if black pixels are occupied, or 1 if white pixels are")))))
 
 (defun mode-in (file entry)
-  "Return the mode in ENTRY, or :TRINARY if ENTRY is NIL."
   (cond ((null entry) :trinary)
         ((find (entry-value entry) '(:trinary :scale :raw)
                :test (lambda (value mode) (and (stringp value) (string-equal value mode)))))

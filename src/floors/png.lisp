@@ -29,7 +29,6 @@ less than END only at the end of the data; NIL if the data are damaged."
 ;;; (www.w3.org/TR/png-3, 9)
 
 (defun png-pixel-octets (png)
-  "Return the number of octets of a pixel of PNG, at least 1."
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))
 
 (defun png-row-size (png)
@@ -149,7 +148,6 @@ the octets of its pixels after PNG-PIXEL-OCTETS other octets. Signals UNUSABLE-F
     (t (+ red green blue))))
 
 (defun plain-grey-p (png)
-  "True if grey is the only channel of PNG."
   (not (or (< 1 (png-channels png)) (png-palette-p png) (png-transparency png))))
 
 (defun greatest-sample (png rule)

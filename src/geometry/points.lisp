@@ -84,7 +84,6 @@ clause fits or the result is too large."
   (%set-interval! interval (- 0d0 (%interval-max interval)) (- 0d0 (%interval-min interval))))
 
 (defun %products (interval low high)
-  "Return the least and the greatest product of a number in INTERVAL and a number from LOW to HIGH."
   (let ((a (* (%interval-min interval) low))
         (b (* (%interval-min interval) high))
         (c (* (%interval-max interval) low))

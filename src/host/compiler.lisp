@@ -35,7 +35,6 @@
     (and (hash-table-p table) table)))
 
 (defun source-location (form)
-  "Return the source location of FORM in the current compilation, or NIL."
   (let ((table (source-locations)))
     (and table (consp form) (values (gethash form table)))))
 

@@ -164,7 +164,6 @@ initarg value ...). Return the robot."
                              name trouble name name)))))
 
 (defun check-robot-variable (name)
-  "Signal MALFORMED-DEFINITION if the variable NAME has a value that is not a robot."
   (when (and (null (definition-to-replace name *robots*))
              (variable-in-use-p name))
     (reject-clause (title "defrobot" name) name

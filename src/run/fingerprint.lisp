@@ -50,7 +50,6 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
     (and journal (journal-newest-first journal))))
 
 (defun journalled-arguments (operator position simulation)
-  "Return the arguments at POSITION in all journal entries of SIMULATION for OPERATOR."
   (remove-duplicates
    (loop for entry in (journal-entries-so-far simulation)
          when (eq operator (second entry)) collect (nth (+ 2 position) entry))))
@@ -99,7 +98,6 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
     (and registry (lookup-entry (second definition) registry))))
 
 (defun methods-of (definition)
-  "Return the methods of DEFINITION if it defines a manipulation."
   (let ((manipulation (and (same-name-p :manipulation (first definition))
                            (find-manipulation (second definition) nil))))
     (and manipulation (manipulation-methods manipulation))))

@@ -298,6 +298,5 @@ first batch is SIMULATION alone. Signals MISUSE."
      (loop for batch in (batches-in-order inventory) sum (length (batch-members batch)))))
 
 (defun object-number (object inventory)
-  "Return the number of OBJECT in INVENTORY, or NIL if it has none."
   (let ((state (gethash object (inventory-states inventory))))
     (and (integerp state) state)))

@@ -102,7 +102,6 @@ has checked itself which work was in progress; checks made by a prompt do not co
 ;;; At the end of the program.
 
 (defun undone-program-requests (world)
-  "Return the names of requests of programs in WORLD that are in progress or have not begun."
   (loop for request in (append (loop for robot in (world-robots world)
                                      append (mapcar #'resource-event
                                                     (cons robot (robot-parts robot))))

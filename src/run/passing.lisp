@@ -82,7 +82,6 @@ restart CONTINUE passes the remaining ticks."
     (participant-after-ticks participant simulation)))
 
 (defun successor-of-fork (simulation)
-  "Return SIMULATION or, if it is a fork that was rewound, its successor."
   (if (fork-p simulation) (latest-successor simulation) simulation))
 
 (defun pass-ticks-when-free (simulation count)

@@ -163,7 +163,6 @@ REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T."
   "The estimated number of octets that the kept forks of a run may take at most.")
 
 (defun most-forks (simulation past)
-  "Return the number of forks that SIMULATION, which has PAST, may keep."
   (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
     (clamp (floor *most-fork-octets* octets) 3 (max 3 (past-limit past)))))
 

@@ -22,7 +22,6 @@ first. DIVERGED is the first tick at which an act could not be repeated exactly,
     (setf (repetition-diverged repetition) (simulation-tick (repetition-simulation repetition)))))
 
 (defun perform-act (act simulation)
-  "Repeat ACT in SIMULATION, which is the current simulation."
   (let ((operator (act-operator act)) (arguments (recall-arguments (act-arguments act) simulation)))
     (if (functionp operator)
         (apply operator arguments)

@@ -109,7 +109,6 @@ are those of the robots; a text says so if a robot is now in another map."
                     (list (parameter-name parameter) (parameter-default parameter)))))
 
 (defun read-journal-if-file (journal operator)
-  "Return JOURNAL, an argument of OPERATOR; or, for the name of a file, the journal in the file."
   (if (journal-p journal) journal (read-journal journal operator)))
 
 (defun call-with-replay (function journal &key until anyway keep observer

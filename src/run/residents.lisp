@@ -71,7 +71,6 @@ map. If the map or definition of a robot has been replaced, return the current r
 ;;; map, if they fit. Headless runs have their own worlds and continue.
 
 (defun warn-of-ended-run (map simulation new)
-  "Warn that SIMULATION of MAP has ended, if it was not idle. NEW is the new map, or NIL."
   (when (or (live-p simulation)
             (and (plusp (simulation-tick simulation)) (not (idle-p simulation))))
     (warn-of-definition "Map ~(~A~) is ~:[no longer defined~;defined anew~]. Its simulation has ~

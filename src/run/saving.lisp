@@ -80,7 +80,6 @@ these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
 ;;; Writing.
 
 (defun settings-of (simulation)
-  "Return a list (name value) for each parameter of SIMULATION."
   (loop for parameter in (all-parameters)
         for value across (simulation-known-parameters simulation)
         collect (list (parameter-name parameter) value)))

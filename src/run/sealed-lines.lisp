@@ -130,7 +130,6 @@ error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
   `(call-reading-file (lambda (,in) ,@body) ,file ,kind ,damage))
 
 (defun check-file-format (found expected)
-  "Signal an error unless FOUND, the format number of a file, is EXPECTED."
   (unless (eql expected found)
     (error "another version of the simulator wrote the file, in format ~A; this version reads ~
             format ~D"

@@ -19,7 +19,6 @@
             (camera-last-view-tick camera) tick))))
 
 (defun container-name (part)
-  "Return the name of the container that PART is inside of, a string, or NIL."
   (and (part-location part) (location-name (part-location part))))
 
 (defun slots-of-own-kind (part)
@@ -75,7 +74,6 @@ slots with the roles :STATE and :MEMORY."))
 ;;; Commands in progress, and who issued them.
 
 (defun resource-part-name (resource)
-  "Return the name of RESOURCE, a string, or NIL if RESOURCE is a robot."
   (if (robot-p resource) nil (princ-to-string resource)))
 
 (defun command-in-progress-status (resource)

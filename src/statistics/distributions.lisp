@@ -189,7 +189,6 @@ integers, this is the log probability of A successes and B failures. A and B are
                 (/ (logarithm (/ n (* 2 pi a b))) 2))))))
 
 (defun log-beta-prefactor (a b x y)
-  "Return the logarithm of X^A Y^B / beta(A, B)."
   (declare (type double-float a b x y))
   (+ (log-binomial-density a b x y) (logarithm (/ (* a b) (+ a b)))))
 

@@ -118,7 +118,6 @@ Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE bet
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
 (defun check-same-length (operator name seconds firsts)
-  "Signal WRONG-ARGUMENT unless SECONDS, the argument NAME of OPERATOR, has the length of FIRSTS."
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
                      (format nil "a sequence of as many numbers as the first, ~D"

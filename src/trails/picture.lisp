@@ -18,7 +18,6 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
   (remove outcome ways :key #'way-outcome :test-not #'string=))
 
 (defun way-opacity (count)
-  "Return the opacity of each way if COUNT ways have the same outcome."
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
 (defun draw-way-outline (canvas points look)

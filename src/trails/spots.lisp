@@ -48,7 +48,6 @@ SEVERAL-P is true, texts name the robots."
       (< (moment-group-weight one) (moment-group-weight other))))
 
 (defun number-spots (groups)
-  "Number the spots of GROUPS in order. Return a list of these spots."
   (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot groups))
                                   :from-end t)))
     (loop for spot in spots for number from 1 do (setf (spot-number spot) number))

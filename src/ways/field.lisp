@@ -136,7 +136,6 @@ and CELLS are the cells of the terrain, which must not change."
     field))
 
 (defun copy-field (field)
-  "Return an unshared copy of FIELD."
   (ensure-memory (length (field-cells field)) 24)
   (let ((copy (%make-field (field-goal field) (field-columns field) (copy-seq (field-cells field))
                            (copy-seq (field-totals field)) (copy-seq (field-drafts field)))))
@@ -293,7 +292,6 @@ and CELLS are the cells of the terrain, which must not change."
 ;;; Changes.
 
 (defun set-cell-cost (field node cost)
-  "Set the cost of the cell NODE of FIELD, which is unshared, to COST."
   (let ((columns (field-columns field)))
     (setf (aref (field-cells field) node) cost)
     (when (>= cost +barred+) (set-draft field node +barred+))

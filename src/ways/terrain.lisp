@@ -117,7 +117,6 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
                       thereis (and (< -1 other (length cells)) (< (aref cells other) +barred+)))))
 
 (defun raise-costs-near-walls (cells columns clearance)
-  "Raise the cost of free CELLS that are nearer to a wall than CLEARANCE."
   (declare (type amounts cells))
   (let ((offsets (offsets-within clearance columns)))
     (dotimes (node (length cells))

@@ -116,7 +116,6 @@ and, with a warning in a compiled file, for an invalid clause."
                      "a name that no clause of the simulator has, and :clauses with a form"))))
 
 (defun clause-function-form (lambda-list options)
-  "Return a form for the function of a kind of clause with OPTIONS and clauses of LAMBDA-LIST."
   (destructuring-bind (map . parameters) lambda-list
     (multiple-value-bind (whole parameters) (variable-after-key '&whole parameters)
       (with-gensyms (option clause kind)

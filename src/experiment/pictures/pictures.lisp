@@ -88,7 +88,6 @@ or the directory cannot be made."
                                append (ways-of-trial experiment condition trial)))))
 
 (defun trial-numbers (trials)
-  "Return a list of trial numbers for TRIALS, an argument of SAVE-WAYS-PICTURE."
   (check-argument save-ways-picture trials
                   (or (whole-p trials 1 10000)
                       (and (consp trials) (proper-list-p trials)

@@ -18,7 +18,6 @@
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
 (defun parts-form (parts value-of)
-  "Return a form for lists (part value) of PARTS. VALUE-OF returns the form for a part's value."
   `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)

@@ -42,7 +42,6 @@ variables hold weakly: the keys of a table" :writable))
             append (loop for others in rest collect (append choice others)))))
 
 (defun make-condition-name (case-name settings)
-  "Return the name of the condition with the case CASE-NAME, or NIL, and the other SETTINGS."
   (let ((words (append (and case-name (list (string-downcase case-name)))
                        (loop for (name value) in settings
                              collect (format nil "~(~A~)=~A" name (value-text value))))))

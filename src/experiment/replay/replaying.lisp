@@ -205,7 +205,6 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         collect (list name (value-from-text text shared))))
 
 (defun recorded-series (result)
-  "Return the series in RESULT: lists (tick value...)."
   (loop with shared = (make-hash-table :test 'equal)
         for (tick . texts) in (result-series result)
         collect (cons tick (loop for text in texts collect (value-from-text text shared)))))

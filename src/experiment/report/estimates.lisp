@@ -30,7 +30,6 @@
         (if (< (abs product) #.(expt 2 -900)) 0 (double product)))))
 
 (defun unscale-number (number scale)
-  "Return NUMBER divided by SCALE; NIL if NUMBER is NIL."
   (if (or (null number) (= 1 scale))
       number
       (nearest-float (/ (rational number) scale))))

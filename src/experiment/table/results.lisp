@@ -125,7 +125,6 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 
 ;; A table is sorted unless the run that writes it continues, or was killed.
 (defun results-if-sorted (file)
-  "Return the results in the table FILE; NIL if FILE is not sorted."
   (let* ((columns (columns-of-file file))
          (results (%make-results columns))
          (seed (seed-column columns))

@@ -187,6 +187,5 @@ with COLUMNS. Signals DAMAGED-TABLE."
                                  (machine-file directory) (description-file directory))))
 
 (defun directory-path (name)
-  "Return the absolute path of the directory NAME, a string or pathname."
   (uiop:ensure-directory-pathname
    (merge-pathnames (path-of-name name :directory t) (base-directory))))

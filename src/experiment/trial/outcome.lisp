@@ -111,7 +111,6 @@ table cannot have that value."
     nil))
 
 (defun error-text-of-call (function)
-  "Call FUNCTION. Return the text of the error that ended the call, or NIL."
   (let ((trouble (catch 'broken-off
                    (restart-case (call-until-error function)
                      (abort () :report "End this trial." "aborted")))))
