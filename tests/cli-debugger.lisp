@@ -364,7 +364,7 @@ asked goes."
     (base:join-thread thread)
     (is (null (base:debugger-asking thread)))
     (let ((texts (mapcar #'base:message-text (base:take-messages queue))))
-      (is-true (find-if (lambda (text) (mentions-p text "has disconnected; abort was chosen")) texts)
+      (is-true (find-if (lambda (text) (mentions-p text "disconnected; abort was chosen")) texts)
                "~A" texts)
       (is-true (find-if (lambda (text) (mentions-p text "Error in a test: Slipped")) texts)))))
 
