@@ -105,7 +105,7 @@ other threads wait until FUNCTION returns."
         (show-break session (first (session-breaks session)))))))
 
 (defun answer-earlier-breaks (session break-request)
-  "Read lines that answer other threads' breaks that precede BREAK-REQUEST, a break in this thread."
+  "BREAK-REQUEST is a break in this thread. Read the lines that answer earlier breaks in others."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)

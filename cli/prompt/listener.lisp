@@ -135,7 +135,7 @@ between, a message says how to hide such messages.")
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE reports the end of a command whose program's continuation may handle errors."
+  "True if MESSAGE reports the end of a command that a program gave a continuation for errors."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))

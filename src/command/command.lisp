@@ -122,7 +122,7 @@ DEFINE-STEP has not defined."
   (and (get name 'step) (fboundp name) t))
 
 (defun check-step-in-form (form)
-  "Return FORM, a call with a step as its second argument. Check the step if it is quoted."
+  "Return FORM, a call with a step as its second argument. Check a quoted step at load time."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (check-step ,step)) ,@more)

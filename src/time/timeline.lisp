@@ -131,8 +131,8 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
   "The timeline of the run that this thread is repeating, as in a replay; or NIL.")
 
 (defun continuation-suppressed-p (timeline)
-  "True if the continuation of a request that this thread now makes to TIMELINE must not be called,
-because the run is being repeated, and so are the requests of the continuation."
+  "True while this thread repeats the run of TIMELINE. Continuations are then not called, because the
+requests that they made are repeated, too."
   (and (eq timeline *repeated-timeline*)
        (changing-phase-p (phase-in-this-thread timeline))
        (not (continues-in-forks-p))))

@@ -126,8 +126,8 @@ failed.")
                (moment-robot moment) (moment-code moment)))
 
 (defun spots-and-notes (moments limit several-p reach)
-  "Return a list of the numbered spots of MOMENTS; and a list of at most LIMIT notes, each a list of
-a number or NIL and a text. Notes about the user's own moments are always included; if LIMIT is NIL,
+  "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
+note is a list (number text), whose number may be NIL. Notes about the user's own moments are always included; if LIMIT is NIL,
 so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0

@@ -54,7 +54,7 @@
 
 (defun design-choices (definition part bounds)
   "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
-(low high). Equal points, which ranges of a few integers give, count once."
+(low high). Equal points count once; ranges of few integers give equal points."
   (let ((ranges (design-ranges part)))
     (loop for range in ranges
           for (low high) in bounds

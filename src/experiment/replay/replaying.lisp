@@ -95,7 +95,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
         do (wait-and-serve never (min left 0.02))))
 
 (defun paced-gate (rate)
-  "Return a gate that lets RATE ticks a second pass. The gate first opens a display, if any."
+  "Return a gate, a function called before each tick, that lets RATE ticks a second pass."
   (let ((due nil))
     (lambda (simulation)
       (unless due

@@ -151,8 +151,8 @@ success. Otherwise add an error for commands without a tick, if any. VALUES are 
     (when text (add-error result text))))
 
 (defun note-unnoticed-failures (result values failed)
-  "If RESULT is a success, add an error for the first of the FAILED tasks whose failure is not the
-first of VALUES, the values of :run. Such a failure is true, so :run may have taken it for success."
+  "If RESULT is a success, add an error for the first of the FAILED tasks that :run did not return
+as its first value. A failure counts as true, so :run may have taken the failure for success."
   (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
     (when (and task (success-p (result-outcome result)))
       (add-error result
