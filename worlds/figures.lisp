@@ -85,7 +85,7 @@ the map to draw; NIL is the whole map.")
 
 ;;; Looking ahead.
 
-(defun save-ways-ahead ()
+(defun save-picture-of-rollouts ()
   "Save a picture of the ways of rollouts in which a trolley may block the way."
   (with-simulation (marvin :seed 3)
     (leave-trolleys)
@@ -164,7 +164,7 @@ the map to draw; NIL is the whole map.")
   (save-watson)
   (save-layers)
   (draw-ward (worlds-path "floors/"))
-  (save-ways-ahead)
+  (save-picture-of-rollouts)
   (save-fetch))
 
 (defun save-figures ()

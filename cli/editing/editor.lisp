@@ -266,7 +266,7 @@ pasted text fast. If the key after the text ends the line, return the line's tex
 (defmethod next-typed-line ((stream edited-text))
   (let ((line (pop (edited-lines stream))))
     (if line
-        (show-answer (edited-console stream) (visible line))
+        (show-answer (edited-console stream) (escape-controls line))
         (let ((text (edit-line stream)))
           (unless (eq text :eof)
             (setf (edited-lines stream) (rest (lines-in text))

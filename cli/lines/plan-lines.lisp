@@ -159,7 +159,7 @@ variables, what it waits for and since when; and which task owns which valve."
                                     (n (task-numbered n runner))
                                     (t runner))))
                    (and which (task-tree-text which)))))))
-    (cond (text (write-string (visible text)))
+    (cond (text (write-string (escape-controls text)))
           ((null (plans)) (reject-line "No plan is under way."))
           (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
 
@@ -176,7 +176,7 @@ means and what to try. With N, explain how the task N, running or ended, got whe
 fluent woke it, what set that, and how it was started. WHY N needs a trace: TRACE-PLANS ON, or in
 Lisp (setf *trace-plans* t), before the plan starts."
   (if n
-      (write-string (visible (task-why-text n)))
+      (write-string (escape-controls (task-why-text n)))
       (let ((robot (session-robot)))
         (while-still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
 

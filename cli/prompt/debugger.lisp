@@ -51,7 +51,7 @@
           until (member (first call)
                         '(eval-quietly call-user-code call-until-error call-with-care))
           do (write-trimmed-line
-              "  ~A" (visible (cut (one-line (format-briefly nil "~S" call)) 300))))))
+              "  ~A" (escape-controls (cut (one-line (format-briefly nil "~S" call)) 300))))))
 
 (defun debug-line (session break-request text)
   (flet ((says-p (word) (string-equal word (split-line text))))

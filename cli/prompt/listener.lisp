@@ -165,7 +165,7 @@ ended. Add file and line number to errors and warnings in a script."
   (let ((kind (if (from-program-p message) :others (message-kind message)))
         (text (with-output-to-string (text)
                 (write-message message text (full-message-text message listener)))))
-    (write-string (paint-for-console (visible text) (message-color kind)
+    (write-string (paint-for-console (escape-controls text) (message-color kind)
                                      (listener-console listener))
                   out)))
 

@@ -58,7 +58,7 @@ Show PROMPT, except in a batch. First await earlier commands if SESSION waits fo
         (cond ((and line
                     (not (session-batch-p session))
                     (or given (reader-echo-p (session-reader session))))
-               (show-answer console (visible line)))
+               (show-answer console (escape-controls line)))
               (t (unless (or line (session-batch-p session)) (fresh-line console))
                  (note-answered console)))
         (reset-line-error-counts (session-error-counts session))

@@ -53,7 +53,7 @@ restarts with the same name, include only the innermost."
 (defun break-condition-text (condition)
   "Return the text of CONDITION: on one line, except the stack of a plan that has stopped."
   (if (plan-break-p condition)
-      (visible (condition-text condition))
+      (escape-controls (condition-text condition))
       (short-error-text (condition-text condition))))
 
 (defstruct (break-state (:copier nil))

@@ -26,7 +26,9 @@ last" :writable))
 (defun displayed-chars (label text)
   "Return a list with the text to show for each character of LABEL, unchanged, and of TEXT."
   (append (map 'list #'string label)
-          (map 'list (lambda (char) (visible (substitute #\Space #\Tab (string char)))) text)))
+          (map 'list
+               (lambda (char) (escape-controls (substitute #\Space #\Tab (string char))))
+               text)))
 
 (defun break-into-rows (label text point columns)
   "Break LABEL and TEXT into rows of at most COLUMNS. Return a list of lists (string end): END is

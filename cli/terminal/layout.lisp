@@ -45,7 +45,7 @@
 
 (defun short-error-text (text)
   "Return TEXT, an error message, on one line of at most *LONGEST-ERROR-TEXT* characters."
-  (visible (cut (one-line (cut text (* 3 *longest-error-text*))) *longest-error-text*)))
+  (escape-controls (cut (one-line (cut text (* 3 *longest-error-text*))) *longest-error-text*)))
 
 ;;;; Values
 

@@ -60,7 +60,7 @@ variables around INTERP-LAMBDA, not blocks, tags and local plans. Run the proced
   (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
                                       (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))
-        (inside-p (and *own-conses* t)))
+        (inside-p (and *conses-of-plan-text* t)))
     (with-own-text (form)
       (unless inside-p (warn-of-text-mistakes body))
       (multiple-value-bind (scope entry) (procedure-parts parameters environment)

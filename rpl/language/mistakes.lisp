@@ -207,12 +207,12 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
 
 (defmethod doubtful-test-text ((form symbol))
   ;; Plans read fluents by value.
-  (when (and (null *own-conses*) (known-fluent-variable-p form))
+  (when (and (null *conses-of-plan-text*) (known-fluent-variable-p form))
     (format nil "~(~A~) is a fluent, which is true in Lisp whatever its value is. Write ~
                  (fluent-value ~:*~(~A~))." form)))
 
 (defmethod doubtful-test-text ((form cons))
-  (cond (*own-conses* nil)
+  (cond (*conses-of-plan-text* nil)
         ((and (typep form '(cons symbol (cons t null)))
               (member (first form) '("NOT" "NULL") :test #'string=))
          (doubtful-test-text (second form)))

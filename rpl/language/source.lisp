@@ -106,13 +106,13 @@ Lisp code, and looks like the prompt's command PLAN."
                plans from waiting~;To run the plan, write (run-plan '~:*~(~A~))~]."
               form (plan-named-in form)))
 
-(defvar *own-conses* nil
+(defvar *conses-of-plan-text* nil
   "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
 
 (defmacro in-plans-only (form)
   "Expand to a form that plans accept for FORM, a form of the plan language, while a plan is
 compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
-  (if *own-conses* `(construct-form ',form) (reject-in-lisp form)))
+  (if *conses-of-plan-text* `(construct-form ',form) (reject-in-lisp form)))
 
 (defun construct-form (form)
   "Signal MISUSE, because Lisp runs FORM, a form of the plan language."
@@ -170,8 +170,8 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 (defun note-own-text (form)
   "Record that FORM and all forms in it belong to the text of the plan itself. Return FORM."
   (labels ((note (form)
-             (loop while (and (consp form) (not (gethash form *own-conses*)))
-                   do (setf (gethash form *own-conses*) t)
+             (loop while (and (consp form) (not (gethash form *conses-of-plan-text*)))
+                   do (setf (gethash form *conses-of-plan-text*) t)
                       (note (car form))
                       (setf form (cdr form)))
              (when (form-behind-comma form) (note (form-behind-comma form)))))
@@ -204,12 +204,12 @@ stands for FORM. Return EXPANSION."
   (note-own-text (note-written-as expansion form)))
 
 (defun own-text-p (form)
-  (gethash form *own-conses*))
+  (gethash form *conses-of-plan-text*))
 
 (defmacro with-own-text ((form) &body body)
   "Run BODY with FORM, and all forms recorded meanwhile, known as the text of a plan. Generated
 names are the same every time, so that traces can be compared."
-  `(let ((*own-conses* (make-hash-table :test 'eq))
+  `(let ((*conses-of-plan-text* (make-hash-table :test 'eq))
          (*written-forms* (make-hash-table :test 'eq))
          (*gensym-counter* 0))
      (note-own-text ,form)

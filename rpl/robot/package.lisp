@@ -51,7 +51,7 @@
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
                 #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-ending-p
-                #:waiting-parts #:failure-text #:similar-clause-text #:lisp-failure
+                #:waiting-parts #:failure-text #:misspelt-handler-text #:lisp-failure
                 #:text-of-plans #:advice-on-stillness #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
                 #:pulse-of-command #:last-command #:last-pulse #:endless-advice

@@ -189,7 +189,7 @@ calls from outside can wake the plans."
         failure, which counts as true."
        (task-label task)
        (failure-text (task-result task))
-       (similar-clause-text (task-result task))))))
+       (misspelt-handler-text (task-result task))))))
 
 (addition run-plan)
 (defun run-plan (plan &rest arguments)

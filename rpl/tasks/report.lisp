@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*plan-end-hooks* report-end report-failure similar-clause-text *plan-start-hooks*
+(export '(*plan-end-hooks* report-end report-failure misspelt-handler-text *plan-start-hooks*
           task-state-text write-task-line write-task-tree))
 
 (defun task-state-text (task)
@@ -68,7 +68,7 @@ not only in digits; another ending, as STUCK and STUCKED; or only one of the two
           (and (string-not-equal own other)
                (or (misspelling-p type class) (ending-p own other) (ending-p other own)))))))
 
-(defun similar-clause (failure)
+(defun misspelt-handler-type (failure)
   "Return the type of a handler clause around FAILURE that was probably meant for the class of
 FAILURE, and this class; or NIL."
   (let* ((own (failure-class failure))
@@ -86,9 +86,9 @@ from a Lisp error; otherwise NIL."
                              (and type (find-class type nil) (subtypep type 'error)))
                            (clause-types form)))))
 
-(defun similar-clause-text (failure)
+(defun misspelt-handler-text (failure)
   "Return a text that a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
-  (multiple-value-bind (type class) (similar-clause failure)
+  (multiple-value-bind (type class) (misspelt-handler-type failure)
     (let ((error-type (clause-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
                           is ~(~S~)" type class))
@@ -105,7 +105,7 @@ from a Lisp error; otherwise NIL."
   (when (failure-cause failure)
     (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
   (format stream "~@[  ~A~%~]~@[  ~A~%~]"
-          (handler-ended-text failure) (similar-clause-text failure))
+          (handler-ended-text failure) (misspelt-handler-text failure))
   (write-some "  and in a cleanup: ~A~%"
               (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
@@ -120,7 +120,7 @@ from a Lisp error; otherwise NIL."
           (mapcar (lambda (form) (form-text form 40)) (failure-plan-backtrace failure))
           (and (failure-cause failure) (one-line (brief-failure-text (failure-cause failure))))
           (handler-ended-text failure)
-          (similar-clause-text failure)))
+          (misspelt-handler-text failure)))
 
 ;; What a REPL shows of the value of a plan that failed.
 (defmethod print-object ((failure plan-failure) stream)

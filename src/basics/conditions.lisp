@@ -26,7 +26,7 @@
       (call-next-method)
       (let ((out (make-string-output-stream)))
         (unwind-protect (call-next-method condition out)
-          (write-string (visible (get-output-stream-string out)) stream)))))
+          (write-string (escape-controls (get-output-stream-string out)) stream)))))
 
 (addition wrong-argument)
 (define-condition wrong-argument (ars-magna-error)

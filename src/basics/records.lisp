@@ -91,21 +91,21 @@ is an addition. A reference to a chapter of the manual is removed."
 
 ;;; Lisp has no documentation for restarts, so it is kept here.
 
-(defvar *restarts* '() "Lists (name text): the restarts that are documented.")
+(defvar *documented-restarts* '() "Lists (name text): the restarts that are documented.")
 
 (defun document-restarts (&rest names-and-texts)
   "Document restarts. NAMES-AND-TEXTS alternates names and texts that say what the restarts do."
   (loop for (name text) on names-and-texts by #'cddr
-        do (setf *restarts* (append (remove name *restarts* :key #'first)
+        do (setf *documented-restarts* (append (remove name *documented-restarts* :key #'first)
                                     (list (list name (one-line text)))))))
 
 (defun all-restarts ()
   "Return a list of the names of the documented restarts."
-  (mapcar #'first *restarts*))
+  (mapcar #'first *documented-restarts*))
 
 (defun restart-documentation (name)
   "Return the documentation of the restart NAME, a symbol, or NIL."
-  (second (find name *restarts* :key #'first)))
+  (second (find name *documented-restarts* :key #'first)))
 
 ;;;; Structures that describe their slots
 

@@ -283,7 +283,7 @@ printed form, or an empty text if it cannot be printed."
   "Return the text of CONDITION, or its type if it has no text."
   (let ((text (or (printing-text () (simulator-error-text condition))
                   (printable-report condition))))
-    (if (string= text "") (string-downcase (type-of condition)) (visible text))))
+    (if (string= text "") (string-downcase (type-of condition)) (escape-controls text))))
 
 (defun zero-if-tiny (number)
   "Return NUMBER, or 0 if NUMBER printed with two decimals would be 0.00 or -0.00."

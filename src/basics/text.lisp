@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(blank-p one-line cut visible control-character-p sentence wrapped-text
+(export '(blank-p one-line cut escape-controls control-character-p sentence wrapped-text
           call-printing-plainly printing-plainly printing-text print-named abridged safe-text
           unqualified-text text-as-typed +more+ same-name-p nearest-name misspelling-p value-equal
           name-string name-before-p))
@@ -37,7 +37,7 @@
   (let ((code (char-code char)))
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
-(defun visible (text)
+(defun escape-controls (text)
   "Return TEXT with control characters, but not newlines and tabs, as ^ and a letter, or as ?."
   (if (some #'control-character-p text)
       (with-output-to-string (stream)

@@ -293,7 +293,7 @@ leave out the top-level forms with that operator."
     (integer 'integer)
     (t (first (ensure-list (type-of atom))))))
 
-(defun add-atom (atom digest known)
+(defun add-atom-to-digest (atom digest known)
   "Add ATOM, a part of a form, to DIGEST. For an uninterned symbol, add its number of first
 occurrence, which the table KNOWN holds."
   (digest-add digest (atom-type-name atom))
@@ -315,4 +315,4 @@ occurrence, which the table KNOWN holds."
          (loop while (consp form) do (add-form (pop form) digest known))
          (digest-add digest "end")
          (when form (add-form form digest known)))
-        (t (add-atom form digest known))))
+        (t (add-atom-to-digest form digest known))))

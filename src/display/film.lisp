@@ -116,7 +116,7 @@ the differences; other frames are written whole."
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
                 append (list value (if (string= value "1") " selected" "") text))))
 
-(defun write-aside (legend moments several-p out)
+(defun write-moment-list (legend moments several-p out)
   "Write the part of the page beside the picture: the list of MOMENTS, and LEGEND, a text of HTML
 list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
@@ -142,7 +142,7 @@ browsers without scripts. LEGEND has HTML list items. If SEVERAL-P, name the rob
   (format out "</h1>~%<noscript><p>To play this film, a browser needs scripts. Below are ~
                its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
-  (write-aside legend moments several-p out)
+  (write-moment-list legend moments several-p out)
   (format out "</main>~%")
   (write-controls out)
   (format out "<script>~%")

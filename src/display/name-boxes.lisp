@@ -29,7 +29,7 @@ Return the last value of FUNCTION."
   (destructuring-bind (left top right bottom) box
     (< (* +most-squares+ (expt +square-side+ 2)) (* (- right left) (- bottom top)))))
 
-(defun enter-box (box item index)
+(defun add-box (box item index)
   (let ((entry (cons box item)))
     (if (large-box-p box)
         (push entry (box-index-large index))
@@ -40,7 +40,7 @@ Return the last value of FUNCTION."
 
 (defun index-boxes (boxes &optional (items boxes))
   (let ((index (make-box-index)))
-    (mapc (lambda (box item) (enter-box box item index)) boxes items)
+    (mapc (lambda (box item) (add-box box item index)) boxes items)
     index))
 
 (defun find-overlapping-item (box index &optional (test (constantly t)))

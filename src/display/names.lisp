@@ -275,7 +275,7 @@ at the end of a line."
           (name-box snapshot layers spot (+ 2 (* per-character (length (spot-name spot))))
                     taken marks index robot-spots)
         (when box
-          (let ((box (widen-box box +name-gap+))) (enter-box box box taken))
+          (let ((box (widen-box box +name-gap+))) (add-box box box taken))
           (when led-p
             (with-halo (black*) (draw-segments canvas draw-gcontext* (leader-ends spot box))))
           (write-name canvas (spot-name spot) box))))))

@@ -131,7 +131,7 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
   "The timeline of the run that this thread is repeating, as in a replay; or NIL.")
 
 (defun continuation-suppressed-p (timeline)
-  "True while this thread repeats the run of TIMELINE. Continuations are then not called, because the
+  "True while this thread repeats the run of TIMELINE. Continuations are then not called, since the
 requests that they made are repeated, too."
   (and (eq timeline *repeated-timeline*)
        (changing-phase-p (phase-in-this-thread timeline))

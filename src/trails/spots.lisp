@@ -127,8 +127,8 @@ failed.")
 
 (defun spots-and-notes (moments limit several-p reach)
   "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
-note is a list (number text), whose number may be NIL. Notes about the user's own moments are always included; if LIMIT is NIL,
-so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
+note is a list (number text), whose number may be NIL. Notes about the user's own moments are always
+included, all others if LIMIT is NIL. For SEVERAL-P and REACH see GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))

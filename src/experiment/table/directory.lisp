@@ -90,7 +90,7 @@ true if FILE has lines left. If FILE is no such table, change nothing and signal
   '("condition" "seed" "trial" "milliseconds" "worker" "process" "host")
   "The columns of machine.csv.")
 
-(defun open-machine-table (directory)
+(defun open-table-of-machines (directory)
   "Return a stream that appends to machine.csv in DIRECTORY. Signals DAMAGED-TABLE."
   (let ((file (machine-file directory)))
     (handler-case (open-table file *machine-columns*)
@@ -104,7 +104,7 @@ true if FILE has lines left. If FILE is no such table, change nothing and signal
     (unwind-protect
          (progn
            (setf (store-rows store) (open-table (rows-file directory) (columns experiment))
-                 (store-machine store) (open-machine-table directory))
+                 (store-machine store) (open-table-of-machines directory))
            (when (experiment-series experiment)
              (setf (store-series store)
                    (open-table (series-file directory) (series-columns experiment))))
