@@ -28,8 +28,8 @@
     (* (coerce digits 'double-float) (power-of-two (- shift *fixed-point-places*)))))
 
 (defun double-parts (fixed &rest bits)
-  "Return a list of double-floats whose sum is FIXED: for each of BITS, one with that many
-significant bits, and then the remainder."
+  "Return a list of double-floats whose sum is FIXED: for each number in BITS, a double-float
+with that many significant bits; then the remainder."
   (if (null bits)
       (list (nearest-double fixed))
       (let ((head (nearest-double fixed (first bits))))

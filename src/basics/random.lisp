@@ -138,8 +138,8 @@ in code that changes a world, which uses *TICK-DICE*."
 ;;; In files. SBCL does not check the words of a random state, so those from a file are checked.
 
 (defun random-state-numbers (state)
-  "Return the contents of the random state STATE, a list of 32-bit integers: only the seed, if STATE
-was not used since it was seeded; else the position of the next word, and all words."
+  "Return the contents of the random state STATE as a list of 32-bit integers. If STATE was not used
+since it was seeded, list only the seed; else list the position of the next word, and all words."
   (let ((words (random-state-words state)))
     (if (marked-p words)
         (list (aref words +first-word-index+))

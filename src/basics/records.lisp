@@ -82,8 +82,8 @@ the state of a run must be changed by functions that the journal records."
     (and mark (mark-addition-p mark))))
 
 (defun addition-text (text)
-  "Return TEXT, the documentation of an addition to the manual, with a last line that says that this
-is an addition. A reference to a chapter of the manual is removed."
+  "Return TEXT, the documentation of an addition to the manual. If TEXT does not say so, add a last
+line that says so, and remove a reference to a chapter of the manual."
   (let ((sentence "An addition to the manual."))
     (if (search sentence text)
         text

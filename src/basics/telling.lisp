@@ -56,8 +56,8 @@ A missing limit is NIL. For other types, return NIL three times."
           (t (values nil nil nil)))))
 
 (defun integer-range-text (datum type)
-  "Return a text that describes the range of integers TYPE, which does not include the integer
-DATUM; or NIL if TYPE is no such range."
+  "Return a text that describes TYPE, a range of integers that does not include the integer DATUM.
+Return NIL if TYPE is no range of integers, or DATUM is no integer."
   (multiple-value-bind (least greatest range-p) (integer-range type)
     (cond ((not (and range-p (integerp datum))) nil)
           ((and least greatest (< greatest least)) "in range: nothing is there")

@@ -272,8 +272,8 @@ both (reading 38)."
             *similar-letters*)))
 
 (defun different-word-p (a b)
-  "True if A and B are short names of equal length that differ in a letter that does not sound
-alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
+  "True if A and B are short names of equal length with one different letter, and the two letters
+do not sound alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
   (and (= (length a) (length b))
        (< (length a) 6)
        (= 1 (count nil (map 'list #'char-equal a b)))
@@ -305,7 +305,7 @@ two if both are long. In short names, and at the beginning, a different letter m
         (t (numberp one))))
 
 (defun name-before-p (a b)
-  "True if the string A sorts before B: by characters, and by the values of the numbers in them."
+  "True if the string A sorts before the string B. Numbers in the strings are compared by value."
   (loop with at-a = 0 and at-b = 0
         do (cond ((= at-b (length b)) (return nil))
                  ((= at-a (length a)) (return t)))

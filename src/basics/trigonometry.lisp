@@ -21,8 +21,8 @@
 double-floats.")
 
 (defmacro with-sine-row ((sine sine-low cosine cosine-low rest size) &body body)
-  "Run BODY with the first variables bound to the row of the table +SINES+ nearest to SIZE, and REST
-bound to the difference between SIZE and the argument of that row."
+  "In BODY, bind the first four variables to the row of the table +SINES+ whose argument is nearest
+to SIZE. Bind REST to SIZE minus the argument of that row."
   (with-gensyms (row)
     `(let* ((,row (truncate (the (double-float 0d0 102d0) (+ 0.5d0 (* 128d0 ,size)))))
             (,rest (- ,size (* ,row #.(power-of-two -7))))
@@ -85,8 +85,8 @@ bound to the difference between SIZE and the argument of that row."
       (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1))))
 
 (defun reduce-large-angle (operator angle)
-  "Return three values: the number of right angles in ANGLE, which is at least 1, and two numbers
-whose sum is the rest. OPERATOR rejects infinities."
+  "Return three values for ANGLE, at least 1 in size: the number of right angles in ANGLE, and two
+numbers whose sum is the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
     (let* ((places (- +inverse-pi-bits+ exponent))

@@ -138,12 +138,12 @@ fork has NIL in its place) and MAKE-NO-FORK."))
 
 (defgeneric copy-plan-value (value fork)
   (:documentation
-   "Return the counterpart of VALUE, an object in variables of plans, in closures or elsewhere in a
-run, in FORK, a fork that is being made. By default, lists, vectors, tables, structures and
-instances are copied with their contents. If two of them share an object, their copies share the
-copy. Functions are shared; closures are copied with the variables that they close over. Define a
-method for a class of your own to change this: return VALUE itself to share it, or a replacement.
-(forked x fork) returns the counterpart of another object x.")
+   "Return the counterpart of VALUE in FORK, a fork that is being made. VALUE is an object in a
+variable of a plan, in a closure or elsewhere in a run. By default, lists, vectors, tables,
+structures and instances are copied with their contents. If two of them share an object, their
+copies share the copy of that object. Functions are shared; closures are copied with the variables
+that they close over. To change this, define a method for a class of your own: return VALUE itself
+to share it, or a replacement. (forked x fork) returns the counterpart of another object x.")
   (:method (value fork) (copy-by-decision value fork)))
 
 (addition copy-plan-value)
@@ -219,8 +219,8 @@ a list of pairs of functions (writer . initial), for slots that get their initia
   (make-array +policies-cached+ :initial-element nil))
 
 (defvar *copy-policies* (cons '() (make-policy-cache))
-  "A cons of the methods of COPY-PLAN-VALUE and the cache of copy policies that is valid for them: a
-vector of pairs (layout . copy-policy), indexed by the number of the layout.")
+  "A cons: the methods of COPY-PLAN-VALUE, and a cache of copy policies valid for these methods. The
+cache is a vector of pairs (layout . copy-policy), indexed by the number of the layout.")
 
 (defun refresh-copy-policies ()
   "Clear the cache of copy policies if methods of COPY-PLAN-VALUE were defined after it was made."

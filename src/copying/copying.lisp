@@ -30,7 +30,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return the replacement for VALUE by the screen of COPIER; if there is none, a copy of VALUE."
+  "Return what the screen of COPIER puts in place of VALUE; if it puts nothing, a copy of VALUE."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (record-copy value instead copier)

@@ -77,8 +77,8 @@ BASE and the kinds that include it."
           return (kind-name kind)))
 
 (defun find-kind-name (name base)
-  "Return the name of the first kind that has the name NAME, a symbol or string of any package, and
-is the kind BASE or includes BASE; NIL if there is none."
+  "Return the name of the first kind named NAME, a string or a symbol of any package. Only the kind
+BASE and the kinds that include BASE count. Return NIL if no such kind has this name."
   (let ((kinds (registry-objects *object-kinds*)))
     (if (symbolp name)
         ;; Plans' commands ask this for each argument. The cache is valid until a kind is defined.

@@ -70,8 +70,8 @@ given, the text also says what is wrong with VALUE."
 ;;; Radians.
 
 (defun perhaps-degrees-p (angle)
-  "True if the user perhaps meant ANGLE, in radians, as degrees. ANGLE is more than a full turn, and
-is not a whole number of degrees, as an angle computed with a unit or pi would be."
+  "True if the user perhaps meant ANGLE, in radians, as degrees: if ANGLE is more than a full turn,
+but not a whole number of degrees. (An angle computed with a unit or pi mostly is whole degrees.)"
   (and (< (* 2 pi) (abs angle))
        (let ((degrees (* angle (/ 180 pi))))
          (< 1d-6 (abs (- degrees (fround degrees)))))))

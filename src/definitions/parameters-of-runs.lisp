@@ -75,8 +75,8 @@ are added by name, and only if they differ from their defaults. So earlier diges
     (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
 
 (defun follow-parameters (known global-p note)
-  "Find the parameters that have changed since KNOWN, a vector as PARAMETER-VALUES returns, was last
-updated, and update KNOWN. Call NOTE with the symbol and new value of each. If GLOBAL-P is true, the
+  "Find the parameters changed since the last update of KNOWN, a vector as PARAMETER-VALUES returns,
+and update KNOWN. Call NOTE with the symbol and new value of each. If GLOBAL-P is true, the
 caller is a thread with its own bindings of parameters: adopt values that other threads have set
 globally, and make values set in this thread global. Reset an invalid value, with an error message."
   (declare #.*hot* (type simple-vector known) (type function note))

@@ -187,7 +187,7 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
      (scan-density* 50 "rays" :limit (integer 1 100000)
       "The number of evenly spaced rays that sample the field of view in a search for a designator.
 Things between two rays are not seen: with 50 rays over a right angle, the robot may miss a thing
-beyond 30 m, even straight ahead, because an even number of rays has none in the middle.")
+beyond 30 m, even straight ahead, because an even number of rays has no ray in the middle.")
      (prob-lose-track* 0.01d0 "probability per tick" :noise (real 0 1)
       "The chance that a track is lost for no reason.")
      (prob-lose-false-track* 0.4d0 "probability per tick" :noise (real 0 1)
@@ -206,10 +206,10 @@ beyond 30 m, even straight ahead, because an even number of rays has none in the
      (camera-align-delay* 1 "ticks" :delay (integer 0 #.+largest+)
       "How long turning a camera takes.")
      (camera-desig-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How long acquiring a designator, or starting to track one, takes."))
+      "How long it takes to acquire a designator, or to start a track."))
     ("Sensor error"
      (type-false-pos* 0.01d0 "probability" :noise (real 0 1)
-      "The chance of sensing some place type where there is none.")
+      "The chance of sensing some place type where there is no place type.")
      (type-false-neg* 0.05d0 "probability" :noise (real 0 1)
       "The chance of not sensing the place type of a place.")
      (prob-stop* 0.07d0 "probability per cell" :limit (real 0 1)
@@ -277,9 +277,8 @@ tick lasts TICK-QUANTUM* units."
 
 (declaim (inline noise-of-step))
 (defun noise-of-step (noise step unit)
-  "Return the relative error of STEP, the length of a step, if NOISE is the relative error of a step
-of the length UNIT, which takes a unit of time. In a tick of many units, the errors of the units
-partly cancel out."
+  "Return the relative error of a step of the length STEP. NOISE is the relative error of a step of
+the length UNIT, in a unit of time. In a tick of many units, the errors partly cancel out."
   (declare (type (double-float 0d0) step unit))
   (if (<= step unit)
       (double noise)

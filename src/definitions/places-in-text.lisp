@@ -39,8 +39,8 @@ ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modi
               (values begin end))))))))
 
 (defun bounds-of-location (text location)
-  "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT; if that
-form cannot be found, of the smallest form around it."
+  "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT. If
+that form cannot be found, return those of the smallest form around it."
   (destructuring-bind (position . numbers) location
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))

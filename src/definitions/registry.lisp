@@ -101,8 +101,8 @@ strings and symbols" :writable))
   (mapcar #'entry-name (registry-entries registry)))
 
 (defun names-to-suggest (registry)
-  "Return a list of the names in REGISTRY in the order in which messages suggest them: those that
-users have defined, the newest first, then the simulator's."
+  "Return a list of the names in REGISTRY in the order in which messages suggest them: first
+the users' names, the newest first, then the simulator's names."
   (let ((entries (registry-entries registry)))
     (mapcar #'entry-name (append (reverse (remove-if-not #'users-entry-p entries))
                                  (remove-if #'users-entry-p entries)))))
@@ -195,8 +195,8 @@ NAME is a symbol of Common Lisp or of the simulator."
   "A function that is called with each object that this thread defines, or NIL.")
 
 (defun replace-entry (old new registry before value)
-  "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. Set the
-variable of NEW, if any, to VALUE. Return true; but if another thread has replaced OLD meanwhile, do
+  "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. If NEW
+has a variable, set it to VALUE. Return true; but if another thread has replaced OLD meanwhile, do
 nothing and return NIL."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))

@@ -7,8 +7,8 @@
           compared-words test-forms values-used-in wrong-error-code-text))
 
 (defun public-function-named (name)
-  "Return the symbol of the public function named NAME, a string or symbol, that ARS or NISP
-exports, and the name of that package; or NIL."
+  "Return two values if ARS or NISP exports a function named NAME, a string or symbol: the symbol of
+this function, and the name of that package. Else return NIL."
   ;; A user's package may have local nicknames.
   (let ((*package* (find-package "KEYWORD")))
     (dolist (package '("ARS" "NISP"))
@@ -28,8 +28,8 @@ exports, and the name of that package; or NIL."
                      (and (find-package "ARS") (package-used-by-list "ARS"))))))
 
 (defun other-package-text (name predicate)
-  "If another users' package has a symbol with the name of NAME for which PREDICATE is true, return
-a sentence that says how to use that symbol; else NIL."
+  "Look in other users' packages for a symbol with the name of NAME that fulfils PREDICATE. Return a
+sentence that says how to use this symbol; or NIL if there is no such symbol."
   (dolist (package (user-packages))
     (multiple-value-bind (symbol status) (find-symbol (symbol-name name) package)
       (when (and symbol (not (eq symbol name)) (funcall predicate symbol))

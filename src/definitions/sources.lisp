@@ -147,7 +147,7 @@ number ORDINAL; else the first. Return its number as a second value."
           collect (cons position (read-words position)))))
 
 (defvar *last-form-search* '(())
-  "A cache: a cons of the list that FORM-POSITION has searched last, and the tail of that list that
+  "A cache, a cons: the list that FORM-POSITION has searched last, and the tail of this list that
 begins with the form found. The cons is replaced, never modified.")
 
 ;; Forms are mostly looked up in order.
@@ -182,8 +182,8 @@ element; or NIL."
     (caching (file (file-write-date path)) (file-text path))))
 
 (defun line-of-clause (text form clause)
-  "Return two values for CLAUSE, a part of the definition FORM: the number of its line in TEXT, and
-the ordinal of the definition among those of the same operator and name. If CLAUSE is not found,
+  "Return two values for CLAUSE, a part of the definition FORM: its line number in TEXT, and the
+ordinal of FORM among the definitions with the same operator and name. If CLAUSE is not found,
 return the line of the definition, or NIL."
   (let ((positions (and form (definition-positions text form))))
     (multiple-value-bind (place number) (position-of-definition positions nil)

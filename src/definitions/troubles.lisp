@@ -204,12 +204,12 @@ debugger has disconnected, and the question ends."
                           (throw inquiry nil))))))
 
 (defun call-as-debugger (function)
-  "Call FUNCTION, which enters a debugger that also handles errors in code typed in it."
+  "Call FUNCTION, which enters a debugger. Errors in code typed there enter the debugger, too."
   (handler-bind (((or error storage-condition) #'debug-nested-error))
     (funcall function)))
 
 (defun debug-nested-error (condition)
-  "Let the current debugger handle CONDITION, an error in code that the user has typed in it."
+  "Let the current debugger handle CONDITION, an error in code typed in that debugger."
   (unless (typep condition 'time-limit)
     (call-as-debugger (lambda () (invoke-debugger condition)))))
 

@@ -56,9 +56,9 @@ does. In a fork, the copy of ASKER is notified when its commands end.")
 (addition *break-on-user-error*)
 (defvar *break-on-user-error* nil
   "When true, an error in user code (a continuation, kicker, manipulation, test or graphics body)
-enters the debugger where it happens, if an interactive one is available: at a terminal or in an
-editor. Its restarts, which name the code, are: report the error and leave that code, try it again,
-and, live, stop the simulator. When NIL, the default, or without a terminal, the error is queued as
+enters the debugger where the error happens, if there is an interactive debugger, at a terminal or
+in an editor. Its restarts name the code. They report the error and leave the code, try it again,
+or stop a live simulator. When NIL, the default, or without a terminal, the error is queued as
 an error message that names its origin, and the run goes on.")
 
 ;;; The users' code that a thread is in.

@@ -37,8 +37,8 @@ OPERATOR that does not fit its lambda list; or NIL.")
     nil))
 
 (defun wrong-keyword-text (parameters arguments)
-  "Return a text about the first of ARGUMENTS that stands in the place of a keyword, but is not a
-keyword of PARAMETERS, the lambda list of a macro; or about a keyword without a value; or NIL."
+  "Return a text about the first wrong keyword in ARGUMENTS: a form in place of a keyword of the
+lambda list PARAMETERS of a macro, or a keyword without a value. Return NIL if no keyword is wrong."
   (let* ((keys (member '&key parameters))
          (before (remove '&optional
                          (ldiff parameters
@@ -54,7 +54,7 @@ keyword of PARAMETERS, the lambda list of a macro; or about a keyword without a 
 
 (defun misfit-text (parameters arguments)
   "Return a text about the first of ARGUMENTS that does not fit the lambda list PARAMETERS: a
-keyword, or a form in place of a list; or NIL."
+wrong keyword, or a form in place of a list. Return NIL if no argument is wrong."
   (when (proper-list-p arguments)
     (or (wrong-keyword-text parameters arguments)
         (loop for parameter in parameters
@@ -103,9 +103,9 @@ CALL-PARSING-FORM signals MALFORMED-DEFINITION, return a form that signals this 
     (values (second rest) (append (ldiff lambda-list rest) (cddr rest)))))
 
 (defun user-macro-form (name lambda-list usage body)
-  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. A use of the macro that
-does not fit LAMBDA-LIST, or for which BODY signals an error, signals MALFORMED-DEFINITION, with the
-form USAGE as an example."
+  "Return the form that defines the macro NAME with LAMBDA-LIST and BODY. If a use of the
+macro does not fit LAMBDA-LIST, or BODY signals an error, the use signals MALFORMED-DEFINITION, with
+the form USAGE as an example."
   (multiple-value-bind (body declarations documentation) (parse-body body :documentation t)
     (multiple-value-bind (environment rest) (variable-after-key '&environment lambda-list)
       (multiple-value-bind (whole parameters) (variable-after-key '&whole rest)
@@ -123,8 +123,8 @@ form USAGE as an example."
                                           (lambda () ,@body))))))))))))
 
 (defmacro define-user-macro (name lambda-list &body body)
-  "Define the macro NAME for users, like DEFMACRO. A use of the macro that does not fit LAMBDA-LIST,
-or for which BODY signals an error, signals MALFORMED-DEFINITION."
+  "Define the macro NAME for users, like DEFMACRO. If a use of the macro does not fit
+LAMBDA-LIST, or BODY signals an error, the use signals MALFORMED-DEFINITION."
   (let ((shown (nth-value 1 (variable-after-key
                              '&whole
                              (nth-value 1 (variable-after-key '&environment lambda-list))))))

@@ -101,8 +101,8 @@ clause fits or the result is too large."
 
 (public add)
 (defun add (a b)
-  "Return the sum of A and B. They are points (as vectors), intervals or point intervals; one of two
-intervals may be a number, one of two point intervals a point (manual, Table 3.1)."
+  "Return the sum of A and B. They are points (as vectors), intervals or point intervals. A number
+can stand for an interval, a point for a point interval (manual, Table 3.1)."
   (dispatch-on-types add (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (%make-pt (+ (%pt-x a) (%pt-x b)) (+ (%pt-y a) (%pt-y b))))
     ((finite finite) (+ (double a) (double b)))
@@ -215,8 +215,8 @@ interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)
 
 (public dist)
 (defun dist (a b)
-  "Return the Euclidean distance of the points A and B, in metres; for an interval or point
-interval, the INTERVAL of the distances between the elements (manual, Table 3.1; reading 42)."
+  "Return the Euclidean distance of the points A and B, in metres. If A or B is an interval or point
+interval, return the INTERVAL of the distances of their elements (manual, Table 3.1; reading 42)."
   (dispatch-on-types dist (a b) "two points or point intervals, or two intervals or numbers"
     ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))

@@ -150,8 +150,8 @@ interval that contains only this number. Written (make PT-INTERVAL A B) in Nisp.
     (pt-interval (%make-pt-interval (lift (%pt-interval-x x)) (lift (%pt-interval-y x))))))
 
 (defmacro define-side-accessor (name raw axis)
-  "Define the accessor NAME: it reads the side of a point interval along AXIS with RAW; its SETF
-function copies the bounds of an interval into that side."
+  "Define the accessor NAME. It returns the side of a point interval along AXIS, read with RAW. The
+SETF function of NAME copies the bounds of an interval into that side."
   `(progn
      (addition ,name)
      (settable ,name)

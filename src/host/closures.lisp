@@ -104,7 +104,7 @@
       (copy-interpreted closure)))
 
 (defun replace-closure-values (closure function)
-  "Replace each value and cell that CLOSURE closes over by FUNCTION's value for it. Return CLOSURE."
+  "Replace each value and cell in CLOSURE by what FUNCTION returns for it. Return CLOSURE."
   (declare (type function function))
   (if (compiled-closure-p closure)
       (let ((count 0))

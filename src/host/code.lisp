@@ -61,7 +61,7 @@
          0)))
 
 (defun code-constants (function)
-  "Return the constants in the code of FUNCTION and of those compiled with it, and the names used."
+  "Return the constants in the code of FUNCTION and functions compiled with it, and the names used."
   (let ((code (code-of function)))
     (append (constants-from code (first-constant code))
             (linked-names code)

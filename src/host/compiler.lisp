@@ -43,7 +43,7 @@
   (and (source-location form) t))
 
 (defun copy-source-location (new old)
-  "Give the form NEW the source location of the form OLD, unless NEW has one. Return NEW."
+  "Give the form NEW the source location of the form OLD, unless NEW has a location. Return NEW."
   (let ((location (and (consp new) (not (eq new old)) (source-location old))))
     (when (and location (not (source-location new)))
       (setf (gethash new (source-locations)) location))
@@ -89,8 +89,8 @@ next form. ENCAPSULATED-CONDITION returns the cause of CONDITION."
   "While deferred work is done: a list (form . location) of its form and the location in the text.")
 
 (defun source-location-at (path)
-  "Return the location in the text, as of LOCATION-IN-TEXT, of the form with the source path PATH, a
-list of numbers, the innermost first; NIL if the location is unknown."
+  "Return the location, as LOCATION-IN-TEXT does, of the form with the source path PATH: a list of
+numbers, the innermost first. Return NIL if the location is unknown."
   (destructuring-bind (&optional top . numbers) (reverse path)
     (let* ((info (value-if-bound (compiler-variable #:*source-info*)))
            (positions (and info

@@ -51,8 +51,8 @@ run.")
 
 ;; One of our own hooks, perhaps around others of ours, does not show that a person is present.
 (defvar *answering-hook* nil
-  "The pair (hook . foreign-hook) of the debugger hook that CALL-ANSWERING-DEBUGGER has set last,
-and the hook of another program that was set before; or NIL.")
+  "NIL or a pair (hook . foreign-hook): the debugger hook that CALL-ANSWERING-DEBUGGER has set last,
+and the hook that another program had set before.")
 
 ;; The hook of an editor's server stays set when the editor disconnects.
 (defvar *editor-gone-p* (constantly nil)
@@ -79,9 +79,9 @@ has set HOOK or *DEBUGGER-HOOK*."
         (t (and (interactive-stream-p *standard-input*) (interactive-stream-p *debug-io*)))))
 
 (defun debugger-hook ()
-  "Return the function that is called in place of Lisp's debugger, with a condition and the function
-itself, in threads that do not bind another; or NIL. Can be set. The name DEBUGGER-DISABLED-HOOK
-means that there is no debugger."
+  "Return the function that is called in place of Lisp's debugger, in threads that bind no other; or
+NIL. The arguments of the function are a condition and the function itself. Can be set. The name
+DEBUGGER-DISABLED-HOOK means that there is no debugger."
   (let ((hook sb-ext:*invoke-debugger-hook*))
     (if (disconnected-hook-p hook) (hook-of-front-end *front-end*) hook)))
 

@@ -43,7 +43,7 @@ true. ~ and ~/ are the home directory."
 ;;; Relative names start at the directory of Lisp's file functions, not at that of system calls.
 
 (defun base-directory ()
-  "Return the absolute path of the directory in which relative names start: that of
+  "Return the absolute path of the directory in which relative names start: the directory of
 *DEFAULT-PATHNAME-DEFAULTS*, by default the current directory."
   (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
 

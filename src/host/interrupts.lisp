@@ -18,8 +18,8 @@
 
 (defvar *interrupt-deferral* nil
   "How this thread defers interrupts: NIL, not at all; :STRICTLY, everywhere; or a function
-(function waiting-p) that calls its first argument with interrupts allowed, if WAITING-P is true
-only while SBCL waits.")
+with the arguments FUNCTION and WAITING-P. It calls FUNCTION with interrupts allowed; if WAITING-P
+is true, they are allowed only while SBCL waits.")
 
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()

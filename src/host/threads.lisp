@@ -173,9 +173,9 @@ messages in other threads. Return the values of FUNCTION."
                  (cddr entry) (thread-name (first entry))))))
 
 (defun other-thread-robot-text (name)
-  "Return a text that says how code in this thread can use the robot that another thread has bound
-NAME to, and the number of that binding. Return NIL if no other thread has bound NAME, or this
-thread has."
+  "If another thread has bound NAME to a robot, and this thread has not bound NAME, return two
+values: a text that says how code in this thread can use that robot, and the number of the binding.
+Else return NIL."
   (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
                                 (car *bound-names*)))
         (word (string-downcase name)))

@@ -8,8 +8,8 @@ types.lisp.")
 (ars-magna.host:define-package :ars-magna.nisp
   (:documentation "Nisp's typed forms, slot access, matching and reader syntax, and the registries
 of types and slots that other layers fill. The package replaces LET, LOOP and IF by extended
-versions, which accept everything that those of Common Lisp accept. The code of this layer uses the
-extended versions.")
+versions. These accept everything that LET, LOOP and IF of Common Lisp accept. The code of this
+layer uses the extended versions.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:let #:loop #:if)
   (:import-from :named-readtables #:in-readtable #:find-readtable #:make-readtable

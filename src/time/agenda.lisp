@@ -58,7 +58,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 (declaim (inline add-to-ring detach-ring))
 (defun add-to-ring (last event)
-  "Add EVENT to the ring whose last event is LAST, or NIL; return EVENT, the new last one."
+  "Add EVENT to the ring with the last event LAST (NIL: empty). Return EVENT, the new last event."
   (setf (event-queued-p event) t
         (event-next event) (if last (shiftf (event-next last) event) event))
   event)
@@ -173,7 +173,7 @@ it. RESOURCE must have no pending event. INTERRUPT is called with the event if i
     (funcall (event-function event) event)))
 
 (defun run-in-order (agenda event)
-  "Run EVENT and the events that follow it; after a non-local exit from one, still run the rest."
+  "Run EVENT and the events after it. If an event exits non-locally, still run the events after it."
   (declare #.*hot* (type agenda agenda))
   (unwind-protect
        (loop while event

@@ -222,9 +222,9 @@ interrupted."
                                           (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-in-progress (simulation)
-  "Return a text that names the users' code that the thread of the live SIMULATION is in, and the
-number of calls of users' code that the thread has begun. Return NIL if the thread is not in users'
-code, or waits in a debugger."
+  "Return two values: a text that names the users' code in which the thread of the live SIMULATION
+is, and the number of calls of users' code begun in this thread. Return NIL if the thread is not in
+users' code, or waits in a debugger."
   (if-paced (pacing simulation)
     (let* ((calls (pacing-calls pacing))
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))

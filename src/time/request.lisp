@@ -58,7 +58,7 @@ sequence of commands can detect that others made requests in between" :export)))
   :documentation "The names of the phases of a tick, in order.")
 
 (defmacro phase-number (name)
-  "Return the number of the phase of a tick that is named NAME, a keyword that is not evaluated."
+  "Return the number of the phase NAME of a tick. NAME is a keyword and is not evaluated."
   (1+ (or (position name +phases+)
           (reject-name "phase" name +phases+))))
 

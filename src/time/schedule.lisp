@@ -119,7 +119,7 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   "Schedule an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
 now.
 - :PRIORITY is an integer, default 0. If the resource already has an event, the event with the
-higher priority stays. Of equal priorities, the first stays.
+higher priority stays. Of events with equal priorities, the first stays.
 - The form INTERRUPT is evaluated if this event loses.
 - With the form WHEN, the event waits, after TIMER, for the first tick in which WHEN is true. If
 that does not happen within TIMEOUT ticks from now, the event is dropped.
@@ -160,8 +160,8 @@ adds a method.")
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
-  "Interrupt the command or event that occupies RESOURCE, and the track of RESOURCE, if any, at the
-start of the next tick. Returns nothing (manual, figure D.3). See reading 37."
+  "At the start of the next tick, interrupt the command or event that occupies RESOURCE, and the
+track of RESOURCE. Either may be missing. Returns nothing (manual, figure D.3). See reading 37."
   (count-request resource)
   (post (make-grab (list (copy-argument 'grab-resource "resource" resource))) simulation))
 

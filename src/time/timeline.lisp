@@ -74,7 +74,7 @@ another of the same world, CUSTODY is the custody of that timeline.")
 
 (defgeneric timeline-of (object)
   (:documentation "Return the timeline of OBJECT: a timeline, a run, a world with robots, a robot or
-a part of one. Signals WRONG-ARGUMENT for any other object.")
+a part of a robot. Signals WRONG-ARGUMENT for any other object.")
   (:method ((timeline timeline)) timeline)
   (:method (object)
     (error 'wrong-argument :operator "ask" :name "simulation" :value object
@@ -119,7 +119,7 @@ a part of one. Signals WRONG-ARGUMENT for any other object.")
 ;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun count-moment (timeline)
-  "Record that code which forks repeat is about to run in a tick of TIMELINE with a changed world."
+  "Record that code is about to run in a tick of TIMELINE with a changed world. Forks repeat it."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
