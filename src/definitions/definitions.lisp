@@ -212,7 +212,7 @@ another clause. The restarts remain available for that form."
 (defun forms-or-rejection (function nested)
   "Call FUNCTION, which expands a form, and return its value. If FUNCTION signals
 MALFORMED-DEFINITION, and the form is NESTED in another form or is in a file that is compiled,
-return a list of a form that signals the error later. (The compiler would change an error now.)"
+return a list with a form that signals the error later. (The compiler would change an error now.)"
   (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
         (malformed-definition (condition) (list (rejected-form condition))))

@@ -125,8 +125,8 @@ indices, from 0, of the elements that lead to FORM."
 
 (defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
   "Files or forms that are compiled or loaded as a whole, within the unit OUTER. TASKS is a table
-from a form to a list: a function to call at the end of the unit, the compiler's error context for
-the form, and the form's location in the text."
+of lists with forms as keys. A list has a function to call at the end of the unit, the compiler's
+error context for the form, and the form's location in the text."
   (kind :load :type (member :load :compilation) :read-only t)
   (outer nil :type (or null unit) :read-only t)
   (files-p nil :type boolean)
