@@ -117,8 +117,8 @@ BEFORE may be left over from earlier work."
                    (not (eq world (map-resident (world-map world)))))))))
 
 (defun warn-if-interrupting (command resource arguments timeline)
-  "Warn once for each pair of commands if COMMAND, issued to RESOURCE with ARGUMENTS, interrupts a
-command without continuation that the same program issued in this tick or, in a live run, the last."
+  "Warn, once for each pair of commands, if COMMAND interrupts a command of RESOURCE that the same
+program has just issued without a continuation: in this tick or, in a live run, in the last tick."
   (when (and (from-program-p) (takes-time-p command))
     (let ((before (or (pending-request resource timeline)
                       (operation-just-begun resource timeline))))
@@ -188,12 +188,12 @@ over."
                                          (trait-p :drives command))))))))
 
 (defvar *recorded-bindings* '()
-  "A list (command world (parameter . value)...) for each command that a program has issued in a
-headless run since the last tick, while parameters had other values than in the run.")
+  "The commands that a program has issued in a headless run since the last tick, under other
+parameter values than the run's. Each is a list (command world (parameter . value)...).")
 
 (defgeneric parameters-bound (timeline world)
-  (:documentation "Return a list of pairs (symbol . value) for the parameters whose value here
-differs from that in the run of TIMELINE in WORLD.")
+  (:documentation "Return a list of pairs (symbol . value): the parameters that the caller has bound
+to other values than the run of TIMELINE in WORLD uses.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
 
 (defun warn-of-bindings (command world bindings)
@@ -268,9 +268,9 @@ it was issued with. Then forget the recorded parameters."
   "True if the caller lets ticks pass for its commands, or itself reports that no ticks pass.")
 
 (defun warn-if-postponed (command resource robot)
-  "Warn once for ROBOT, the robot of RESOURCE, if COMMAND is kept for a later run, and once for each
-WITH-SIMULATION in another thread that binds the name of ROBOT. Do not warn of commands from plans,
-because running a plan passes ticks."
+  "Warn if COMMAND is kept for a later run: once for ROBOT, the robot of RESOURCE, and again for
+each WITH-SIMULATION that binds the name of ROBOT in another thread. Do not warn of commands from
+plans, because running a plan passes ticks."
   (when (and (between-runs-p (robot-world robot))
              (not (asker-forked-p *asker*))
              (not *caller-passes-ticks-p*))

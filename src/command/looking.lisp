@@ -172,8 +172,8 @@ tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no o
            :lost-track))))
 
 (defun local-to-camera-p (camera designator)
-  "True if what DESIGNATOR denotes is next to the robot, and was seen from where CAMERA is, in the
-same container or in the open (reading 140)."
+  "True if what DESIGNATOR denotes is next to the robot, and CAMERA is where the thing was seen: in
+the same container or in the open (reading 140)."
   (and (own-designator-p camera designator)
        (eq (designator-location designator) (camera-location camera))
        (designator-truly-local-p designator)))

@@ -170,10 +170,10 @@ no method, as after UNDEFINE."
 
 (public run-manipulation)
 (defun run-manipulation (name &rest arguments)
-  "Carry out the manipulation NAME, a symbol, with ARGUMENTS (manual 5.5.2). ARGUMENTS are the
-arguments of one of its methods: designators for the objects, the resource, which is a robot or
-part, and the other arguments; and last the continuation or NIL. Returns nothing; takes effect in
-the next tick. The continuation gets an error code or NIL, and a value.
+  "Carry out the manipulation NAME, a symbol, with ARGUMENTS (manual 5.5.2). ARGUMENTS fit a method
+of the manipulation: first designators for the objects, then the resource (a robot or part), the
+other arguments, and last the continuation or NIL. Returns nothing; takes effect in the next tick.
+The continuation gets an error code or NIL, and a value.
 Error codes: :FAILED if no method fits the designated things, or by chance; :INTERRUPT; the error
 codes of the manipulation. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no method takes ARGUMENTS."
   (let* ((manipulation (find-manipulation name))

@@ -94,8 +94,8 @@ type) for its resource and for each other parameter. The type may be NIL."
           (mapcar #'first (parameter-list-typed parameters))))
 
 (defun method-signature (method)
-  "Return the parameters of METHOD as three values: the variables of its objects, a list (variable
-type) for its resource, and such lists for the others. The type is NIL where none is given."
+  "Return three values: the variables of METHOD's objects, a list (variable type) for its resource,
+and a list of lists (variable type) for its other parameters. The type is NIL where none is given."
   (destructuring-bind (by . others) (parameter-list-typed (method-parameters method))
     (values (parameter-list-objects (method-parameters method)) by others)))
 

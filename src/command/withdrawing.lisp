@@ -26,8 +26,8 @@ command is: :COMMAND, :TRACK or NIL" :export)))
        (eq continuation (operation-continuation operation))))
 
 (defun withdrawn-command-kind (withdrawal)
-  "Return :COMMAND if the command of WITHDRAWAL occupies its resource, :TRACK if it is a track of a
-camera, or NIL if it is not in progress."
+  "Return :COMMAND if the command of WITHDRAWAL occupies its resource, :TRACK if the command is a
+camera's track, or NIL if the command is not in progress."
   (destructuring-bind (resource &optional place) (request-arguments withdrawal)
     (let ((continuation (withdrawal-continuation withdrawal)))
       (cond ((null continuation) place)
@@ -53,8 +53,8 @@ camera, or NIL if it is not in progress."
       ((nil)))))
 
 (defun withdraw-command (resource continuation)
-  "At the start of the next tick, interrupt the command on RESOURCE that has CONTINUATION, if the
-command is in progress then, also as a track in the background. Returns nothing."
+  "At the start of the next tick, interrupt the command of RESOURCE with CONTINUATION, if the
+command is in progress then. A track in the background is in progress, too. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
 ;; The result of a withdrawal, in a replayed run.

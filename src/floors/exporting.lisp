@@ -57,7 +57,7 @@ writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
       (format nil "'~{~A~^''~}'" (uiop:split-string name :separator "'"))))
 
 (defun image-name (path)
-  "Return the name of the image file PATH as a description in the same directory refers to it."
+  "Return the name by which a description in the same directory refers to the image file PATH."
   (let ((name (name-in-directory path)))
     ;; Readers might take ~ for a home directory.
     (if (char= #\~ (char name 0))
@@ -126,8 +126,8 @@ describe IMAGE, or because IMAGE is no image."
   "Write the walls of MAP, a map or its name, as an occupancy grid for ROS's map_server: the YAML
 file FILE, a string or pathname whose name ends in .yaml or .yml, and beside it a PGM image of the
 same name. Return the truenames of both files. In a string ~/ is the home directory, and * ? [ and
-\\ stand for themselves. Each cell becomes a pixel, whose width is that of a cell in MAP-FRAME;
-IMPORT-MAP makes the same cells of the pixels. Substances and things are not written.
+\\ stand for themselves. Each cell becomes a pixel as wide as MAP-FRAME says a cell is; IMPORT-MAP
+turns the pixels into the same cells again. Substances and things are not written.
 UNKNOWN is a substance whose walls are written as unknown, or a list of a substance and a parameter,
 such as (glass 5); NIL and :WALLS mean no walls. MAP need not have walls of the substance.
 An existing description that names the same image is replaced, together with the image. If FILE is

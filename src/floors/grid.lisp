@@ -239,8 +239,8 @@ mate, or -1 if there is no way; REACHED has for each row the number of its cells
     found))
 
 (defun next-tie (cover row)
-  "Return the next column that ROW has not tried in this round, and that has no mate or a mate in
-the next layer. Return NIL if there is no such column."
+  "Return the next column that ROW has not tried in this round. The column must have no mate, or a
+mate in the next layer. Return NIL if there is no such column."
   (declare #.*hot* (type fixnum row))
   (let ((reached (cover-reached cover)) (layer (cover-layer cover))
         (length (aref (runs-lengths (cover-rows cover)) row)))

@@ -190,7 +190,7 @@ list such as (glass 5)
   :limit -- the largest number of pixels accepted, by default 25000000
 Return the map and a plist: :width and :height in cells, the width of a :cell in real metres, the
 numbers of :free, :occupied and :unknown cells, and the number of :walls, which is as small as
-possible. A robot's metre is the side of a cell, whatever its real width; MAP-TO-FRAME and
+possible. A robot's metre is the side of a cell, whatever the cell's real width; MAP-TO-FRAME and
 FRAME-TO-MAP convert. Colours become grey as in ROS's nav2_map_server: the average of red, green and
 blue. If the image has alpha, the mode trinary averages alpha in as a fourth channel; in the mode
 scale a pixel that is not fully opaque is unknown; the mode raw ignores alpha. Signals

@@ -105,8 +105,8 @@ octet STEP to the left of OVER."
     (funcall function y row)))
 
 (defun call-with-rows (function png)
-  "Call FUNCTION for each row of PNG, from the top, with the number of the row and a vector that has
-the octets of its pixels after PNG-PIXEL-OCTETS other octets. Signals UNUSABLE-FLOOR."
+  "Call FUNCTION for each row of PNG, from the top, with the number of the row and a vector:
+PNG-PIXEL-OCTETS filler octets, then the octets of the row's pixels. Signals UNUSABLE-FLOOR."
   (let* ((size (1+ (png-row-size png))) (height (png-height png))
          (most (min height (max 1 (floor 65536 size))))
          (buffer (make-octets (* most size))) (inflater (make-inflater (png-pixels png)))

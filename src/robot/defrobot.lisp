@@ -184,8 +184,8 @@ initarg value ...). Return the robot."
                (reject (list option (getf options option)) (format nil words))))))
 
 (defun value-form (definition form clause expected)
-  "Return a form that evaluates FORM, which is in CLAUSE of DEFINITION, and signals
-MALFORMED-DEFINITION if FORM has no value."
+  "FORM is in CLAUSE of DEFINITION. Return a form that evaluates FORM, and signals
+MALFORMED-DEFINITION if FORM signals an error."
   (if (constantp form)
       form
       `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))

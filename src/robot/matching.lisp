@@ -208,8 +208,8 @@ for the base probability p and n supporters among KEYS (manual 3.4.2; reading 22
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
-  "True if a robot can notice ATTRIBUTE of a thing of MAP that has VALUE. A missing boolean
-attribute is noticed as false, but a user's attribute only if some thing of MAP starts with it."
+  "True if a robot can notice ATTRIBUTE of a thing of MAP that has VALUE. A missing boolean is
+noticed as false; a user-defined boolean only if a thing in the definition of MAP has it."
   (or value
       (and (can-be-false-p attribute)
            (or (built-in-attribute-p attribute)

@@ -63,13 +63,13 @@ the corner. Return true if ROBOT moved."
               (robot-y robot) beyond-y)))))
 
 (defun only-touches-p (direction left)
-  "True if a robot that moves LEFT metres moves at most by the contact gap along an axis, where
-DIRECTION is the component of its heading."
+  "True if a move by LEFT metres covers at most the contact gap along an axis. DIRECTION is the
+component of the robot's heading along this axis."
   (<= (* left (abs direction)) +contact-gap+))
 
 (defun may-cross-border-p (position cell direction left)
-  "True if a robot at POSITION on an axis, in the column or row CELL, with LEFT metres to go, may be
-moved over the nearest border of cells, because the robot moves towards or along this border."
+  "True if a robot at POSITION on an axis may be moved over the nearest border of cells: the robot
+moves towards or along it. CELL is the robot's column or row; LEFT metres are to go."
   (cond ((zerop direction) (/= position (fround position)))
         ((only-touches-p direction left) t)
         ((= cell (round position)) (minusp direction))

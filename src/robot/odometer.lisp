@@ -202,8 +202,8 @@ TYPE-FALSE-POS* (reading 221)."
              (and (plusp (length types)) (roll-element types dice)))))))
 
 (defun canonical-directions (robot type)
-  "Return a list of the two canonical directions, in radians, that TYPE gives the cell in which
-ROBOT is. In a cell without a place, both directions are the robot's heading (reading 223)."
+  "Return a list of the two canonical directions, in radians, of the cell of ROBOT as a place of
+TYPE. In a cell without a place, both directions are the robot's heading (reading 223)."
   (let ((place (robot-place-here robot)))
     (if place
         (multiple-value-list

@@ -111,10 +111,10 @@ distances to the next border in both directions, LEFT-BEHIND and LEFT-AHEAD the 
 
 (defun walk-fan (visit corner stops flags width height x y angle fan count reach)
   "Trace COUNT rays from (X,Y), evenly spaced over FAN radians around ANGLE. Call VISIT, which is
-inline, with index and flags of each cell, after the first, that has some of the flags STOPS. A ray
-ends when VISIT returns true, at the edge of the map, or after REACH columns or rows. If REACH is
-the constant NIL, only VISIT ends rays. If a ray ends at a corner, call CORNER, inline too, with its
-direction and length."
+inline, for each cell after the first with some of the flags STOPS; its arguments are index and
+flags of the cell. A ray ends when VISIT returns true, at the edge of the map, or after REACH
+columns or rows. If REACH is the constant NIL, only VISIT ends rays. If a ray ends at a corner, call
+CORNER, inline too, with the direction and the length of the ray."
   (declare (type function visit corner) (type flag-vector flags) (type (unsigned-byte 8) stops)
            (type double-float x y angle fan) (type grid-size width height)
            (type (or null grid-size) reach))

@@ -28,8 +28,8 @@
     (toggle-seen flags index)))
 
 (defun occupied-cells (world x y angle width count reach)
-  "Return a list of the cells of WORLD with things on their floor that a fan of COUNT rays from
-(X,Y) meets, WIDTH radians wide around ANGLE, within REACH columns and rows (reading 130)."
+  "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around ANGLE. Return a list of the
+cells with things on the floor that rays meet within REACH columns and rows (reading 130)."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
@@ -57,8 +57,8 @@
     (nreverse found)))
 
 (defun place-cells (world number x y angle width count)
-  "Return a list of the cells of WORLD whose place type has NUMBER in the map and that a fan of
-COUNT rays from (X,Y) meets, WIDTH radians wide around ANGLE."
+  "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around ANGLE. Return a list of the
+cells that the rays meet and whose place type has NUMBER in the map."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
   (let ((flags (world-flags world)) (places (map-places (world-map world))) (found '()))
@@ -82,8 +82,8 @@ COUNT rays from (X,Y) meets, WIDTH radians wide around ANGLE."
   (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
 
 (defun cells-in-view (camera reach)
-  "Return a list of the cells where CAMERA may see things: the robot's own, then those that rays
-meet within REACH columns and rows."
+  "Return a list of the cells where CAMERA may see things: the robot's own cell, then the cells with
+things that rays meet within REACH columns and rows."
   (let* ((robot (camera-robot camera)) (own (robot-cell-index robot)))
     (when own
       (cons own (occupied-cells (robot-world robot) (robot-x robot) (robot-y robot)
@@ -149,8 +149,8 @@ meet within REACH columns and rows."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
 (defun matching-things (camera type demands dice)
-  "Return a list of pairs (thing . readings) for the things of TYPE that CAMERA has in view and does
-not miss by chance, and whose readings fit DEMANDS (reading 129)."
+  "CAMERA sees the things of TYPE in its view, but may miss each by chance. Return a list of pairs
+(thing . readings) for the things seen whose readings fit DEMANDS (reading 129)."
   (loop with missing = (sensing-error-probability miss-thing-prob*)
         for thing in (things-in-view camera type)
         for distance = (viewing-distance camera thing)

@@ -43,8 +43,8 @@
           (clamp y 0d0 (- (map-height map) 1d-6))))
 
 (defun walk-to-phantom (robot angle dice)
-  "Return the end of a random walk from ROBOT in the direction ANGLE: metre by metre, outside the
-robot's cell, ending with probability PROB-STOP* at each, or at the edge of the map (reading 136)."
+  "Return the end of a random walk from ROBOT in the direction ANGLE. After each metre outside the
+robot's cell the walk ends with probability PROB-STOP*, else at the edge of the map (reading 136)."
   (let ((map (world-map (robot-world robot)))
         (dx (cosine angle)) (dy (sine angle)))
     (loop for metres from 1d0 by 1d0

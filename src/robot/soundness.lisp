@@ -80,8 +80,8 @@
              "the heading of ~A does not fit its cosine and sine" robot))
 
 (defun check-robot (robot world)
-  "Signal an error, usually CONTRADICTION, unless ROBOT of WORLD, which was read from a file, is in
-a state that a run can reach."
+  "ROBOT and WORLD were read from a file. Signal an error, usually CONTRADICTION, unless ROBOT is a
+robot of WORLD in a state that a run can reach."
   (must-hold (and (robot-p robot)
                   (eq world (robot-world robot))
                   (robot-blueprint robot)

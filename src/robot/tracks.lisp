@@ -130,8 +130,8 @@ track is lost and no other camera tracks the designator, drop the designator."
 
 (defun valid-after-move-p (designator by-hand)
   "True if DESIGNATOR stays valid although its denotation has moved. A tracked designator stays
-valid if the camera can follow it; an untracked designator does if a hand grasped the thing or set
-it down (BY-HAND), and the thing was local and still is (reading 139)."
+valid if the camera can follow the thing. An untracked designator stays valid if a hand grasped the
+thing or set it down (BY-HAND), and the thing was and is local (reading 139)."
   (if (tracked-p designator)
       (eq (denotation-enclosure designator) (designator-location designator))
       (and by-hand
