@@ -149,8 +149,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
   (:report lambda-list form)           a form for the message of success, with the results as
                                        arguments; (operation-resource OPERATION) is the resource
   (:echo name...)                      the RESULTS that the continuation also gets after an
-                                       interruption: the parameters of the same names, or else
-                                       the operation's subject, once BODY has begun
+                                       interruption: the argument for a parameter of the same name;
+                                       else the operation's subject, if BODY has begun
   (:prompt name) (:prefix string)      the name at the prompt, by default DEFAULT-PROMPT-NAME, and
                                        the beginning of messages, by default the command's name
   (:occupies function)                 the name of a function of the resource that returns what the

@@ -181,7 +181,7 @@ pathname, is the YAML file that names the image: PGM or PNG (not interlaced), by
 a string ~/ is the home directory, and * ? [ and \\ stand for themselves. NAME is the map's name, by
 default the file's name as a symbol of the current package. OPTIONS:
   :pixels -- width of a cell in pixels, by default 1; or :cell -- its width in metres
-  :share -- share of occupied pixels from which a cell becomes a wall; by default 0: any pixel
+  :share -- least share of occupied pixels that makes a cell a wall; by default 0: one pixel does
   :substance -- the substance of the walls, by default bricks, or a list such as (bricks 20)
   :unknown -- what unknown cells become: :walls, the default, NIL for nothing, a substance, or a
 list such as (glass 5)

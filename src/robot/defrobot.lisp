@@ -120,7 +120,7 @@ INITARG. PARSE-CAMERA is such a function for cameras."
               "a list of lists after :parts, (kind initarg value ...)"))
   "The options of DEFROBOT for parts, in the order of ROBOT-PARTS. Each entry lists the option and:
 - a function that returns a form for a part; its arguments are the part as written, the value of the
-  option, and a function that returns a form for the value of a form and its context
+  option, and a function of a form and its clause; it returns a form that evaluates the given form
 - a function that returns a list (kind initarg value ...) for a part; its arguments are the value of
   the part's form, and a function that rejects a value
 - a format string that says what should follow the option")

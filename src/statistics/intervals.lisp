@@ -26,9 +26,9 @@ digits are lost near 0. The formula follows from the product of both bounds."
   "Return the bounds, low and high, of the score interval for the probability of success (Wilson
 1927; Newcombe 1998, \"Two-sided confidence intervals for the single proportion\", method 3). On
 average over all probabilities, the interval contains the true probability as often as CONFIDENCE
-says; near 0 and 1 it may contain it less often, unlike EXACT-INTERVAL. Without trials the bounds
-are 0 and 1; without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless
-TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
+says; near 0 and 1 perhaps less often, unlike EXACT-INTERVAL. Without trials the bounds are 0 and 1;
+without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless TRIALS is an
+integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
   (wilson-bounds successes trials
                  (normal-critical-value (check-unit-share wilson-interval confidence))))
@@ -74,13 +74,13 @@ bounds without trials, successes or failures, and for errors, see WILSON-INTERVA
 
 (addition paired-proportion-interval)
 (defun paired-proportion-interval (both first second neither &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the difference of two probabilities of
-success of two methods, the first minus the second, from trials that both methods have made. BOTH,
-FIRST, SECOND and NEITHER are the numbers of trials in which both methods, only the first, only the
-second and neither of them succeeded (Newcombe 1998, \"Improved confidence intervals for the
-difference between binomial proportions based on paired data\", method 10). If the difference is
-below 0, the second method is better. Without trials the bounds are -1 and 1. Signals WRONG-ARGUMENT
-unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is between 0 and 1."
+  "Return the bounds, low and high, of the interval for the difference of two methods' probabilities
+of success, the first minus the second. The methods have made the same trials. The required
+arguments count the trials in which BOTH methods succeeded, only the FIRST, only the SECOND, or
+NEITHER method (Newcombe 1998, \"Improved confidence intervals for the difference between binomial
+proportions based on paired data\", method 10). If the difference is below 0, the second method is
+better. Without trials the bounds are -1 and 1. Signals WRONG-ARGUMENT unless the counts and their
+sum are integers from 0 to 1e9, and CONFIDENCE is between 0 and 1."
   (check-count paired-proportion-interval both)
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
@@ -107,13 +107,13 @@ unless the counts and their sum are integers from 0 to 1e9, and CONFIDENCE is be
 
 (addition student-interval)
 (defun student-interval (numbers &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the mean of the distribution from which
-NUMBERS, a list or vector, are a sample (Student 1908). For a normal distribution, the interval
-contains the mean as often as CONFIDENCE says. For a skewed distribution it contains the mean less
-often: for an exponential distribution and .95, in 89 % of samples of 5 numbers, 93 % of samples of
-30, and 94 % of samples of 50. BOOTSTRAP-INTERVAL is no better for skewed distributions. If all
-numbers are equal, both bounds are that number; for fewer than two numbers, both bounds are NIL.
-Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  "Return the bounds, low and high, of the interval for the mean of a distribution (Student 1908).
+NUMBERS, a list or vector, are a sample of the distribution. For a normal distribution, the interval
+contains the mean as often as CONFIDENCE says. For a skewed distribution the interval contains the
+mean less often: for an exponential distribution and .95, in 89 % of samples of 5 numbers, 93 % of
+samples of 30, and 94 % of samples of 50. BOOTSTRAP-INTERVAL is no better for skewed distributions.
+If all numbers are equal, both bounds are that number; for fewer than two numbers, both bounds are
+NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let ((confidence (check-unit-share student-interval confidence)))
     (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
 
@@ -137,8 +137,8 @@ FIRSTS and SECONDS have different lengths."
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
 (defun median-bound-rank (size tail)
-  "Return the largest R for which, with a probability of at most TAIL, the median of the
-distribution is below the R-th smallest of SIZE numbers drawn from it; or 0 if there is no such R."
+  "Return the largest R such that the R-th smallest of SIZE numbers from a distribution exceeds the
+distribution's median with a probability of at most TAIL; 0 if there is no such R."
   (let ((low 0) (high size))
     (loop while (< (1+ low) high)
           do (let ((rank (floor (+ low high) 2)))
@@ -149,12 +149,12 @@ distribution is below the R-th smallest of SIZE numbers drawn from it; or 0 if t
 
 (addition median-interval)
 (defun median-interval (numbers &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the median of the distribution from which
-NUMBERS, a list or vector, are a sample; and its coverage, which is CONFIDENCE or more for any
-distribution. The bounds are two of NUMBERS, as far from the least and the greatest as CONFIDENCE
-allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values are NIL if there are too
-few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15,
-and CONFIDENCE between 0 and 1."
+  "Return the bounds, low and high, of the interval for the median of a distribution, and the
+interval's coverage, CONFIDENCE or more for any distribution. NUMBERS, a list or vector, are a
+sample of the distribution. The bounds are two of NUMBERS, as far from the least and the greatest as
+CONFIDENCE allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values are NIL if
+there are too few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS are from
+-1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let* ((confidence (check-unit-share median-interval confidence))
          (sample (sort-sample (sample 'median-interval 'numbers numbers)))
          (size (length sample))
@@ -241,12 +241,12 @@ and Tibshirani 1993, formula 14.10)."
 (addition bootstrap-interval)
 (defun bootstrap-interval (numbers &key (statistic :mean) (resamples 2000) (seed 0)
                                      (confidence .95d0))
-  "Return the bounds, low and high, of the interval for a STATISTIC of the distribution from which
-NUMBERS, a list or vector, are a sample, by the bias-corrected and accelerated bootstrap (Efron
-1987; Efron and Tibshirani 1993, chapter 14). STATISTIC is :MEAN, :MEDIAN or a function that returns
-a number for a vector of double-floats; the function may sort the vector but must not keep it. The
-function is called on RESAMPLES samples drawn from NUMBERS. SEED, an integer, seeds the draws, so
-the bounds are the same each time.
+  "Return the bounds, low and high, of the interval for a STATISTIC of a distribution, by the
+bias-corrected and accelerated bootstrap (Efron 1987; Efron and Tibshirani 1993, chapter 14).
+NUMBERS, a list or vector, are a sample of the distribution. STATISTIC is :MEAN, :MEDIAN or a
+function that returns a number for a vector of double-floats; the function may sort the vector but
+must not keep it. The function is called on RESAMPLES samples drawn from NUMBERS. SEED, an integer,
+seeds the draws, so the bounds are the same each time.
 
 - Few numbers: the interval is too narrow. With .95, the interval for the mean of a normal
   distribution contains the mean in 85 of 100 samples of 5 numbers, in 90 of 100 samples of 10, and

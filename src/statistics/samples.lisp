@@ -24,7 +24,7 @@ WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15.
   (double (if (typep share 'single-float) (rationalize share) share)))
 
 (defun inside-unit-interval-p (value)
-  "True if VALUE is a number between 0 and 1, at least 1e-12 from both."
+  "True if VALUE is a number between 0 and 1, at least 1e-12 from 0 and from 1."
   (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
 
 (defmacro check-unit-share (operator place)

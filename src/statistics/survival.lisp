@@ -26,8 +26,8 @@ EVENTS-NAME are their names as arguments of OPERATOR."
       (length dated)))
 
 (defun map-event-times (function dated)
-  "For each time at which an event occurs, call FUNCTION with the start and end index of the
-elements of DATED with that time."
+  "DATED is sorted by time. For each time of an event, call FUNCTION with the start and end index of
+the elements of DATED that have this time."
   (loop with start = 0
         while (< start (length dated))
         do (let ((end (next-time-start dated start)))
@@ -59,8 +59,8 @@ limit of ticks.
 
 LOW and HIGH are the bounds of the survival at the time of the step, by Greenwood's formula on the
 scale of log(-log) (Kalbfleisch and Prentice 2002, chapter 1). The formula gives no bounds for a
-survival of 0: then LOW is 0, and HIGH is that of the previous step, or 1. Signals WRONG-ARGUMENT
-unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is between 0 and 1."
+survival of 0: then LOW is 0, and HIGH is the previous HIGH, or 1. Signals WRONG-ARGUMENT unless
+TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is between 0 and 1."
   (check-survival-arguments 'survival-curve 'times times 'events events)
   (let* ((z (normal-critical-value (check-unit-share survival-curve confidence)))
          (dated (sorted-events times events)) (size (length dated))
@@ -79,9 +79,9 @@ unless TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is b
 (addition median-survival)
 (defun median-survival (curve)
   "Return the median survival time of CURVE, a result of SURVIVAL-CURVE, and its bounds, low and
-high. The median and its bounds are the first times at which the survival, its low bound and its
-high bound are a half or less (Brookmeyer and Crowley 1982). A value is NIL if there is no such
-time. Signals WRONG-ARGUMENT."
+high. The median is the first time at which the survival is a half or less. Low and high are the
+first times at which the low and the high bound of the survival are a half or less (Brookmeyer and
+Crowley 1982). A value is NIL if there is no such time. Signals WRONG-ARGUMENT."
   (check-argument median-survival curve
                   (and (proper-list-p curve)
                        (every (lambda (step)
@@ -95,8 +95,8 @@ time. Signals WRONG-ARGUMENT."
 ;;; Two groups.
 
 (defun expected-and-variance (at-risk first-at-risk done)
-  "Return the expected number of events in the first group, and its variance, if DONE events occur
-at a time at which AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group."
+  "At some time, AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group, and DONE events
+occur. Return the expected number of events in the first group, and the number's variance."
   (let ((share (/ first-at-risk at-risk)))
     (values (* done share)
             (if (= at-risk 1)

@@ -223,10 +223,10 @@ WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 
   "Return the evidence that SUCCESSES successes in TRIALS trials give against a probability of
 success of RATE. The evidence is the logarithm of a likelihood ratio: the average likelihood over
 all probabilities, weighted equally, divided by the likelihood of RATE. If the true probability is
-RATE, the evidence exceeds log(1/LEVEL) after any number of trials with a probability of at most
-LEVEL (Ville 1939; Robbins 1970, the mixture of binomials; Howard, Ramdas, McAuliffe and Sekhon
-2021). Without trials the evidence is 0; a value below 0 supports RATE. Signals WRONG-ARGUMENT
-unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
+RATE, the probability that the evidence ever exceeds log(1/LEVEL) is at most LEVEL (Ville 1939;
+Robbins 1970, the mixture of binomials; Howard, Ramdas, McAuliffe and Sekhon 2021). Without trials
+the evidence is 0; a value below 0 supports RATE. Signals WRONG-ARGUMENT unless TRIALS is an integer
+from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
   (check-trials rate-evidence successes trials)
   (log-evidence successes trials (check-unit-share rate-evidence rate)))
 
@@ -234,7 +234,7 @@ unless TRIALS is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE 
 (defun rate-verdict (successes trials rate &key (level .05d0))
   "Return :ABOVE or :BELOW if SUCCESSES successes in TRIALS trials show that the probability of
 success is above or below RATE; or NIL if they do not show either yet. You may call this function
-after each trial and stop when the value is not NIL: if the probability is RATE, this ever happens
+after each trial and stop when the value is not NIL: if the true probability is RATE, you ever stop
 with a probability of at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
   (check-trials rate-verdict successes trials)
   (let ((rate (check-unit-share rate-verdict rate)))

@@ -43,10 +43,10 @@
 
 (addition make-chart)
 (defun make-chart (map &key (clearance 3/4) (costs '((doorway 2))))
-  "Return a new chart of MAP, a map or the name of one, on which no cell is barred. A metre costs 1,
-or 4 if it is nearer to a wall than CLEARANCE, from 0 to 10 metres. In places of the types in COSTS,
-a list of (name cost), a metre costs the given cost, from 1 to 1000. Signals WRONG-ARGUMENT and
-UNKNOWN-NAME."
+  "Return a new chart of MAP, a map or the name of a map. No cell of the chart is barred. A metre
+costs 1, or 4 if it is nearer to a wall than CLEARANCE, from 0 to 10 metres. In places of the types
+in COSTS, a list of (name cost), a metre costs the given cost, from 1 to 1000. Signals
+WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument make-chart clearance (and (realp clearance) (<= 0 clearance 10))
                   "a number of metres, from 0 to 10")
   (check-argument make-chart costs (costs-p costs)
@@ -135,8 +135,8 @@ extra cost of a metre in the cell, or NIL if the cell cannot be crossed."
 
 (addition crossing-cost)
 (defun crossing-cost (chart point)
-  "Return the cost of a metre in the cell of CHART with POINT, a PT or a list (x y): 1 or more, or
-NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT."
+  "Return the cost of a metre in the cell of CHART that contains POINT, a PT or a list (x y). The
+cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT."
   (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
     (if (< cost +barred+) cost nil)))
 

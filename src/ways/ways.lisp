@@ -39,7 +39,7 @@ is no such cell within +FREE-POINT-DISTANCE+ columns and rows."
 (defun nearest-free-point (chart point)
   "Return POINT, as a PT, if its cell on CHART can be crossed. Otherwise return the middle of the
 nearest such cell, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
-map. CHART may be a map or the name of one. Signals WRONG-ARGUMENT."
+map. CHART may be a map or a map's name. Signals WRONG-ARGUMENT."
   (check-argument nearest-free-point point (point-p point) "a PT or a list (x y)")
   (multiple-value-bind (x y) (nearest-free-coordinates (ensure-chart 'nearest-free-point chart)
                                                        (point-x point) (point-y point))
@@ -89,9 +89,9 @@ its first point; () if there is no way. UNTIL and TURNS are arguments of TRACE-W
   "Return the way on CHART from START to GOAL: a list of the points, PTs, where it begins, turns and
 ends; () if there is no way. START and GOAL are PTs or lists (x y). A point in a wall stands for the
 nearest free point, up to five cells away. CHART may be a map or the name of a map, which stands for
-(make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the first cell, after
-that of START, that is a place of the type named UNTIL, or for whose column and row the function
-UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+(make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the first suitable cell
+after the cell of START: a place of the type named UNTIL, or a cell for whose column and row the
+function UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
   (let* ((chart (ensure-chart 'find-way chart))
@@ -111,7 +111,7 @@ the way first turns, or GOAL; NIL if there is no way. Signals WRONG-ARGUMENT. Se
 (addition way-cost)
 (defun way-cost (chart start goal)
   "Return the cost of the way from START to GOAL on CHART, between the middles of their cells: the
-sum of its metres, each times the cost of a metre in its cell. Return NIL if there is no way.
+sum of the way's metres, each times the CROSSING-COST at its place. Return NIL if there is no way.
 Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (ensure-chart 'way-cost chart)))
     (with-free-endpoints (way-cost chart start goal)
@@ -131,9 +131,9 @@ Signals WRONG-ARGUMENT. See FIND-WAY."
 
 (addition straight-cost)
 (defun straight-cost (chart start goal)
-  "Return the cost of the straight line from START to GOAL on CHART: the sum of its metres, each
-times the cost of a metre in its cell. Return NIL if the line is not free: it comes nearer than half
-a metre to a wall or enters a cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
+  "Return the cost of the straight line from START to GOAL on CHART: the sum of the line's metres,
+each times the CROSSING-COST there. Return NIL if the line is not free: it comes nearer than half a
+metre to a wall or enters a cell that cannot be crossed. Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (ensure-chart 'straight-cost chart)))
     (with-free-endpoints (straight-cost chart start goal)
       (let ((cost (free-line-cost (field-for-goal chart (node-at chart goal-x goal-y))

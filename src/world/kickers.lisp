@@ -227,8 +227,8 @@ in test and body. Return the attached kicker, if any."
                  (return t)))))))
 
 (defun kicker-maybe-used-p (entry world)
-  "True if the kicker of ENTRY may be in use: a function refers to it, its name is more than once in
-the file of WORLD's map, or the kicker is from another file."
+  "True if the kicker of ENTRY may be in use: a function refers to it, its name occurs more than
+once in the file of WORLD's map, or the kicker is from another file."
   (let ((name (entry-name entry)) (file (source-file (entry-source entry)))
         (map-entry (lookup-entry (map-name (world-map world)) *maps*)))
     (if file

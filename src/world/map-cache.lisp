@@ -119,7 +119,7 @@
                (= +cache-magic+ (aref words 0)))))))
 
 (defun foreign-cache-p (path)
-  "True if the file PATH exists and is, or may be, no map cache, not even a damaged one."
+  "True if the file PATH exists but is not known to be a map cache, whole or damaged."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (regular-file-p path) (begins-as-cache-p path))))))
 

@@ -22,8 +22,8 @@ the form for the option"))
 (defun map-title (map) (title "defmap" (map-name map)))
 
 (defun clause-value (option map clause &optional (kind (find-clause-kind (first clause))))
-  "Return the value, for CLAUSE of MAP, of the form that KIND, the kind of CLAUSE, has for OPTION;
-NIL if KIND has no such form."
+  "KIND, the kind of CLAUSE, may have a form for OPTION. Return the value of the form for CLAUSE of
+MAP; NIL if there is no such form."
   (funcall (clause-kind-function kind) option map clause))
 
 (defun kind-of-clause (map clause)
@@ -134,7 +134,7 @@ and, with a warning in a compiled file, for an invalid clause."
 and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause, and
 is quoted in error messages. Options are forms:
   :clauses form -- the list of clauses, such as walls and things, that the clause expands to
-  :check form -- true if the arguments are valid; by default all are valid that fit the lambda list
+  :check form -- true if the arguments are valid; by default the lambda list alone decides
 Existing maps do not change. Return the name. Signals MALFORMED-DEFINITION."
   `(eval-when (:compile-toplevel :load-toplevel :execute)
      ,(expand-definition

@@ -297,9 +297,9 @@ thread may not change the world."
 (public kick-thing)
 (defun kick-thing (thing dx dy kick-if-wall)
   "Move THING by DX, DY metres (manual 5.3.1). If the end is in a wall and KICK-IF-WALL is true,
-move THING to the empty cell beside the wall that is nearest to its old position; if KICK-IF-WALL is
-false, do not move THING. Return true if THING was put into a cell, perhaps its own. Return NIL if
-THING is inside something closed, or is destroyed (reading 172)."
+move THING to one of the eight cells around the end: the empty cell nearest to its old position. If
+KICK-IF-WALL is false, do not move THING. Return true if THING was put into a cell, perhaps its own.
+Return NIL if THING is inside something closed, or is destroyed (reading 172)."
   (let ((moved (if (and (typep dx 'common-number) (typep dy 'common-number))
                    (let ((kick (make-kick (double dx) (double dy))))
                      (declare (dynamic-extent kick))

@@ -17,8 +17,8 @@
             do (return-from undeclared-name-like other))))
 
 (defun similar-name (key world)
-  "Return the name of a declared attribute, or of an attribute of a thing of WORLD, that the
-undeclared KEY is probably a misspelling of; or NIL."
+  "The undeclared KEY may be a misspelling. Return the similar name of a declared attribute, or of
+an attribute of a thing of WORLD; or NIL."
   (ensure-gethash key *likenesses* (or (declared-name-like key) (undeclared-name-like key world))))
 
 (defun warn-of-misspelling (operator thing key &key read)
@@ -205,8 +205,8 @@ thing's clause in a map, or NIL."
 ;;; A redefined attribute may no longer accept the values that things have.
 
 (defun unfit-recipe (recipes key)
-  "Return the first recipe in RECIPES and their contents with an invalid value of the attribute KEY,
-and a text that says what is wrong."
+  "Search RECIPES and their contents. Return the first recipe with an invalid value of the attribute
+KEY, and a text that says what is wrong."
   (find-recipe (lambda (recipe)
                  (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
                    (handler-case (progn (check-attribute-value 'defattribute key value) nil)

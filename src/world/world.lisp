@@ -142,9 +142,9 @@ in order of arrival. Return NIL if the point is outside the map. Signals WRONG-A
 
 (defgeneric change-world (timeline world function operator arguments)
   (:documentation
-   "Change WORLD, whose timeline is TIMELINE, by calling FUNCTION without arguments in the thread
-and at the time in which changes are allowed. Return the values of FUNCTION. The journal records the
-change as OPERATOR, a symbol, with the list ARGUMENTS.")
+   "Change WORLD by calling FUNCTION without arguments, in the thread and at the time in which
+TIMELINE, the world's timeline, allows changes. Return the values of FUNCTION. The journal records
+the change as OPERATOR, a symbol, with the list ARGUMENTS.")
   (:method ((timeline null) world function operator arguments)
     (declare (ignore world operator arguments))
     (funcall function)))
