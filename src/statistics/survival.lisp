@@ -95,8 +95,8 @@ Crowley 1982). A value is NIL if there is no such time. Signals WRONG-ARGUMENT."
 ;;; Two groups.
 
 (defun expected-and-variance (at-risk first-at-risk done)
-  "At some time, AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group, and DONE events
-occur. Return the expected number of events in the first group, and the number's variance."
+  "At some time, AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group, and DONE
+events occur. Return the expected number of events in the first group, and the number's variance."
   (let ((share (/ first-at-risk at-risk)))
     (values (* done share)
             (if (= at-risk 1)
