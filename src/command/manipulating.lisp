@@ -74,9 +74,9 @@ designated things now, or NIL."
   (unless (typep code '(or null keyword))
     (let ((name (command-prefix (operation-command operation))) (text (unqualified-text code)))
       (warn-once (list :code name) (operation-world operation)
-                 (format nil "manipulation ~A: its body returned ~(~A~) as its first value, which ~
-                              is the error code, a keyword, or NIL for success. To return a ~
-                              result, write (values nil result)."
+                 (format nil "manipulation ~A: its body returned ~(~A~) as its first value, but ~
+                              the first value is an error code (a keyword), or NIL for success. ~
+                              To return a result, write (values nil result)."
                          name (cut text 60))))))
 
 (defun run-method-body (operation method)

@@ -168,7 +168,7 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
 
 (defun terrain-for-map (map clearance costs)
   "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
-cost), in which the cost is a double-float. Equal arguments return the same terrain while kept."
+cost), with double-float costs. Equal arguments return the same terrain while it is kept."
   (or (known-terrain map clearance costs)
       (with-lock (**terrains-lock**)
         (or (known-terrain map clearance costs)

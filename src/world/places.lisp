@@ -251,8 +251,8 @@ and true if no type was left out (reading 70)."
 (defun warn-of-walled-rule (definition rule)
   (let ((dx (rule-dx rule)) (dy (rule-dy rule)))
     (warn-of-definition "~A: the match form ~A can never fit a place, because ~A is a wall, and ~
-                         only free cells are places; write - there, or give the offset of a free ~
-                         cell beside it that is the place: (match-form direction dx dy)"
+                         only free cells are places; write - there, or let a free cell beside it ~
+                         be the place, and give its offset: (match-form direction dx dy)"
                         definition (match-form-text (rule-form rule))
                         (if (= 0 dx dy)
                             "its middle"
