@@ -77,9 +77,9 @@ DEADLINE-MISSED or :CANNOT-GET-THERE."
 (defexperiment choosing-by-rollouts
   "How much does it help to try ways in rollouts before driving? And how good are the forecasts?
 
-A robot that always takes the short way, always the long way, or either at random is in time at both
-places in about half of all trials, because it does not know what blocks a way. Five rollouts for
-each way at each choice show what blocks a way. The measures:
+A robot that takes always the short way, always the long way, or either at random does not know what
+blocks a way. It is in time at both places in about half of all trials. Five rollouts for each way
+at each choice show what blocks a way. The measures:
 - FORECAST: the forecast probability of success. For :BEST the forecast is the share of successful
   rollouts of the way chosen last, otherwise the share of 20 rollouts at the start.
 - MISS: the squared difference between FORECAST and the outcome (1 or 0). Its mean is the Brier

@@ -65,8 +65,8 @@ leads from DOOR to the side where the robot is."
         (and (< .6 along (+ length 1)) (< across (max .4 (* .5 along))))))))
 
 (defun straight-way-as-good-p (chart start point door goal)
-  "True if the straight way from START to POINT on CHART costs no more than the way from START
-towards GOAL as far as the cell DOOR."
+  "True if the straight way from START to POINT costs no more than the way to the cell DOOR. On
+CHART the way from START to GOAL leads through DOOR."
   (let ((cost (straight-cost chart start point)))
     (and cost
          (<= cost (- (way-cost chart start goal) (way-cost chart (middle-of door) goal))))))

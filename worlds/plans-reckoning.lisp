@@ -94,8 +94,8 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
 ;;; Obstacles. The chart has the cells that are barred now, the reckoning has the tick until when.
 
 (defun bar-on-chart (me)
-  "Bar exactly those cells on the chart of the reckoning ME that ME has noted as barred, at a cost
-of at most 90 for each cell. Remove the shown way, because it may no longer be the best."
+  "On the chart of the reckoning ME, bar the cells that ME has noted as barred, and no others, at a
+cost of at most 90 for each cell. Remove the shown way, because it may no longer be the best."
   (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
@@ -151,8 +151,8 @@ of at most 90 for each cell. Remove the shown way, because it may no longer be t
 ;;; Corrections.
 
 (defun wall-crossed (map from to)
-  "Return the axis (0 for x, 1 for y) and the coordinate of the face of a wall between the points
-FROM and TO, which are close together; NIL if there is none."
+  "FROM and TO are points close together. If the face of a wall is between them, return two values:
+the face's axis (0 for x, 1 for y) and its coordinate. Else return NIL."
   (when (and (apply #'free-of-walls-p map from) (not (apply #'free-of-walls-p map to)))
     (loop for axis in '(0 1)
           for a = (floor (nth axis from)) and b = (floor (nth axis to))

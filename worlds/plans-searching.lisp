@@ -152,5 +152,5 @@ this round. A round visits all PLACES; there are ROUNDS rounds."
 (def-interp-proc search-watchfully (description places
                                     &key (rounds 10) start (camera (widest-camera)))
   "Search as SEARCH-NEAREST does, but also look with CAMERA while driving, and drive to what it sees
-at once. Another camera guides the robot through doorways; fails with :ONLY-ONE-CAMERA without one."
+at once. Another camera guides the robot through doorways. Without it, fails with :ONLY-ONE-CAMERA."
   (search-places description places #'nearest-place 'look-on-the-way rounds start camera))

@@ -13,7 +13,7 @@
 ;; See reading 60.
 (defvar table* (new-thing table nil
                  ((:obsmove #t) (:size 30) (:weight 20) (:color lightgreen) (:substance wood)))
-  "A table. Things in its cell lie on it.")
+  "A table. Things in the table's cell lie on the table.")
 
 (defvar desk* (new-thing desk nil
                 ((:obsmove #t) (:size 36) (:capacity 24) (:weight 30)

@@ -63,8 +63,8 @@ with equal values make the contrast's WHERE; the other factors make the names of
           collect (overall-contrast level base group names results)))
 
 (defun sides-text (contrasts kind)
-  "Return a text that names the two sides of CONTRASTS if one side is the same in all of them; else
-NIL. KIND is the noun for the side that differs."
+  "Return a text that names both sides, if all CONTRASTS have the same first or the same second
+side; else NIL. KIND is the noun for the side that differs."
   (flet ((names (reader) (remove-duplicates (mapcar reader contrasts) :test #'string= :from-end t)))
     (let ((firsts (names #'contrast-first)) (seconds (names #'contrast-second)))
       (cond ((and (null (rest firsts)) (null (rest seconds)))
@@ -115,10 +115,10 @@ measures that are numbers or booleans; or only MEASURE, a name or list of names.
 both conditions have count. A trial that ended in an error or at its limit did not succeed.
 
 Give a condition by its number, from 1, by its name, or by an unambiguous part of its name, such as
-one value of a factor. :ALL as SECOND compares FIRST with each other condition. If FIRST and SECOND
-are values of one factor that several conditions have, each condition with FIRST is compared with
-the otherwise equal condition with SECOND, and all together, as by COMPARE-LEVELS. Signals
-UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
+one value of a factor. :ALL as SECOND compares FIRST with each other condition. FIRST and SECOND may
+be values of one factor. If several conditions have these values, each condition with FIRST is
+compared with the otherwise equal condition with SECOND, and all together, as by COMPARE-LEVELS.
+Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-conditions stream)
@@ -132,8 +132,8 @@ UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can b
 name of a factor of RESULTS, or CASE for named conditions. AGAINST is by default the first value in
 the table. If several pairs of conditions have the same two values, compare these values also over
 all pairs; each seed then counts once, by its mean over the conditions. MEASURE, STREAM, the
-returned value and the errors are those of COMPARE-CONDITIONS. p is corrected for all tests
-together; tests over all pairs are corrected separately."
+returned value and the errors are as for COMPARE-CONDITIONS. p is corrected for all tests of single
+pairs together, and separately for all tests over several pairs."
   (check-argument compare-levels results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-levels stream)
@@ -196,8 +196,8 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                          either table." count)))))
 
 (defun changes-between (pairs after before)
-  "Return sentences on the code and data that affect the trials of PAIRS in only one of two tables,
-read from experiment.txt in the directories AFTER and BEFORE, which may be NIL."
+  "Return sentences: which code and data of the conditions in PAIRS differ between two tables. The
+files experiment.txt in the directories AFTER and BEFORE list it; either may be NIL."
   (let* ((changed (remove-if (lambda (pair)
                                (apply #'string= (mapcar #'sample-fingerprint pair)))
                              pairs))

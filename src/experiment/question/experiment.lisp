@@ -54,8 +54,8 @@ variables hold weakly: the keys of a table" :writable))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
 (defun parameter-values-with (settings clean)
-  "Return a vector with a value for each parameter: the last one in SETTINGS, lists (name value);
-else the value without noise if CLEAN is true; else the manual's value."
+  "Return a vector of the values of all parameters: the last value in SETTINGS, lists (name value).
+Other parameters have the value without noise if CLEAN is true, else the manual's value."
   (cl:map 'simple-vector
           (lambda (parameter)
             (let ((setting (find (parameter-symbol parameter) settings

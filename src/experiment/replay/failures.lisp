@@ -63,12 +63,12 @@ name; all samples if CONDITION is NIL. Signals UNKNOWN-NAME."
 
 (addition trial-failures)
 (defun trial-failures (results &optional condition)
-  "Return a list of what went wrong in RESULTS: results, an experiment that was run in this Lisp, or
-the name of a directory. CONDITION, a string or symbol, limits the list to conditions with CONDITION
-in their names. The value is a list of plists :condition :outcome :reason :error :count :share (of
-the condition's trials) :trials (their numbers), ordered by condition, then by count. Errors that
-did not end their trials count, too. REPLAY-TRIAL runs a trial again. Signals MISUSE, UNKNOWN-NAME,
-WRONG-ARGUMENT, DAMAGED-TABLE."
+  "Return a list of what went wrong in RESULTS. RESULTS are results, an experiment that was run in
+this Lisp, or the name of a directory. CONDITION, a string or symbol, limits the list to conditions
+with CONDITION in their names. The value is a list of plists :condition :outcome :reason :error
+:count :share (of the condition's trials) :trials (their numbers), ordered by condition, then by
+count. Errors that did not end their trials count, too. REPLAY-TRIAL runs a trial again. Signals
+MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
   (check-argument trial-failures condition (typep condition '(or string symbol))
                   "a string or symbol, or NIL")
   (loop for sample in (samples-matching (designated-results results) condition)
@@ -149,8 +149,8 @@ Signals MISUSE if lines are missing."
 
 (addition trial-series)
 (defun trial-series (results condition trial)
-  "Return the values that :each-tick recorded in TRIAL, a number, of CONDITION in RESULTS: a list of
-lists (tick value...), the values in the order of the clause. Values are numbers, T, NIL, strings,
+  "Return what :each-tick recorded in trial number TRIAL of CONDITION in RESULTS: a list of lists
+(tick value...), with the values in the order of the clause. Values are numbers, T, NIL, strings,
 and :NONE for no value. Return () if the trial timed out. RESULTS are results kept in a directory,
 an experiment that was run with a directory, or the directory's name. CONDITION is the number of a
 condition, from 1, its name, or a part of its name. Each call reads all of series.csv. Signals

@@ -223,10 +223,10 @@ each condition, in the table's order.
             Student's interval, without the other values; else texts, with their counts. :NONE, and
             measures that an error prevented, do not count
 
-Intervals have a confidence of 95 %. If trials were added until the intervals were narrow, the
-confidence is that of the look at which the condition stopped: then the intervals of a condition at
-all its looks together are wrong in at most 5 of 100 runs. This bound holds for each condition by
-itself, not for all intervals of a table together."
+Intervals have a confidence of 95 %. If trials were added until the intervals were narrow, each
+interval has the confidence of its condition's last look. Then, for each condition, at most 5 of 100
+runs have a wrong interval at any look. This bound holds for each condition by itself, not for all
+intervals of a table together."
   (check-argument summarize-results results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (let* ((samples (results-samples results))

@@ -53,7 +53,7 @@ OTHERS, and its text in TEXTS."
 
 (defun check-rows-repeatable (experiment rows seconds)
   "Signal MISUSE if a trial of ROWS, of different conditions of EXPERIMENT, gives another row now.
-Check at least one, and more until SECONDS have passed."
+Check at least one trial, and more trials until SECONDS have passed."
   (loop with begun = (real-microseconds)
         for texts in rows
         do (check-repeatable experiment texts)
@@ -113,7 +113,7 @@ variable or a function; else NIL."
 
 (defun check-finished-run (store parts seconds)
   "Signal MISUSE if the experiment of STORE no longer has the fingerprint PARTS, or a trial gives
-another row now. The run took SECONDS; this check takes a twentieth of that, or one trial."
+another row now. The run took SECONDS. The check lasts a twentieth of SECONDS, or one trial."
   (let ((experiment (store-experiment store)))
     (check-code-unchanged experiment parts (store-path store))
     (call-noting-refusal

@@ -125,8 +125,8 @@ much longer than other trials took; else NIL."
 (defvar *progress* nil "The progress of the experiment that runs in this thread, or NIL.")
 
 (defun trial-under-way ()
-  "Return a text on the trial that has run longest in the experiment that runs in this thread, if
-the trial has run for a long time; else NIL."
+  "Return a text on the trial that has run longest in this thread's experiment, if the trial has run
+for a long time; else NIL."
   (and *progress* (longest-under-way *progress*)))
 
 (defun report-progress (progress &optional last)

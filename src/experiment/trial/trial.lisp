@@ -144,7 +144,7 @@ not from RUN-PLAN, and a plan can never continue, the trial fails with the reaso
 
 (defun note-unfinished (result values)
   "Add an error to RESULT for a plan that can never continue or has not ended, unless RESULT is a
-success. Otherwise add an error for commands without a tick, if any. VALUES are the values of :run."
+success. Otherwise add an error if no tick followed commands. VALUES are the values of :run."
   (let ((text (or (and (not (success-p (result-outcome result)))
                        (or (stranded-plan-text) (unfinished-text values)))
                   (no-ticks-text))))
