@@ -190,10 +190,10 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                      sum (loop for (i . j) in (common-trials sample other)
                                count (not (same-row-p sample i other j))))))
     (unless (zerop count)
-      (list (format nil "WARNING: nevertheless the rows of ~D trial~:P differ. Something that no ~
-                         fingerprint covers affects these trials, such as data that trials ~
-                         share, a clock or a file, or rows have been changed. Do not rely on ~
-                         either table." count)))))
+      (list (format nil "WARNING: nevertheless the rows of ~D trial~:P differ. Either rows have ~
+                         been changed, or something outside of the fingerprints affects these ~
+                         trials, such as shared data, a clock or a file. Do not rely on either ~
+                         table." count)))))
 
 (defun changes-between (pairs after before)
   "Return sentences: which code and data of the conditions in PAIRS differ between two tables. The
@@ -291,11 +291,11 @@ the names of conditions that only FIRST or only SECOND has."
 are directories or results. Trials of equal condition and seed are compared, per condition and over
 all conditions, where each seed counts once. Differences are AFTER minus BEFORE.
 
-The comparison tells: which conditions got better or worse; how many trials are identical: rows with
-  equal digest, outcome and measures; what has changed, by the texts beside the tables, with a
-  warning if it is the experiment itself. MEASURE, STREAM, the returned value and the errors are
-  those of COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE, too, as READ-RESULTS does, and
-  MISUSE if the tables are of different experiments."
+The comparison tells which conditions got better or worse, and how many trials are identical: have
+rows with equal digest, outcome and measures. It also tells what has changed, by the texts beside
+the tables, and warns if the experiment itself has changed. MEASURE, STREAM, the returned value and
+the errors are as for COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE, too, as READ-RESULTS
+does, and MISUSE if the tables are of different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)

@@ -311,10 +311,10 @@ difference alone."
   for versions, what has changed between the two;
   the verdicts (see COMPARISON-VERDICTS), a line each;
   what was left out, if anything;
-  a table, with a line for each pair of conditions that says how many trials succeeded in both, one
-    and neither, and below that line a row for each measure: the number of seeds, both rates or
-    means, the difference (of rates in points) with its 95 % interval, and p before and after
-    Holm's correction for all tests."
+  a table. A line for each pair of conditions says for how many seeds both sides, one side, and
+    neither side succeeded. Below the line is a row for each measure: the number of seeds,
+    both rates or means, the difference (of rates in points) with its 95 % interval, and p before
+    and after Holm's correction for all tests."
   (check-argument print-comparison comparison (comparison-p comparison) "a comparison")
   (write-wrapped (format nil "The experiment ~A, seed by seed~@[: ~A~]."
                          (comparison-experiment comparison) (comparison-sides comparison))

@@ -81,8 +81,8 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
                              parameter, :ROBOTS (values are names or lists of names, quoted),
-                             :THINKING (values are thinking modes), or a variable of the other
-                             forms; a special variable is bound. (what :in form) takes the values
+                             :THINKING (values are thinking modes), or a variable in the other
+                             clauses; a special variable is bound. (what :in form) takes values
                              from a list. Values are numbers, symbols, strings, or lists of these.
                              (:sobol n (what low high)...) samples N points from ranges instead of
                              all combinations; so do :latin-hypercube and :random. N may be followed
@@ -93,14 +93,14 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
   (:limit n)                 the most ticks of a trial, 100000 by default
   (:time-limit n)            the most seconds of real time of a trial, none by default;
                              RUN-EXPERIMENT overrides it
-  (:parameters (p form)...)  parameters whose values are not the manual's; your own settings do
-                             not count
+  (:parameters (p form)...)  the values of parameters. All others have the manual's values; your
+                             own settings do not count
   (:clean)                   no noise, except where :parameters and :vary set it. (With noise in
                              perception set NO-SENSOR-ERROR* to NIL.)
   (:thinking mode)           the cost of thinking, see SET-THINKING; :FREE by default
   (:until form)              after :run, ticks pass until FORM is true; for continuations
   (:success form)            whether the trial succeeded, evaluated at its end; see TRIAL-VALUES.
-                             If only :run reports success, the trial fails: only-believed
+                             If :run succeeds but FORM is false, the trial fails: only-believed
   (:measure (name form)...)  values at the end of the trial: numbers, T or NIL, symbols, strings,
                              or :NONE for no value
   (:each-tick (name form)...)  values before the first tick and after each tick, once plans have

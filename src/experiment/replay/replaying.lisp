@@ -245,8 +245,8 @@ still exists, for example to call SAVE-PICTURE.
 
   :until TICK   stops the trial at TICK, in the middle of what it does
   :rate R       lets R ticks a second pass, or all at once (:FREE), and opens a display, if any
-  :step T       asks before each tick whether it may pass; a function is called instead, with the
-                simulation, and stops the trial if it returns :STOP
+  :step T       asks before each tick whether it may pass. If the value is a function, it is called
+                instead, with the simulation; if it returns :STOP the trial stops
   :trace T      keeps a trace of plans, for WHY and SAVE-PLAN-TIMELINE
   :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; the name of a file also saves it
   :directory D  compares the result with its row in D

@@ -94,7 +94,7 @@ of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addi
 estimate and the two bounds of its interval at CONFIDENCE. Any of these may be NIL. OPTIONS are
   :heading text   what headings of tables add to the name of the measure;
   :interval text  the name of the intervals of KIND in pictures;
-  :beside other   each estimate of the kind OTHER has an estimate of KIND in a column beside it.
+  :beside other   beside each estimate of the kind OTHER, tables have a column with one of KIND.
 Return KIND."
   `(progn
      (setf *statistics*
@@ -219,8 +219,8 @@ each condition, in the table's order.
 
   success   the rate of all trials, with Wilson's interval; a trial with an error did not succeed
   ticks     the median of the trials that succeeded, with its interval by ranks
-  measures  a rate, if all values are true or false; else the mean of the numbers, if any, with
-            Student's interval, without the other values; else texts, with their counts. :NONE, and
+  measures  a rate, if all values are true or false; else the mean of those values that are
+            numbers, with Student's interval; without numbers, each text with its count. :NONE, and
             measures that an error prevented, do not count
 
 Intervals have a confidence of 95 %. If trials were added until the intervals were narrow, each

@@ -213,8 +213,8 @@ was loaded. WRITTEN is the date at loading, or NIL."
           ((and now (or (null written) (= now written)))
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
-          (now (reject-use "~A has been changed since it was loaded. Load it again, so that what ~
-                            runs is the code in it."
+          (now (reject-use "~A has been changed since it was loaded. Load the file again, so that ~
+                            its present code runs."
                            file))
           (t 0))))
 
