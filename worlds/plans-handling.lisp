@@ -67,8 +67,8 @@ if the bin has no room for what HAND holds."
 ;;; Grasping.
 
 (def-interp-proc look-closely (camera description)
-  "Return a designator of something local to CAMERA that fits DESCRIPTION: next to the robot, or in
-the bin that CAMERA is in. Return NIL if 15 looks find none."
+  "Return a designator of something that fits DESCRIPTION and is local to CAMERA: next to the robot,
+or in the same bin as CAMERA. Return NIL if 15 looks find none."
   (let ((found nil))
     (n-times 15 UNTIL found
       (setf found (first (look-for-things camera :local description))))
@@ -115,8 +115,8 @@ GRASP-THING and STOW-THING do; after :BIN-FULL and :LOST-GRIP, HAND is empty."
 ;;; Beginning. An earlier errand that was interrupted may have left a hand or a bin in any state.
 
 (def-interp-proc free-hand (hand bin)
-  "Take HAND out of the container it is in, if any, and stow the thing that it holds in BIN. Drop
-the thing on the floor if BIN is NIL or has no room. The state of HAND is taken from its fluents."
+  "If HAND is in a container, take HAND out. If HAND holds a thing, stow the thing in BIN, or drop
+it on the floor if BIN is NIL or has no room. The state of HAND is taken from its fluents."
   (if (vref hand-inside* hand)
       (draw-back hand))
   (if (vref hand-grasping* hand)

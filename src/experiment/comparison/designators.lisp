@@ -182,9 +182,9 @@ BASE is NIL if SECOND is :ALL."
           append (pairs-differing-in-factor results place level other))))
 
 (defun pairs-of-levels (results first second)
-  "Return two values: pairs of samples that have the levels FIRST and SECOND of one factor and are
-equal in all other factors, and the index of the factor. Return NIL if FIRST and SECOND are no
-levels. Signals MISUSE if several factors have these levels."
+  "Return two values: pairs of samples that differ only in one factor, with the levels FIRST and
+SECOND; and the index of this factor. Return NIL if FIRST and SECOND are no levels. Signals MISUSE
+if several factors have these levels."
   (let ((level-pairs (candidate-level-pairs results first second)))
     (when (rest level-pairs)
       (reject-ambiguous (if (eq :all second)
@@ -236,8 +236,8 @@ conditions. Signals MISUSE if FIRST and SECOND could be levels as well as number
           (t (values (designator-text first) (designator-text second))))))
 
 (defun designated-pairs (results first second)
-  "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND, which
-may be :ALL; and the index of the factor, if the designators are levels of several conditions."
+  "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND; and the
+index of the factor, if FIRST and SECOND are levels of several conditions. SECOND may be :ALL."
   (multiple-value-bind (first second) (resolve-condition-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))

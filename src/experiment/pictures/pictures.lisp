@@ -110,7 +110,7 @@ or the directory cannot be made."
 (define-with-keywords save-ways-picture
     (experiment condition file &rest options &key (trials 50) part title layers in-color scale)
   "Save in FILE a map of the world of CONDITION of EXPERIMENT with the paths of the robots in
-TRIALS: a number of first trials, or a list of trial numbers. An existing FILE is replaced. Colours
+TRIALS: N for the first N trials, or a list of trial numbers. An existing FILE is replaced. Colours
 show the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION
 is as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map, by default
 all. TITLE replaces the experiment's question. FILE and the other arguments are those of

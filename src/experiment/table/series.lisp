@@ -191,9 +191,9 @@ Signals DAMAGED-TABLE."
 
 (defun reject-other-block (block whole)
   (reject-table (block-file block) (block-number block)
-                "the lines of a trial begin here. They differ from the same trial's lines from line ~
-                 ~D of ~A on. Something outside of the experiment affects its trials; no table can ~
-                 have both."
+                "the lines of a trial begin here. They differ from the same trial's lines from ~
+                 line ~D of ~A on. Something outside of the experiment affects its trials; no ~
+                 table can have both."
                 (block-number whole) (native-name (block-file whole))))
 
 (defun check-same-lines (block whole line-of)
