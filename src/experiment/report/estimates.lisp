@@ -94,7 +94,7 @@ of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addi
 estimate and the two bounds of its interval at CONFIDENCE. Any of these may be NIL. OPTIONS are
   :heading text   what headings of tables add to the name of the measure;
   :interval text  the name of the intervals of KIND in pictures;
-  :beside other   beside each estimate of the kind OTHER, tables have a column with one of KIND.
+  :beside other   beside each column of the kind OTHER, tables have a column of the kind KIND.
 Return KIND."
   `(progn
      (setf *statistics*
