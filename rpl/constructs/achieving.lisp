@@ -145,6 +145,6 @@ UNKNOWN-GOAL if no BELIEF matches. (From XFRM, except for the syntax.)"
 (addition goals-under-way)
 (defun goals-under-way (&optional (task (current-task)))
   "Return a list of the goals, such as (achieve (on a b)), of TASK (default: the calling task),
-innermost first. Each goal serves the next one. The goals of the tasks around TASK come last."
+innermost first. Each goal serves the goal after it. The goals of the tasks around TASK come last."
   (mapcar #'goal-run-form
           (remove-if-not #'goal-run-p (mapcar #'frame-data (and task (frames-around task))))))

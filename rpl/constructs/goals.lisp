@@ -158,9 +158,9 @@ PERCEIVE or BELIEF. BODY is plan text, perhaps after a documentation string. In 
 and b have the values that ?a and ?b match. A variable that occurs twice must match the same value
 twice. A pattern may end in a dot and ?x. The value of the goal is the value of BODY, or the value
 given to SUCCEED-WITH. If several patterns match a goal, the most specific one is used, and among
-equals the one defined first. (CRAM uses the first that matches.) A pattern that differs from an
-older one only in the names of its variables replaces it. Signals MALFORMED-DEFINITION. (From CRAM,
-with variables as in DEF-INTERP-MACRO.)"
+equals the one defined first. (CRAM uses the first pattern that matches.) A new pattern replaces an
+older one if only the names of the variables differ. Signals MALFORMED-DEFINITION. (From CRAM, with
+variables as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()

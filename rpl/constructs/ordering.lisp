@@ -189,10 +189,10 @@ it is a fluent. WATCHER waits for EARLIER."
 
 (define-construct partial-order (steps &body constraints)
   "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. With the constraint (:order a
-b), the task b does not start before a is over, in whatever way a ends.
-  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER. Both a and b may
-also be forms whose values are tasks. a may also be a fluent: b starts when the fluent is true or
-has been pulsed since.
+b), the task b starts only after the task a has ended, in whatever way.
+  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER, or forms whose
+values are tasks. a may also be a fluent. Then b starts when this fluent is true, or has been pulsed
+since PARTIAL-ORDER began.
 The constraints hold until PARTIAL-ORDER ends. A task that has started already cannot be b. Cycles
 of the tags in STEPS are errors when the plan is defined; other cycles are reported as a deadlock.
 Return the first value of the last step (from CRAM, except for the value)."

@@ -11,12 +11,12 @@
 
 (addition define-task-variable)
 (define-user-macro define-task-variable (name value &optional documentation)
-  "Define NAME as a variable with a separate value for each task. A value that a task sets is
-visible in that task and in the tasks that it starts, and nowhere else. In other tasks the value is
-VALUE, or the value set outside of plans. WITH-TASK-VARIABLES binds the variable. (Special variables
-belong to the whole thread, and LET cannot bind them around forms that wait.) Functions that plans
-call see the variable too, if they are compiled after its definition. Evaluating the definition
-again sets the value, as DEFPARAMETER does. (From CRAM, except for setting the variable in a task.)"
+  "Define NAME as a variable with a separate value for each task. If a task sets the variable, only
+this task and the tasks it starts see the new value. In other tasks the value is VALUE, or the value
+set outside of plans. WITH-TASK-VARIABLES binds the variable. (A special variable belongs to the
+whole thread, and LET cannot bind it around forms that wait.) Functions that plans call see the
+variable too, if they are compiled after its definition. Evaluating the definition again sets the
+value, as DEFPARAMETER does. (From CRAM, except for setting the variable in a task.)"
   (check-task-variable name)
   (unless (typep documentation '(or null string))
     (reject-clause (title "define-task-variable" name) documentation

@@ -71,7 +71,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 
 (addition valve-owner)
 (defun valve-owner (valve)
-  "Return the task that owns VALVE, or the part of that task that owns VALVE as well; or NIL."
+  "Return the task that owns VALVE, or its part that took VALVE last. Return NIL if VALVE is free."
   (check-argument valve-owner valve (valve-p valve) "a valve, as make-valve returns")
   (let ((claims (valve-claims (entity-here valve))))
     (and claims (claim-task (first claims)))))

@@ -128,8 +128,8 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
       (wake task nil))))
 
 (defun make-event-source (condition task)
-  "Return the source of events of CONDITION for TASK. The source is CONDITION itself if it is a view
-that counts each event, a watcher for any other fluent, and NIL if CONDITION is no fluent."
+  "Return the source of events of CONDITION for TASK. For a view that counts each event, the source
+is the view itself; for any other fluent, a watcher; for anything else, NIL."
   (cond ((not (fluent-p condition)) nil)
         ((counts-each-event-p condition) condition)
         (t (let ((watcher (make-watcher condition #'count-event task)))
@@ -174,8 +174,8 @@ and the value of :missed. Signals MALFORMED-DEFINITION."
   "Run BODY in a plan each time FLUENT, or a network, becomes true or is pulsed, and at once if
 FLUENT is true. A pulse of a network's source pulses the network, if the network is true at that
 instant. WHENEVER ends only by RETURN, failure or evaporation (manual D.4). Events while BODY runs
-count as one; (FLUENT :missed :once) says the same. With (FLUENT :missed :all) as the first
-argument, or a view with :ALWAYS as FLUENT, BODY runs once for each event."
+count as one event, as with (FLUENT :missed :once) as the first argument. With (FLUENT :missed
+:all), or if FLUENT is a view with :ALWAYS, BODY runs once for each event."
   (:manual)
   (:arguments (first (split-condition fluent scope)))
   (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))

@@ -76,7 +76,7 @@ addition)."
 
 (define-construct with-valves ((&rest valves) &body body)
   "Run BODY in a plan while the task owns all of VALVES. After the valves, :priority and a number
-may follow. The task takes all the valves together, when no other task owns one of them. So the
+may follow. The task takes all the valves together, when no other task owns any of them. So the
 order in which tasks name the valves does not matter. Otherwise do as WITH-VALVE."
   (:like with-valve)
   (:arguments &rest valves)

@@ -172,9 +172,9 @@ FIRST-TYPE and LAST-TYPE."
 ;;; fluents. A vector is always true, so a condition never means it.
 
 (defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
-  "A table from variables to lists (kind pulsed-p). KIND is T if the variable holds a fluent, or the
-name of a kind of part if it holds a vector of fluents, one for each part. PULSED-P is true if these
-fluents are pulsed and never set.")
+  "A table from variables to lists (kind pulsed-p). If the variable holds a fluent, KIND is T. If it
+holds a vector of fluents, one for each part of a kind, KIND names this kind. PULSED-P is true if
+these fluents are pulsed and never set.")
 
 (defun declare-fluent-variable (name &key (kind t) pulsed-p)
   "Record that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string.

@@ -113,7 +113,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (values))
 
 (defun next-entry (home)
-  "Remove the oldest entry posted to HOME. Return it and true; or NIL and false if there is none."
+  "Remove the oldest entry posted to HOME. Return the entry and true; or NIL and false without one."
   (unless (home-outbox home)
     (loop for entries = (home-inbox home)
           until (swap-if-eq (home-inbox home) entries '())

@@ -85,7 +85,7 @@ just set the fluent, so a caller that waits for it to become true must check it 
 ;;; Reading.
 
 (defun value-in-use (fluent)
-  "Return the value of FLUENT, which is in use. Signal the error in computing FLUENT, if any."
+  "Return the value of FLUENT, which is in use. If computing FLUENT met an error, signal that."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
   (unless (fluent-reading fluent) (setf (fluent-reading fluent) :once))
@@ -163,8 +163,8 @@ or a vector of fluents."
             when (fluent-p source) maximize (fluent-height source))))
 
 (defun lift (name function &rest arguments)
-  "Return the value of FUNCTION for ARGUMENTS. If some of ARGUMENTS are fluents, return a new fluent
-with the name NAME, whose value is always the value of FUNCTION for the values of ARGUMENTS."
+  "Return the value of FUNCTION for ARGUMENTS. If some of ARGUMENTS are fluents, return a new
+fluent, named NAME, instead. Its value is always FUNCTION of the current values of ARGUMENTS."
   (if (some #'fluent-p arguments)
       (let ((sources (loop for argument in arguments
                            collect (if (fluent-p argument) (entity-here argument) argument))))
@@ -181,9 +181,9 @@ with the name NAME, whose value is always the value of FUNCTION for the values o
 
 (addition fl-funcall)
 (defun fl-funcall (function &rest arguments)
-  "Return a fluent whose value is always the value of FUNCTION for the values of ARGUMENTS, some of
-which are fluents. FUNCTION must depend on nothing else and must not set fluents. If no argument is
-a fluent, call FUNCTION at once."
+  "Return a fluent. Its value is always FUNCTION of the current values of ARGUMENTS; some of them
+are fluents. FUNCTION must depend on nothing else and must not set fluents. If no argument is a
+fluent, call FUNCTION at once."
   (apply #'lift (function-label function) (coerce function 'function) arguments))
 
 (addition fl-apply)
@@ -257,7 +257,7 @@ because the values of fluents may refer to each other.")
 ;;; which are known; the links between fluents are dropped and made again.
 
 (defun reachable-fluents (watchers)
-  "Return the fluents that WATCHERS watch, all that depend on them, and all that they depend on."
+  "Return the fluents that WATCHERS watch, and all fluents that networks connect with these."
   (let ((seen (make-hash-table :test 'eq)) (fluents '()))
     (labels ((visit (fluent)
                (unless (gethash fluent seen)

@@ -57,9 +57,9 @@
 (addition fl-pulsed)
 (defun fl-pulsed (fluent &key (handle-missed-pulses :once))
   "Return a view: a fluent that is true if FLUENT was set to another value or pulsed since the view
-was last read. The view is reset when it is read or wakes a task. HANDLE-MISSED-PULSES says how
-events count that happen while no task waits:
-  :ONCE: the next reading is true, however many events there were, even before this call;
+was last read. The view is reset when it is read or wakes a task. HANDLE-MISSED-PULSES says how to
+count events that happen while no task waits:
+  :ONCE: the next reading is true if there were any events, even before this call;
   :ALWAYS: as many readings are true as there were events;
   :NEVER: as :ONCE, but events before this call are ignored.
 A network is pulsed when one of its sources is pulsed, whatever the value of the network. Signals

@@ -22,7 +22,7 @@ of views that are true for the instant of the change. Meanwhile networks must no
 ;; Costs 1 ns without a trace.
 (declaim (inline note-change))
 (defun note-change (kind fluent value)
-  "Record in the trace of the current plan runner, if any, that FLUENT has the new value VALUE."
+  "If there is a current plan runner, record in its trace that FLUENT has the new value VALUE."
   (let* ((home *runner*)
          (function (and home (home-on-change home))))
     (when function (funcall function kind fluent value))))
@@ -246,9 +246,9 @@ effect when the running plans pause (manual D.2)."
 
 (public pulse)
 (defun pulse (fluent &optional (value t))
-  "Set FLUENT to VALUE for an instant, and then back. All tasks wake that wait for FLUENT, or for a
-network that is true at that instant. Return VALUE. Any thread may call PULSE; from outside of plans
-PULSE takes effect when the running plans pause (manual C)."
+  "Set FLUENT to VALUE for an instant, and then back. PULSE wakes all tasks that wait for FLUENT, or
+for a network that is true at that instant. Return VALUE. Any thread may call PULSE; from outside of
+plans PULSE takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
   (unless *runner* (note-outside-change *interface* #'pulse fluent value))

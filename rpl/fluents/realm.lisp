@@ -163,7 +163,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
                  #'> :key #'car))))
 
 (defun promote-realm (realm)
-  "Make REALM a fork of its grandparent, if any, as if made at the time of its parent."
+  "If REALM has a grandparent, let REALM take the place of its parent as a fork of the grandparent."
   (let* ((parent (realm-parent realm))
          (above (realm-parent parent)))
     (when above

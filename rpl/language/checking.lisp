@@ -73,8 +73,8 @@ function, and what to write instead; or NIL. Layers that know more names have me
   (:method (name) (declare (ignore name)) nil))
 
 (defun unknown-call-remedy (name)
-  "Return a text of NAME, which is not the name of a plan procedure or function, and sentences about
-what to write instead; or NIL."
+  "Return a text that gives NAME and says what to write instead; or NIL. NAME is not the name of a
+plan procedure or function."
   (let ((namesake (find-procedure name nil)) (advice (advice-on-call name)))
     (cond (namesake
            (format nil "~(~S~). If you mean the plan in another package, write ~(~S~)."
@@ -150,8 +150,8 @@ names are checked at the end of the compilation unit."
                  (loop for key in (shape-keys shape) collect (format nil "~S ~S" key value))))))
 
 (defun argument-mistake-text (form lambda-list)
-  "Return a text of the mistake in the arguments of FORM, a call of a construct with LAMBDA-LIST, or
-in a list of options in FORM; or NIL. A mistake is a keyword that LAMBDA-LIST does not have, or
+  "Return a text of the mistake in the arguments of FORM, or in a list of options in FORM; or NIL.
+FORM calls a construct with LAMBDA-LIST. A mistake is a keyword that LAMBDA-LIST does not have, or
 another form in the place of a keyword or a list of options."
   (let ((shape (shape-of lambda-list)))
     (and (proper-list-p form)

@@ -204,8 +204,8 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
 (defun hoisted-code (form scope &optional (fixed 1))
-  "Return code for FORM, whose first FIXED elements stay in place. The other elements that suspend,
-and those to the left of them, are bound to variables before FORM, to keep the order of evaluation."
+  "Return code for FORM, whose first FIXED elements stay in place. Other elements that suspend are
+bound to variables before FORM. So are all elements to their left, to keep the order of evaluation."
   (let* ((parts (nthcdr fixed form))
          (count (1+ (position-if (lambda (part) (suspends-p part scope)) parts :from-end t)))
          (names (loop for part in (subseq parts 0 count)

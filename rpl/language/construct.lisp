@@ -136,8 +136,8 @@ the functions for speed, because a profile has shown that this matters."
 ;;; Values that the task must wait for before the construct begins.
 
 (defmacro hoisting (arguments form scope &body body)
-  "Run BODY, which returns the code for FORM in SCOPE. If one of ARGUMENTS, parts of FORM, makes its
-task wait, bind that argument, and those to the left of it, to variables before FORM."
+  "Run BODY, which returns the code for FORM in SCOPE. ARGUMENTS are parts of FORM. If an argument
+makes its task wait, bind it, and all arguments to its left, to variables before FORM."
   (if (null arguments)
       `(progn ,@body)
       `(call-hoisting (list* ,@(if (eq '&rest (first (last arguments 2)))
@@ -217,9 +217,9 @@ LAMBDA-LIST has no defaults. DOCUMENTATION is for users. CLAUSES:
 must also explain the construct.
 (:waits :MUST, :MAY or NIL): whether the construct makes its task wait, see SUSPENSION; default
 :MUST.
-(:arguments form...): the arguments that are ordinary values: variables of LAMBDA-LIST, or forms
-that return parts of their values. If such an argument waits, it is evaluated first. The last form
-may be a list after &rest.
+(:arguments form...): the arguments that are ordinary values. Each form is a variable of
+LAMBDA-LIST, or returns part of the value of such a variable. If such an argument waits, it is
+evaluated first. The last form may be a list after &rest.
 (:parts (name type form)...): the parts of the node. Each form returns code for a part; FORM, SCOPE
 and the variables of LAMBDA-LIST are bound.
 (:code form): the code for the whole construct, if it is another expression, or if the node needs

@@ -58,7 +58,7 @@ source of the block. The code has a node for the block only if some form leaves 
 ;;; Tags.
 
 (define-expression tag-body
-  "Runs expressions in order; jumps can go to some of them. A frame counts the expressions begun."
+  "Runs expressions in order; some are targets of jumps. A frame counts the expressions begun."
   (:parts (parts simple-vector))
   (:step
    (let ((i (frame-counter frame)))
@@ -111,7 +111,7 @@ source of the block. The code has a node for the block only if some form leaves 
 
 (define-expression turns
   "Runs BODY repeatedly, while the function UNTIL returns false for the environment. The function
-TIMES returns the largest number of turns, NIL for any number. Frames count remaining turns."
+TIMES returns the largest number of turns, NIL for any number. A frame counts the turns left."
   (:hot)                                ; 40 ns a turn
   (:parts (until function) (times function) (body node))
   (:steps

@@ -199,8 +199,8 @@ compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   expansion)
 
 (defun note-expansion (expansion form)
-  "Record that EXPANSION, which was made from FORM, belongs to the text of the plan itself but
-stands for FORM. Return EXPANSION."
+  "Record that EXPANSION counts as text of the plan itself, and that it stands for FORM. Return
+EXPANSION."
   (note-own-text (note-written-as expansion form)))
 
 (defun own-text-p (form)

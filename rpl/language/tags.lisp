@@ -97,9 +97,9 @@ environment of SCOPE, from index FIRST on."
       (funcall coder scope)))
 
 (define-construct with-tags (&body body)
-  "Run BODY in a plan, with the name of each (:tag name form) in BODY bound to the task that runs
-that form. (:tag name form) returns one value. See TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE. The
-body of a procedure binds tags as WITH-TAGS does."
+  "Run BODY in a plan. For each (:tag name form) in BODY, bind the variable name to the task that
+runs the form. (:tag name form) returns one value. See TASK-STATUS, WITH-TASK-BLOCKED and EVAPORATE.
+The body of a procedure binds tags as WITH-TAGS does."
   (:code (with-tags-code form (tags-in body) scope (lambda (scope) (body-code body scope)))))
 
 (addition task-status)
@@ -178,8 +178,8 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
 (addition task-code)
 (defun task-code (path)
   "Return the plan text that tasks at PATH run from their next start on, and true if this text
-replaces the original. PATH is a list of a plan or its name and a tag in it. Tags around that tag
-may come before it. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
+replaces the original. PATH is a list of a plan, or its name, and a tag in this plan. Tags around
+this tag may come before the tag. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
 WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
   (let ((node (find-tagged 'task-code path)))
     (if (tagged-replaced node)

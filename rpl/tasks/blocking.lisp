@@ -135,8 +135,8 @@ shown as suspended."
 ;;; SUSPEND and WAKE-UP.
 
 (defun call-or-post (word task function)
-  "Call FUNCTION, which does the work of WORD on TASK, now if a plan of the same runner calls or
-TASK has no runner; otherwise post FUNCTION, to be called before the next reaction. Return TASK."
+  "Call FUNCTION now if TASK has no runner, or if the caller is a plan of the runner of TASK.
+Otherwise post it, to be called before the next reaction. FUNCTION does what WORD does. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)

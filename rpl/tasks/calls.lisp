@@ -44,8 +44,8 @@
       (format nil "~:A" lambda-list))))
 
 (defun unknown-keyword-text (shape rest &key (wrong-p #'keywordp))
-  "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST lists the arguments,
-or forms for them, after the fixed ones. Elements for which WRONG-P is false are not checked."
+  "Return the text of a keyword in REST that SHAPE does not take; or NIL. REST lists the arguments
+after the fixed arguments, or their forms. Elements for which WRONG-P is false are not checked."
   (unless (or (shape-open shape)
               (loop for (key value) on rest by #'cddr
                     thereis (and (eq key :allow-other-keys) value)))
@@ -108,8 +108,8 @@ has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 
 (defun wait-for-end-text (name part)
-  "Return the text of the form by which plans wait for the end of the command of NAME, a plan
-function, on the part with the number PART. Return NIL if no fluent is pulsed at the end."
+  "Return the text of the form that waits for the end of a command. The plan function NAME gives
+this command to part number PART. Return NIL if no fluent is pulsed at the end."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore results))
     (wait-form-text (subst part variable wait))))
@@ -121,9 +121,9 @@ function, on the part with the number PART. Return NIL if no fluent is pulsed at
     (subst part variable results)))
 
 (defgeneric last-command (client task)
-  (:documentation "Return the name of the plan function that the plan of TASK has called last, and
-the number of its part, if any. Return NIL if the plan has called no plan function. CLIENT has
-recorded the calls.")
+  (:documentation "Return the name of the last plan function that the plan of TASK has called. Also
+return the number of the part of the robot, if any. Return NIL if the plan has called no plan
+function. CLIENT has recorded the calls.")
   (:method (client task)
     (declare (ignore client task))
     nil))

@@ -235,8 +235,8 @@ LEAVE and END. Any other non-local exit from a step also ends its plan; no retry
 ;;; There is none if the step is left by another non-local exit, such as THROW.
 
 (defun call-to-outcome (runner function)
-  "Call FUNCTION with RUNNER. Return the outcome of the step; the value of FUNCTION or the trouble
-that it met; and whether the step may have been stopped in the middle of the simulator's own code."
+  "Call FUNCTION with RUNNER. Return three values: the outcome of the step, the value of FUNCTION or
+the trouble it met, and whether the step may have stopped inside the simulator's own code."
   (let ((trouble nil) (anywhere-p nil))
     (block call
       (labels ((meet (outcome) (return-from call (values outcome trouble anywhere-p)))

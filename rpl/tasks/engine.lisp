@@ -85,7 +85,7 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
 (defun run-round (runner)
   "Run the ready tasks of RUNNER for one round, even if some of them meet trouble. Return as
 RUN-READY does. If the budget of a tick ends during a round, the round goes on in the next tick, so
-that each task gets its turn in it."
+that no task loses its turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
   (let ((outcome (loop thereis (call-with-care runner #'run-ready))))
@@ -160,7 +160,7 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
-  "Apply the oldest batch or call posted to RUNNER. Return true if any. Errors become messages."
+  "Apply the oldest post to RUNNER, a batch or call. True if there is one. Errors become messages."
   (multiple-value-bind (entry there) (next-entry runner)
     (when there
       (at-home (runner)

@@ -54,8 +54,8 @@ with the task, a column and STREAM."
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun probable-slip-p (type class)
-  "True if the symbol TYPE, no match for CLASS, may be a slip for CLASS: a similar name that differs
-not only in digits; another ending, as STUCK and STUCKED; or only one of the two is a keyword."
+  "True if the symbol TYPE may be a misspelt CLASS. The names differ in a few letters, not only in
+digits, or in the ending, as STUCK and STUCKED; or only one of two equal names is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
@@ -153,7 +153,7 @@ that returns true is responsible for reporting a failure of the task. The functi
 any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "Report the failure, if any, of TASK, a top-level task just ended. AWAITED-P: see REPORT-FAILURE."
+  "If TASK, a top-level task just ended, has failed, report that. AWAITED-P: see REPORT-FAILURE."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))

@@ -42,7 +42,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
       (all-preemptors task)))
 
 (defun stuck-tasks (task)
-  "Return TASK and the tasks in a cycle of waits with it; or NIL if some of them can go on."
+  "Return TASK and the tasks that wait in a cycle with TASK; NIL if one of these can go on."
   (let ((stuck '()) (open (list task)))
     (loop while open
           do (let* ((next (pop open)) (others (obstacles next)))
@@ -73,7 +73,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
                   (task-label task) names (rest names))))))
 
 (defun warn-of-circle (tasks)
-  "Queue a warning that TASKS wait for each other. The tasks around them may still end one of them."
+  "Queue a warning that TASKS wait for each other. A task around TASKS may still end one of TASKS."
   (warn-notably "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
                 (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
                 ". These tasks can go on only if one of them is ended, for example by a deadline."))
@@ -260,7 +260,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
        4000))
 
 (defun text-of-plans (tasks)
-  "Return a text that names the plans TASKS, as subject of a sentence, and says what they wait for."
+  "Return a text that starts with the names of the plans TASKS and says what they wait for."
   (format nil "the plan~P ~{~A~^, ~} wait~:[s~;~] for ~A"
           (length tasks) (mapcar #'task-label tasks) (rest tasks)
           (or (text-of-waits (mapcan #'waiting-parts tasks))
@@ -275,9 +275,9 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
                  (mapcar #'task-label blocked)))))
 
 (defun report-stillness (runner)
-  "Queue a warning, with advice, that the tasks of RUNNER wait for events that neither these tasks
-nor the simulator can cause. Only calls from outside can cause them. A thread waits for the end of
-one of these tasks."
+  "Queue a warning, with advice. The tasks of RUNNER wait for events, and neither these tasks nor
+the simulator can cause the events. Only calls from outside can. A thread waits for the end of one
+of these tasks."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
     (warn-notably "At tick " (runner-tick runner) " all plans wait for events that neither the "
                   "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "

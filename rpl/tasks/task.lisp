@@ -34,7 +34,7 @@ result" :writable)
 
 (declaim (inline make-frame))
 (define-record (frame (:constructor make-frame (node environment up)))
-  "One run of NODE in ENVIRONMENT. The frame UP, if any, gets the value."
+  "One run of NODE in ENVIRONMENT. If there is a frame UP, it gets the value of this run."
   (node nil node "the node that the frame runs" :writable :export)
   (environment #() simple-vector "a vector of the variables visible at the node; element 0 is the
 environment around it" :writable :export)
@@ -147,7 +147,7 @@ NIL" :writable :export)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 
 (defun part-of-p (task whole)
-  "True if TASK is WHOLE or a part of it."
+  "True if TASK is WHOLE or a part of WHOLE."
   (loop for each = task then (task-parent each)
         while each thereis (eq each whole)))
 

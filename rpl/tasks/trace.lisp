@@ -32,13 +32,13 @@ if TASK does not wait, or waits for its own parts."
 
 (define-record (trace-entry (:constructor make-trace-entry
                                 (tick event task form subject value agent)))
-  "An entry of a trace: at TICK, EVENT happened to the task with the number TASK (or to no task if
-TASK is 0) at the expression FORM. AGENT, the cause of the event, is the number of a task, an
-ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT and VALUE are:
+  "An entry of a trace. At TICK, EVENT happened to the task with the number TASK, at the expression
+FORM. If TASK is 0, EVENT happened to no task. AGENT, the cause of the event, is the number of a
+task, an ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT and VALUE are:
   :start: the name, and the number of the parent
   :wait and :wake: the object that the task waits for
   :succeed: NIL and the value
-  :failure (where it happens) and :fail (it ends the task): the failure
+  :failure (a failure happens) and :fail (a failure ends the task): the failure
   :set and :pulse: the fluent and its value
   :command: an ISSUE and, for the task and each task around it, the expressions in progress
   :answer: the ISSUE and the error code
@@ -96,7 +96,7 @@ task and each task around it; at the start of a task, the number of its parent" 
 (addition trace-entry-detail)
 (defun trace-entry-detail (entry)
   "Return the details of ENTRY as text, or NIL: what the task waits for, why it failed, which value
-a fluent got and from whom, or which command was issued or answered, and how."
+a fluent got and from whom, which command was issued, or how a command was answered."
   (let ((subject (trace-entry-subject entry))
         (value (trace-entry-value entry)))
     (case (trace-entry-event entry)

@@ -7,8 +7,8 @@
 ;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
-  "Add to the trace, if there is one, that EVENT happened to TASK. SUBJECT and VALUE are as in
-TRACE-ENTRY; they are evaluated only if there is a trace."
+  "If there is a trace, add to it that EVENT happened to TASK. SUBJECT and VALUE are as in
+TRACE-ENTRY; without a trace, they are not evaluated."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))
        (trace-task ,task ,event ,subject ,value))))
@@ -42,7 +42,7 @@ TRACE-ENTRY; they are evaluated only if there is a trace."
         (lambda (kind fluent value) (trace-running-task runner kind fluent value))))
 
 (defun start-trace (runner)
-  "Start a trace of RUNNER, unless RUNNER keeps one. Tasks that already run appear to start now."
+  "Start a trace of RUNNER, unless RUNNER has a trace. Tasks that already run appear to start now."
   (unless (runner-trace runner)
     (setf (runner-trace runner) (make-trace))
     (trace-changes runner)
