@@ -43,12 +43,12 @@ returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
            (style-warn-of-own form "the policy ~S waits for nothing: it runs once, before the ~
-                                    body, and then has ended. ~:[Write (whenever test form...), or ~
+                                    body, and then ends. ~:[Write (whenever test form...), or ~
                                     (seq (wait-for fluent) form...)~;Write ~:*~S~]."
                               policy (and once-p (waiting-policy-text policy))))
           ((only-waits-p policy scope)
-           (style-warn-of-own form "the policy ~S does nothing after its wait, and then has ~
-                                    ended. Write what the policy is to do: (seq ~:*~S form...), or ~
+           (style-warn-of-own form "the policy ~S does nothing after its wait, so it has no ~
+                                    effect. Write what the policy must do: (seq ~:*~S form...), or ~
                                     (whenever fluent form...) to react each time."
                               policy))
           ((lost-return-value policy)

@@ -164,8 +164,8 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
                    :from-end t)))
     (unless (= 1 (length nodes))
       (reject-use "~(~A~): ~S leads to ~D places, not to one. A path is a list of a plan and a ~
-                   tag in it. To select one of several places, write the tags around it before ~
-                   this tag."
+                   tag in this plan. To select one of several places, write the tags around that ~
+                   place before the tag."
                   operator path (length nodes)))
     (first nodes)))
 

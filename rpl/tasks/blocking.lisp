@@ -128,15 +128,15 @@ shown as suspended."
 (defun check-same-runner (task other)
   "Signal MISUSE if TASK, the running task, and OTHER belong to different plan runners."
   (when (and (task-runner other) (not (eq (task-runner task) (task-runner other))))
-    (reject-use "~A belongs to the plans of another robot, which run by themselves. Here ~
-                 only SUSPEND and WAKE-UP can be applied to it."
+    (reject-use "~A belongs to the plans of another robot. The plans of this robot can apply ~
+                 only SUSPEND and WAKE-UP to it."
                 (task-label other))))
 
 ;;; SUSPEND and WAKE-UP.
 
 (defun call-or-post (word task function)
   "Call FUNCTION now if TASK has no runner, or if the caller is a plan of the runner of TASK.
-Otherwise post it, to be called before the next reaction. FUNCTION does what WORD does. Return TASK."
+Otherwise post it for the next reaction. FUNCTION does the work of WORD on TASK. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
