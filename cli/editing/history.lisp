@@ -124,8 +124,8 @@ GROWING is the text before that line, and the entry has a fill pointer; else GRO
 
 ;; The same text need not be compared for each line to see that it continues.
 (defun extend-entry (history line before)
-  "Append LINE to the newest entry of HISTORY, if BEFORE, the text that LINE continues, begins with
-that entry."
+  "Append LINE, which continues the text BEFORE, to the newest entry of HISTORY. Do nothing unless
+BEFORE begins with that entry."
   (let ((newest (first (history-entries history)))
         (same-p (eq before (history-growing history))))
     (when (and newest (or same-p (begins-with-p before newest)))

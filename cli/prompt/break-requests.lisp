@@ -81,8 +81,8 @@ Any thread may call this function."
         (breaks-for-session session)))
 
 (defun other-debugger-text (simulation)
-  "Return text for the end of a sentence if a debugger other than the prompt's asks about a break in
-the thread of SIMULATION; otherwise NIL."
+  "If a debugger other than the prompt's asks about a break in the thread of SIMULATION, return the
+end of a sentence that says so; otherwise NIL."
   (let ((debugger (debugger-asking (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-showing simulation))

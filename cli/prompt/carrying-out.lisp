@@ -74,8 +74,8 @@ WARNING-SET. Do nothing outside of COMPILE-FILE."
         ((typep condition 'warning) (report-from-compiler #'warning-set condition))))
 
 (defun call-reporting-warnings (function)
-  "Call FUNCTION and return its values. Report as messages the warnings about all forms that it
-evaluates, and the errors in files that it compiles."
+  "Call FUNCTION and return its values. Meanwhile report warnings about evaluated
+forms, and errors and warnings of COMPILE-FILE, as messages."
   (let ((last nil))
     ;; Each nested EVAL signals the compiler's conditions once more.
     (handler-bind ((condition (lambda (condition)
@@ -285,9 +285,9 @@ carries out; NIL if the robot carries out nothing."
     (and name (values robot name))))
 
 (defun ongoing-work-text (session)
-  "Return text for the user of SESSION after an interrupted line: what continues in the simulator
-and how to end that; if nothing continues, how to leave the prompt; during a break, how to answer.
-In a trial, return an empty string."
+  "Return text for the user of SESSION after an interrupted line. It says what continues in the
+simulator and how to end that, or how to leave the prompt if nothing continues. During a break, it
+says how to answer. In a trial, the text is empty."
   (multiple-value-bind (robot command) (command-in-progress session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((restart-choices-text session)

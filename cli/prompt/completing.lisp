@@ -220,7 +220,7 @@ unit, or if the unit is still being typed."
 
 (defun argument-at-end (line text start)
   "Return three values: the parameter of LINE whose argument is being typed at the end of TEXT, or
-NIL if LINE has no more parameters; the start of that argument; and the parameter before. START is
+NIL if LINE has no more parameters; the start of that argument; and the previous parameter. START is
 where the first argument begins."
   (loop for before = nil then parameter
         for parameter in (append (line-parameters line) '(nil))

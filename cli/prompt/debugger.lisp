@@ -159,8 +159,8 @@ sessions' threads post, until a call continues this thread."
 
 ;; A user's window may be lost although there is another, or the terminal.
 (defun substitute-sessions (session)
-  "Return the sessions whose users can answer breaks of SESSION, whose user was lost: sessions in
-the same run, else all sessions. Return NIL if the user ended SESSION."
+  "If the user of SESSION was lost, return the sessions whose users can answer its breaks: sessions
+in the same run, else all sessions. Return NIL if the user ended SESSION."
   (flet ((can-answer-p (other)
            (and (session-terminal-p other)
                 (not (eq other session))

@@ -11,8 +11,8 @@
 (defstruct (line-parameter (:constructor make-line-parameter (name type text optional-p))
                            (:copier nil))
   "A parameter of a line command. TYPE is an argument type of the command layer, or a keyword.
-:REST, :LINE (another line) and :FORM (of Lisp) stand for the rest of the line. :TOKEN stands for
-the text up to the next blank; so do other keywords, such as :FILE, which also determine CHOICES."
+:REST, :LINE (another line) and :FORM (of Lisp) stand for the rest of the line. :TOKEN and other
+keywords, such as :FILE, stand for the text up to the next blank. CHOICES depend on the keyword."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)

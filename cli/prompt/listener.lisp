@@ -179,7 +179,7 @@ ended. Add file and line number to errors and warnings in a script."
         (write-fitted console "~A" text))))
 
 (defun count-error (listener message)
-  "Count the error MESSAGE in LISTENER, for the earlier line, if any, that caused the error."
+  "Count the error MESSAGE in LISTENER, and in its account if an earlier line caused the error."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
     (when (and account (not (eql (line-of-message account message) (last-line-number account))))

@@ -45,8 +45,8 @@ item prints as TEXT. SESSION shows the message even if SESSION is in another run
   (write-string (verdict-text verdict) stream))
 
 (defun receivers (message session)
-  "Return the sessions that show MESSAGE, which SESSION has taken from a queue: the session named in
-MESSAGE and the sessions in its run; if there are none, SESSION."
+  "SESSION has taken MESSAGE from a queue. Return the sessions that show MESSAGE: the session named
+in MESSAGE and the sessions in the run of MESSAGE; if there are none, SESSION."
   (or (union (let* ((item (first (message-items message)))
                     (meant (and (verdict-p item) (verdict-session item))))
                (and meant (member meant (running-sessions)) (list meant)))
@@ -220,8 +220,8 @@ A run may be NIL. A headless run stands still during the calls.")
     (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
 
 (defun run-after (simulation robot-name)
-  "Return the live run in which a prompt for ROBOT-NAME continues after the end of SIMULATION, and
-the name of the robot that the prompt then commands. Return NIL if there is no such run."
+  "Return the live run where a prompt for ROBOT-NAME continues after the end of SIMULATION, and the
+name of the robot to command there. Return NIL if there is no such run."
   (let ((own (live-run-of-robot robot-name))
         (next (gethash simulation *replaced-runs*)))
     (cond (own (values own robot-name))

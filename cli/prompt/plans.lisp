@@ -11,8 +11,8 @@
 
 (defstruct (plan-job (:include job) (:copier nil)
                      (:constructor make-plan-job (plan session simulation)))
-  "A plan that the prompt has started. STUCK is a list of two texts, or NIL: what keeps the plan
-from ever continuing, and what could be done."
+  "A plan that the prompt has started. STUCK is NIL, or a list of two texts: what the plan
+waits for in vain, and what could be done."
   (plan nil :type symbol :read-only t)
   (session nil :type session :read-only t)
   (simulation nil :read-only t)

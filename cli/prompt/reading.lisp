@@ -211,8 +211,8 @@ is the condition LINE-TOO-LONG; otherwise NIL. Signals BAD-LINE if the comment d
           (reject-line "The comment that begins with #| does not end; close it with |#."))))))
 
 (defun block-comment-start (text)
-  "Return the position of the first comment between #| and |# in TEXT, a line that is not Lisp,
-outside of quotes and other comments; NIL if there is none."
+  "TEXT is a line that is not Lisp. Return the position of its first comment between #| and |#
+outside of quotes and other comments; NIL if there is no such comment."
   (loop with quoted = nil
         for char across text
         for i from 0
