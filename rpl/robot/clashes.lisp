@@ -12,8 +12,8 @@
   "How often plans may take one part of the robot from each other before time has to pass.")
 
 (defconstant +takeover-warning-ticks+ 5
-  "After this many ticks, plans that still take a part from each other are named again. Messages of
-takeovers may have pushed the first warning out of the queue.")
+  "After this many ticks, a second warning names plans that still take a part from each other.
+Messages of takeovers may have pushed the first warning out of the queue.")
 
 (defun takeover-count (interface resource)
   (let ((tick (simulation-tick (interface-simulation interface))))
@@ -29,8 +29,8 @@ takeovers may have pushed the first warning out of the queue.")
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return text that says that the tasks OLDER and NEWER, perhaps the same task, take RESOURCE from
-each other for ever. The text does not depend on their order."
+  "Return this text: the tasks OLDER and NEWER, perhaps the same task, take RESOURCE from each other
+for ever. The text does not depend on their order."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
@@ -187,8 +187,8 @@ NIL; reactions outside of WHOLE do not count."
           (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
 (defun ticks-before-replacement (older newer)
-  "If a task has cut its action OLDER short by its action NEWER, most likely by mistake, return how
-many ticks OLDER had: 0 or 1. Return NIL if the task may mean that, as in a reaction to an event."
+  "If NEWER cut short OLDER, an action of the same task, most likely by mistake, return how many
+ticks OLDER had: 0 or 1. Return NIL if the task may intend that, as in a reaction to an event."
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))

@@ -34,9 +34,9 @@
          (task-numbered (task-serial task) (interface-runner interface)))))
 
 (defun counterpart-of-task (task simulation)
-  "Return the counterpart of TASK in SIMULATION, a fork of its run or the successor of a rewound
-run; TASK itself if the counterpart is over. Signals MISUSE if the run was rewound to before the
-start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
+  "SIMULATION is a fork of the run of TASK, or replaces that run in a rewind. Return the counterpart
+of TASK there; TASK itself if the counterpart is over. Signals MISUSE if the run was rewound to
+before the start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
   (let* ((client (runner-client (task-runner task)))
          (interface (interface-of-robot (interface-robot client) simulation)))
     (cond ((and interface (same-era-p task interface))
@@ -87,8 +87,8 @@ start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
   (apply #'record-outside-act (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
-  "Repeat a call from outside of plans: of the function WORD with ARGUMENTS and the task with the
-number SERIAL or, if SERIAL is NIL, the runner of plans."
+  "Repeat a call made outside of plans: call the function WORD with ARGUMENTS and one more argument,
+the task with the number SERIAL. If SERIAL is NIL, the last argument is the runner of plans."
   (let* ((interface (usable-interface))
          (runner (and interface (interface-runner interface)))
          (subject (if (and runner serial) (task-numbered serial runner) runner)))

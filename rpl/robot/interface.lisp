@@ -257,14 +257,14 @@ thread is gone, end that plan. Signals MISUSE if no interface can be used."
 
 (addition rpl-robot)
 (defun rpl-robot ()
-  "Return the robot that plans drive. Signals MISUSE without one."
+  "Return the robot that plans drive. Signals MISUSE without a robot."
   (interface-robot (required-interface)))
 
 (addition rpl-robot-valve)
 (defun rpl-robot-valve ()
-  "Return the valve of the robot that plans drive. Plans that may run beside other plans, and
-branches of a plan, should own the valve while they drive, by (with-valve ((rpl-robot-valve)) ...),
-as the shipped plans do. Nothing enforces the use of the valve. Signals MISUSE without a robot."
+  "Return the valve of the robot that plans drive. If plans or branches of a plan may run side by
+side, each should own the valve while it drives: (with-valve ((rpl-robot-valve)) ...). The shipped
+plans do so. Nothing enforces the use of the valve. Signals MISUSE without a robot."
   (interface-valve (required-interface)))
 
 (addition rpl-runner)

@@ -121,8 +121,8 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
 (defun fluent-form (kind clauses part)
-  "Return the form for the fluent in the first of CLAUSES of KIND, :pulse or :error; NIL if there is
-none. PART is the name of the command's argument for the part."
+  "Return the form for the fluent in the first of CLAUSES of KIND, :pulse or :error; NIL without
+such a clause. PART is the name of the command's argument for the part."
   (let ((fluent (second (assoc kind clauses))))
     (and fluent (fluent-in-plan fluent part))))
 
@@ -177,8 +177,8 @@ robot. See reading 179."
 ;;; A user's command has a function in plans only if its outcome is defined.
 
 (defun advice-on-command (name)
-  "Return sentences on how plans can issue the command that NAME, a symbol that begins with RPL-,
-seems to stand for: by which function, or how to define the function; NIL if NAME is no command."
+  "NAME is a symbol that may begin with RPL-. Return sentences on how plans can issue the command
+after RPL-: by which function, or how to define the function; NIL if there is no such command."
   (let* ((text (symbol-name name))
          (command (and (starts-with-subseq "RPL-" text)
                        (find-command (subseq text (length "RPL-")) nil)))

@@ -66,7 +66,7 @@ not served."))
            (interface-wishes interface)))
 
 (defun serve-next-wish (interface)
-  "Serve the oldest wish of INTERFACE whose task can go on, if any. Return true if a task goes on."
+  "Serve INTERFACE's oldest wish whose task is not blocked, or none. Return true if a task goes on."
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))

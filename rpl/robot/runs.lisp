@@ -29,8 +29,8 @@ drive that robot, even after an RPL-INIT-ROBOT."
     (when interface (setf (interface-commanded interface) :none))))
 
 (defun newly-commanded-robot (interface)
-  "Return the robot that the prompt commands, if the prompt has changed to that robot since
-INTERFACE was made, and plans still drive another robot. Otherwise return NIL."
+  "If the prompt has changed to a robot since INTERFACE was made, and plans still drive another
+robot, return the robot that the prompt commands. Otherwise return NIL."
   (let ((robot (and (interface-commanded interface) (commanded-robot))))
     (and robot
          (not (eq robot (interface-commanded interface)))
@@ -38,7 +38,7 @@ INTERFACE was made, and plans still drive another robot. Otherwise return NIL."
          robot)))
 
 (defun ensure-interface ()
-  "Return the interface in use. Make a new interface if there is none, or if the prompt has changed
+  "Return the interface in use. Make a new interface if none is in use, or if the prompt has changed
 to another robot since. Signals MISUSE if plans still drive the robot of the old interface."
   (let* ((interface (usable-interface))
          (robot (and interface (newly-commanded-robot interface))))
@@ -264,8 +264,8 @@ the run is over before it begins."
           (t (request-plan-end interface task)))))
 
 (defun in-later-run-p (interface)
-  "True if this thread works in another run that continues the run of INTERFACE: a fork, or the run
-that has replaced the run of INTERFACE in a rewind."
+  "True if this thread works in a fork of the run of INTERFACE, or in the run that has replaced the
+run of INTERFACE in a rewind."
   (and *simulation*
        (not (eq *simulation* (interface-simulation interface)))
        (or (fork-p *simulation*)

@@ -102,8 +102,8 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 Create new fluents for the robot and each of its parts. Return the robot (manual C). Running plans
 end; of their cleanups only what takes no time is done. Call RPL-INIT-ROBOT before the other
 functions with RPL- in their names. RUN-PLAN calls it for the only robot of a simulation or, at the
-prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME, and MISUSE if the robot is in
-another world than the current one."
+prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME. Signals MISUSE if the robot is
+in another world than the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
          (before *interface*))
@@ -130,8 +130,8 @@ another world than the current one."
   (or (interface-tick-wanted-p interface) (woken-by-tick-p interface)))
 
 (defun advance-without-reaction (interface)
-  "Set the tick of the plans of INTERFACE without a reaction, and return true, if no plan has to run
-in this tick, as in most ticks. No other thread may touch the plans meanwhile."
+  "If no plan of INTERFACE has to run in this tick, as in most ticks, only set the plans' tick, and
+return true. No other thread may touch the plans meanwhile."
   (let* ((simulation (interface-simulation interface))
          (timeline (simulation-timeline simulation)))
     (not (or (interface-closing-p interface)

@@ -158,8 +158,8 @@ thread calls this function."
     (and task (eq :running (task-state task)) task)))
 
 (defun interrupt-older-actions (interface resource &key except (test #'interrupted-by-command-p))
-  "Report to plans that the running plan, if any, has interrupted the actions on RESOURCE that pass
-TEST, except the action EXCEPT."
+  "Report to plans the actions on RESOURCE that the running plan has interrupted: the actions that
+pass TEST, except the action EXCEPT. Do nothing outside of plans."
   (when (reacting-p interface)
     (apply-answers-on resource interface except)
     (dolist (action (interface-actions interface))

@@ -8,7 +8,7 @@
 ;;; one in use; and signal MISUSE where no trace was kept.
 
 (defun trace-to-read (which runner)
-  "Return the trace that records WHICH, a task or the number of a task, and that number."
+  "Return the trace of the task WHICH, and its number. WHICH is a task or number, or NIL for all."
   (check-argument trace-of which (typep which '(or null task (integer 1)))
                   "a task, as begin-plan returns, or the number of one")
   (let ((runner (or runner (runner-to-show which))))
@@ -47,9 +47,9 @@
 (addition trace-of)
 (defun trace-of (which &key event form runner)
   "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, perhaps
-over, its number, or NIL for all. With EVENT, an event or a list of them, return only entries of
-these events; with FORM, the name of an operator, only entries at calls of that operator. RUNNER is
-a plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
+over, its number, or NIL for all. If EVENT is an event or a list of events, return only entries of
+these events. If FORM names an operator, return only entries at calls of that operator. RUNNER is a
+plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
 trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (descendant-test number trace) (constantly t))))
@@ -68,7 +68,7 @@ trace was kept."
 
 (addition task-failures)
 (defun task-failures (which &key runner)
-  "Return a list of failures in WHICH and its parts, in order, also of handled ones. See TRACE-OF."
+  "Return the failures in WHICH and its parts, in order, handled failures included. See TRACE-OF."
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-entry (issue trace)

@@ -82,8 +82,8 @@ next expression; if UNTIL is NIL, until the task is over."
 
 (defgeneric next-form (node frame)
   (:documentation "Return the expression that the next step of FRAME, a frame of NODE, begins, and
-true if the expression is a leaf. Return NIL if the step begins no expression, or an expression with
-a step of its own.")
+true if the expression is a leaf. Return NIL if the step begins no expression, and if the expression
+has a step of its own.")
   (:method (node frame)
     (if (and (zerop (frame-counter frame)) (null (frame-data frame)))
         (values (node-form node) nil)

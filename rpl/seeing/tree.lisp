@@ -11,7 +11,7 @@
 
 (defun runner-to-show (&optional subject)
   "Return the plan runner of SUBJECT, a plan runner, a task or NIL. For NIL, return the runner of
-the running plan, or else the runner in use. Signals MISUSE if there is none."
+the running plan, or else the runner in use. Signals MISUSE without a runner."
   (or (cond ((task-p subject) (task-runner subject))
             ((typep subject 'plan-runner) subject)
             (*runner*)
