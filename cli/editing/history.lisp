@@ -13,7 +13,7 @@ the end of TEXT, the function MORE is called with TEXT. MORE returns the next li
 appended after a newline, or NIL at the end of the stream."))
 
 (defun extensible-text (text)
-  "Return TEXT if it has a fill pointer, so that lines can be appended; else a copy that has one."
+  "Return TEXT, or a copy of TEXT, with a fill pointer, so that lines can be appended."
   (if (array-has-fill-pointer-p text)
       text
       (make-array (length text) :element-type 'character :adjustable t :fill-pointer t

@@ -52,7 +52,7 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
                    (write-help (find-line-for-help name))))))))
 
 (defun find-line-for-help (name)
-  "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE if there is none."
+  "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE without such a line."
   (handler-bind ((bad-line (lambda (condition)
                              (reject-line "~A APROPOS ~(~A~) searches all names."
                                           (bad-line-text condition) name))))

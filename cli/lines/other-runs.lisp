@@ -251,8 +251,8 @@ which trial the prompt is in."
 (define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
     (:running)
-    "List the failed trials of an experiment by condition and reason, each with a TRIAL line that
-opens one of them."
+    "List the failed trials of an experiment by condition and reason. For each reason, show a TRIAL
+line that opens such a trial."
   (let ((names (experiment-names name)))
     (print-failures (if (and names (null (rest names)) (not (existing-path (path-of-name name))))
                         (first names)

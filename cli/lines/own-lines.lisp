@@ -32,7 +32,7 @@ command, or if aliases would form a cycle."
     "List the aliases, or make ALIAS an alias of CMD."
   (let ((name (and alias (string-upcase alias))))
     (cond ((and (null name) (null *aliases*))
-           (format t "No aliases. ALIAS name command defines one.~%"))
+           (format t "No aliases. ALIAS name command defines an alias.~%"))
           ((null name)
            (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first)))
           (cmd (define-alias name cmd))
@@ -69,8 +69,8 @@ command is a job of JOBS, or a waiting request that is not in the list INBOX."
     (reject-line "Time stands still: ~A runs once, after RESUME, and is not repeated." cmd)))
 
 (defun await-repeated-line (session cmd jobs inbox)
-  "Wait for the end of JOBS, which SESSION has issued by the line CMD, and of commands that Lisp has
-issued. Signals BAD-LINE if one waits for RESUME. INBOX lists the requests that waited before CMD."
+  "Wait for the end of JOBS, issued by the line CMD of SESSION, and of commands issued by Lisp.
+Signals BAD-LINE if the line waits for RESUME. INBOX lists the requests that waited before CMD."
   (check-not-waiting-for-resume session cmd jobs inbox)
   (await-jobs session jobs)
   ;; For what Lisp has issued, too.

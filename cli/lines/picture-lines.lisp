@@ -55,7 +55,7 @@ from 4 to 40 for which the map has at most 900 x 700 pixels."
                              (what :rest "pixels per cell, names of layers; BARE; ANYWAY"
                                    :optional))
     (:seeing)
-    "Save the run so far in FILE, replacing it, as a film: an HTML page for any browser, to play,
+    "Save in FILE, replacing it, a film of the run so far: an HTML page for any browser, to play,
 stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
 failed commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY
 saves the film even if definitions have changed since the run began."
@@ -123,7 +123,7 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
 ;;;; WINDOW
 
 (defun find-running-robot (name)
-  "Return the robot NAME of this or another live run. Signals BAD-LINE if there is none."
+  "Return the robot NAME of this or another live run. Signals BAD-LINE if no such robot is found."
   (let* ((name (find-robot-named name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)

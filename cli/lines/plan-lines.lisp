@@ -182,7 +182,7 @@ Lisp (setf *trace-plans* t), before the plan starts."
 
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
-    "Save a picture of the plans that have run in FILE, replacing it: each task as a bar over
+    "Save in FILE, replacing it, a picture of the plans that have run. Each task is a bar over
 ticks, with what it waited for and the commands that it issued. A trace is needed: TRACE-PLANS ON,
 or in Lisp (setf *trace-plans* t), before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (path-of-name file)))))

@@ -25,8 +25,8 @@
                  items))
 
 (defun reject-ambiguous (name names &optional hint)
-  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of it.~@[ ~A~]" (string-upcase name)
-               names hint))
+  (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type more of the name.~@[ ~A~]"
+               (string-upcase name) names hint))
 
 (defun reject-unknown-name (kind name names &optional hint)
   "Signal BAD-LINE because NAME is not among NAMES. KIND names the kind of object, such as plan."
@@ -179,7 +179,7 @@ variable or ends in an asterisk."
     (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))
       (warning-set (format nil "~(~A~) is a new variable; it was not defined before.~@[ Did you ~
-                                mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines one."
+                                mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines it."
                            name meant)))))
 
 ;;; A second command in a line.

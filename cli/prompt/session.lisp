@@ -186,7 +186,7 @@ that Lisp at the prompt runs may have no such robot."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (and robots (robot-commanded))
         (first robots)
-        (reject-line "There is no robot here. WORLD lists the worlds, WORLD name starts one."))))
+        (reject-line "There is no robot here. WORLD lists worlds; WORLD name starts a world."))))
 
 (defun size-of-window (session)
   (funcall (or (console-window (session-console session)) #'window-size)))

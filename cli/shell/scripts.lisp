@@ -41,8 +41,8 @@
   "The time in seconds that a session has to end normally after its time limit.")
 
 (defun running-code-text (session calls)
-  "Return a text that names the users' code running in SESSION, as recorded in CALLS, or in its live
-run, and the number of calls begun so far. While a file is loaded, return only a text that names the
+  "Return a text that names the users' code running in SESSION (from CALLS) or else in its live run,
+and the number of calls begun so far. While a file is loaded, return only a text that names the
 form; NIL if there is nothing to name."
   (let ((simulation (session-simulation session)))
     (cond ((user-calls-origin calls) (values (running-code-owner calls) (user-calls-count calls)))

@@ -151,7 +151,7 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
 (defconstant +command-size+ 9 "The height of the font of commands, in pixels.")
 
 (defun shorten-decimals (token)
-  "Return the string TOKEN. If it is a number with decimals, keep only two of them."
+  "Return the string TOKEN. If TOKEN is a number with decimals, keep only two decimals."
   (if (and (find #\. token) (every (lambda (char) (find char "+-.0123456789def")) token)
            (find-if #'digit-char-p token))
       (let ((end (position-if (lambda (char) (find char "def")) token))
@@ -170,9 +170,9 @@ to two decimals, and a long text to its beginning."
   (if (and (failure-code-p (span-error span)) (not in-color*)) black* white*))
 
 (defun find-command-text-place (length x width from to)
-  "Return the x coordinate for the name of a command, LENGTH pixels wide, and whether it is on the
-command's box, which begins at X and is WIDTH pixels wide. The name is on the box, after it or
-before it, between FROM and TO. Return NIL if there is no room."
+  "The box of a command begins at X and is WIDTH pixels wide. Return the x coordinate for the
+command's name, LENGTH pixels wide, and whether the name is on the box. The name is on the box, or
+after or before the box, between FROM and TO. Return NIL if there is no room."
   (cond ((<= (+ 4 length) width) (values (+ x 2) t))
         ((<= (+ x width 6 length) to) (+ x width 3))
         ((<= from (- x 6 length)) (- x 3 length))))
@@ -183,9 +183,9 @@ before it, between FROM and TO. Return NIL if there is no room."
     (draw-rectangle canvas draw-gcontext* (- x 1) y (+ 2 width) +lane-height+ t)))
 
 (defun write-command (canvas span x y width from to)
-  "Write the name of the command of SPAN on its box, which begins at X and is WIDTH pixels wide, or
-beside the box between FROM and TO. Without room, write its beginning on the box. Return the x
-coordinate where box and name end."
+  "The box of the command SPAN begins at X and is WIDTH pixels wide. Write the command's name on the
+box, or beside the box between FROM and TO. Without room for the name, write its beginning on the
+box. Return the x coordinate where box and name end."
   (let* ((name (command-text span))
          (per-character (character-width canvas +command-size+))
          (length (* per-character (length name)))

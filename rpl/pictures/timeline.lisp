@@ -71,8 +71,8 @@
     (remove-if-not (lambda (entry) (member (first entry) drawn)) *timeline-legend*)))
 
 (defun legend-places (legend width)
-  "Return two values: lists (look text x y), the positions of the entries of LEGEND in lines of
-WIDTH pixels, and the height of all lines."
+  "Place the entries of LEGEND in lines of WIDTH pixels. Return two values: a list of the placed
+entries (look text x y), and the height of all lines."
   (let ((x 0) (y 0))
     (values (loop for (what text) in legend
                   for wide = (+ 46 (* +character-width+ (length text)))
@@ -185,7 +185,7 @@ TITLE. The default title is the range of ticks. Return the width and height in p
 ;;; In a place of any width.
 
 (defun page-scale (page width)
-  "Return the scale for PAGE in WIDTH pixels. The names of tasks take up to half of them."
+  "Return the scale for PAGE in WIDTH pixels. The names of tasks take at most half."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
 
@@ -234,7 +234,7 @@ the y coordinate of the end of PAGE, in pixels."
 (addition save-plan-timeline)
 (define-with-keywords save-plan-timeline
     (file &key runner (most 1000) (in-color t) title (scale 1))
-  "Save a timeline of the plans that have run in FILE, replacing an older file. The name ends in
+  "Save in FILE a timeline of the plans that have run, replacing an older file. The name ends in
 .svg or, if the program rsvg-convert is installed, in .png. Each task is a bar over ticks, below the
 bar of its parent task, with its waits, its commands while they were in progress, and its end. Turns
 of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.

@@ -71,8 +71,8 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
 of the run with its own seed. In the fork, PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
-  PLAN is a plan procedure or its name, which gets the list ARGUMENTS; a list of a plan and its
-arguments; or a task, whose remaining part is projected.
+  PLAN is a plan procedure or its name, to call with the list ARGUMENTS; or a list of a plan and
+its arguments; or a task. Of a task, the remaining part is projected.
   SEED, an integer, determines the seeds of rollouts. By default they depend on the run's seed and
 the tick.
   COST, a function without arguments, is called in each fork at its end. COST returns a number, or

@@ -6,7 +6,7 @@
 ;;; tells which task waits for the answer, and with which arguments. Twins have the same TOKEN.
 
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
-  "A question that rollouts answer: how good BRANCHES, texts, are for the rest of the plan; or how
+  "A question for rollouts: how good each of BRANCHES, texts, is for the rest of the plan; or how
 PLAN with ARGUMENTS, or the task SUBJECT, may end. OPERATOR is the operator that asks. In a rollout,
 ENDED and RESULT say how the branch or plan that the asking task tries has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)

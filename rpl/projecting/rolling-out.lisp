@@ -153,7 +153,7 @@ function THEN with the rollout in that world, and return the values of THEN."
             (call-without-run (lambda ()
                                 (funcall (option (scene-question scene) :world) #'run seed)))
             (unless called-p
-              (reject-use "project: the function :world has not called the function given to it.")))
+              (reject-use "project: the function :world has not called its argument, a function.")))
         (error (condition)
           (setf values (list (funcall then (make-failed-rollout scene trial seed condition))))))
       (values-list values))))

@@ -251,8 +251,8 @@ thread is gone, end that plan. Signals MISUSE if no interface can be used."
         (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator ~
                      has been started anew, or the robot defined anew, call it again. Outside of ~
                      plans use commands without RPL-, such as (robot-turn ~(~A~) ~
-                     1).~;RUN-PLAN-ALONE runs plans without one, and RUN-PLAN on the robot of the ~
-                     run.~]"
+                     1).~;RUN-PLAN-ALONE runs plans without a robot. RUN-PLAN runs them on the ~
+                     robot of the run.~]"
                     alone-p (if robots (robot-name (first robots)) 'robot)))))
 
 (addition rpl-robot)

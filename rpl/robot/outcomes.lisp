@@ -190,7 +190,7 @@ after RPL-: by which function, or how to define the function; NIL if there is no
           ((and same-p (not (has-plan-function-p (command-name command))))
            (let ((*print-case* :downcase))
              (format nil "no fluent tells plans of the end of the command ~A yet. Define ~
-                          one: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
+                          a fluent: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
                           (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the ~
                           package ars-magna.rpl-robot, with a name of yours for my-fluent*."
                      (string-downcase (command-name command))
