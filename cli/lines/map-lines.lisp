@@ -22,7 +22,7 @@
 
 (defun complete-word (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
-BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE takes."
+BAD-LINE without such a word. TAKES, a format control for WORDS, tells what LINE takes."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
       (reject-line "~A does not take ~A.~@[ Did you mean ~A?~] It takes ~?." line text

@@ -31,7 +31,7 @@ NIL if it contains Lisp or lines of the prompt."
                  form (native-name path))))
 
 (defun start-of-form (text start)
-  "Return the start of the next form in TEXT from START on; the length of TEXT if there is none."
+  "Return the start of the next form in TEXT from START on; the length of TEXT without such a form."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
         for end = (and (< position (length text)) (skip-comment text position))
         while end

@@ -66,7 +66,7 @@ not served."))
            (interface-wishes interface)))
 
 (defun serve-next-wish (interface)
-  "Serve INTERFACE's oldest wish whose task is not blocked, or none. Return true if a task goes on."
+  "Serve the oldest wish of INTERFACE whose task could go on. Return true if a task does go on."
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))
