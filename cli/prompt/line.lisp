@@ -12,7 +12,7 @@
                            (:copier nil))
   "A parameter of a line command. TYPE is an argument type of the command layer, or a keyword.
 :REST, :LINE (another line) and :FORM (of Lisp) stand for the rest of the line. :TOKEN and other
-keywords, such as :FILE, stand for the text up to the next blank. CHOICES depend on the keyword."
+keywords, such as :FILE, stand for the text up to the next blank. The keyword determines CHOICES."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)
