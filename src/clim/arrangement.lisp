@@ -96,8 +96,8 @@ the rest. Otherwise each gets a fair share."
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
-  "Divide HEIGHT, which is less than NEEDS. The plan, if in NEEDS, gets what it needs, up to half of
-HEIGHT or what others leave, because a tree of few lines is useless. The others get fair shares."
+  "Divide HEIGHT, which is less than NEEDS. A plan gets what it needs, up to half of HEIGHT, or
+more if others leave more, because a tree of few lines is useless. The others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)

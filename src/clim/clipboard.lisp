@@ -73,7 +73,7 @@ if a piece does not come or the text is too long."
                  (reject-paste "The text is too long to be pasted")) (write-string piece out)))))
 
 (defun fetch-selection-as (type selection display mailbox)
-  "Return the text of SELECTION in the X type TYPE, as a string of octets, or NIL if there is none."
+  "Return the text of SELECTION in the X type TYPE, a string of octets, or NIL if there is no text."
   (xlib:convert-selection selection type mailbox :mcclim nil)
   (ecase (await-answer display)
     ((nil) (reject-paste "The program with the text to be pasted does not answer"))
@@ -85,7 +85,7 @@ if a piece does not come or the text is too long."
 
 (defgeneric fetch-text (port selection)
   (:documentation "Return the text of SELECTION, :PRIMARY or :CLIPBOARD, on the X server of PORT, or
-NIL if there is none. Signals MISUSE if the text does not arrive or is too long.")
+NIL if there is no text. Signals MISUSE if the text does not arrive or is too long.")
   (:method (port selection) (declare (ignore port selection)) nil)
   (:method ((port clim-clx:clx-port) selection)
     (let ((display (connect-to-x-server port)))

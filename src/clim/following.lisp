@@ -16,8 +16,8 @@
         (eq old (watcher-simulation (window-watcher window))))))
 
 (defun robot-after-switch (window new)
-  "Return the name of the robot of the run NEW that WINDOW will show: the robot that its prompt
-commands, a robot with the name of the robot shown before, or else another robot. Return NIL if
+  "Return the name of the robot that WINDOW will show in the run NEW: the robot that the prompt of
+WINDOW commands, else a robot with the name of the robot shown before, else another. Return NIL if
 other windows show all robots of NEW."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
         (own-p (eq window (window-of-this-thread))))

@@ -81,7 +81,7 @@ Return NIL for other keys than arrows."
 
 (defun altgr-key-symbol (symbol-at state)
   "Return the X key symbol for a key pressed with AltGr, or NIL if STATE has no AltGr or the key has
-no separate symbol for it. The function SYMBOL-AT returns the symbol of the key at an X index."
+no separate symbol for AltGr. The function SYMBOL-AT returns the symbol of the key at an X index."
   (flet ((own (index)
            (let ((symbol (funcall symbol-at index)))
              (and (plusp symbol) (/= symbol (funcall symbol-at 0)) symbol))))

@@ -82,7 +82,7 @@ section of plans is ignored, because it takes any height."
 
 (defun lasting-needs (layout)
   "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
-section has needed so far, or what it needs now if only the present needs fit."
+section has needed so far, or its present need if the layout has room only for present needs."
   (let* ((now (current-needs layout))
          (before (need-function (pane-needed layout)))
          (most (loop for (section pixels) in now
@@ -235,8 +235,8 @@ LAYOUT.")
 (defun section-foldable-p (section) (and (member section +sections+) t))
 
 (defun world-title (window)
-  "Return the title of the world in WINDOW: the map, the fork or trial if the run is one, and the
-robot if there are several."
+  "Return the title of the world in WINDOW: the map; the fork or trial, if WINDOW shows one;
+and the robot, if the run has several robots."
   (let ((map (and (window-snapshot window) (window-map window)))
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))

@@ -151,8 +151,8 @@ and NIL for a gap."
     (scroll-to popup (clamp offset (- (+ top 6 +row-height+) height) top))))
 
 (defun highlight-further-row (popup step)
-  "Highlight the row of POPUP STEP rows after the highlighted one. Without a highlight, highlight
-the first row, or the last if STEP is negative. Return true if POPUP has rows to choose."
+  "Highlight the row that is STEP rows after the highlighted row of POPUP. Without a highlight,
+highlight the first row, or the last if STEP is negative. Return true if POPUP has rows to choose."
   (let* ((rows (remove nil (pane-rows popup) :key #'row-action))
          (place (position (pane-pointed popup) rows))
          (row (nth (cond (place (mod (+ place step) (length rows)))

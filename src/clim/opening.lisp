@@ -159,9 +159,9 @@ message says whether the run continues, and how to open another window."
         (remove window (open-windows))))
 
 (defun robot-to-show (window)
-  "Return the name of the robot that WINDOW, whose run is over, shall show, and the run of that
-robot. It is the robot that a prompt would command, or another robot of the same run if another
-window shows that robot. Return NIL if there is none."
+  "The run of WINDOW is over. Return the name of the robot that WINDOW shall show next, and the run
+of that robot: the robot that a prompt would command or, if another window shows that robot, another
+robot of the same run. Return NIL if there is no such robot."
   (multiple-value-bind (simulation name)
       (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
     (when simulation
@@ -290,7 +290,7 @@ comes first. Other windows are left out while their prompts are in a trial or fo
     (and simulation (simulation-over simulation) t)))
 
 (defun window-to-show-robot (robot)
-  "Return the open window in which OPEN-WINDOW shows ROBOT, or NIL if it must open a new one."
+  "Return the open window in which OPEN-WINDOW shows ROBOT, or NIL if a new window is needed."
   (let ((windows (switchable-windows)) (simulation (robot-simulation robot)))
     (or (find (robot-name robot) windows :key #'shown-robot)
         (and (not (live-p simulation))
@@ -306,7 +306,7 @@ comes first. Other windows are left out while their prompts are in a trial or fo
 
 (defun open-window (robot)
   "Show ROBOT in a window and raise it: the window of ROBOT, a window of its trial or fork, a window
-whose run is over, or else a new one. Return the window. Signals MISUSE if there is no X server."
+whose run is over, or else a new window. Return it. Signals MISUSE if there is no X server."
   (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))

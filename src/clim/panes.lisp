@@ -209,8 +209,8 @@ down.")
 (defconstant +scroll-bar-width+ 10 "The width of scroll bars, in pixels.")
 
 (defgeneric scroll-state (pane)
-  (:documentation "Return three values in one unit: the position in its contents where PANE begins,
-the length of the visible part, and the length of the contents.")
+  (:documentation "Return three values in one unit: the position in the contents of PANE where the
+visible part begins, the length of the visible part, and the length of the contents.")
   (:method (pane)
     (values (pane-offset pane) (nth-value 1 (pane-size pane)) (pane-extent pane))))
 

@@ -77,7 +77,7 @@
          (wrapped-text text (max 16 (floor (- (content-width pane) 16) +character-width+)))))
 
 (defun draw-plan-ending (canvas pane y)
-  "Write from Y down how the last plan, if any, ended. Return the y coordinate of the text's end."
+  "Write below Y how the last plan, if any, ended. Return the y coordinate of the text's end."
   (let ((ended (plan-look-ended (plan-look-of pane))))
     (if ended
         (draw-plan-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
@@ -211,7 +211,7 @@
 
 (defun plan-subject-at (pane x y)
   "Return the subject that PANE shows at X, Y: a button, the fold mark or image of a task, or a
-point of the timeline. Return NIL if there is none."
+point of the timeline. Return NIL if PANE shows no subject there."
   (let* ((subjects (pane-subjects pane))
          (subject (subject-at (if (< y +plan-buttons-height+)
                                   (remove-if-not #'button-p subjects :key #'first)

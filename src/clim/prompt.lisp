@@ -100,7 +100,7 @@ line, and OVER when the user leaves the prompt."
 
 ;; The window does this, not the thread that ends: when Lisp ends all threads, no new one may begin.
 (defun restart-prompt-if-lost (conversation simulation robot-name)
-  "Start a new thread for the prompt if a line or a program has ended the old one."
+  "Start a new thread for the prompt if a line or a program has ended the old thread."
   (when (conversation-lost-p conversation)
     (write-at-prompt conversation "The thread of this prompt was ended, and its running line with ~
                                    it. A new thread starts.~%")

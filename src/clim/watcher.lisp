@@ -67,8 +67,8 @@ of user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks 
       (eq :paused (ars-magna.cli:simulation-pace simulation))))
 
 (defun time-state (simulation sample)
-  "Return two values: the keyword of STATE-WORDS that says how time passes in SIMULATION, and a text
-that continues the words, or NIL."
+  "Return two values: a keyword of STATE-WORDS, which says how time passes in SIMULATION; and a text
+to write after these words, or NIL."
   (let ((busy (blocking-code-text simulation sample)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:simulation-pace simulation))))
@@ -290,7 +290,7 @@ itself, do nothing, because the next tick makes the snapshot."
 
 ;; As for the thread of a prompt, it is not the one that ends which starts another.
 (defun restart-pacer-if-lost (watcher)
-  "Start a new pacer thread for WATCHER if the user has ended the old one."
+  "Start a new pacer thread for WATCHER if the user has ended the old thread."
   (when (shiftf (watcher-unpaced-p watcher) nil) (start-pacer watcher)))
 
 (defun start-watching (watcher simulation)

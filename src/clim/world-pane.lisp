@@ -102,7 +102,7 @@
 ;;; The robot.
 
 (defun robot-position-in-pane (pane)
-  "Return the pixel coordinates in PANE of the window's robot, two values, or NIL if there is none."
+  "Return the pixel coordinates in PANE of the window's robot, two values, or NIL without a robot."
   (let ((robot (window-robot (window-of pane))) (scale (pane-scale pane)))
     (and robot
          (values (- (* scale (robot-image-x robot)) (pane-left pane))

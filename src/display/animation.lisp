@@ -118,7 +118,7 @@ by default the end. By default EVERY is chosen so that the film has at most 600 
 number of frames per second.
 
 The name of FILE chooses the kind of film:
-- .html: a page for any browser that plays, stops and searches the run, without a network. The page
+- .html: a page that plays, stops and searches the run in any browser, without a network. The page
   lists what robots grasped, released and stowed; commands that failed; plans and parts of plans
   that failed or were ended; errors in your code; and MOMENTS of your own, each a moment or a list
   of a tick and a string. KINDS chooses the kinds of listed events: see SAVE-RUN-PICTURE. The page

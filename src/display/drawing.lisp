@@ -197,8 +197,8 @@ right. The default method ignores SIZE, UPWARD-P and BOLD-P, because a canvas ha
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return the width in pixels that layouts assume for a character that DRAW-WORDS
-draws on CANVAS in a font SIZE pixels high. The default method returns +CHARACTER-WIDTH+.")
+  (:documentation "Return the width in pixels of a character that DRAW-WORDS draws on CANVAS in a
+font SIZE pixels high, as layouts assume it. The default method returns +CHARACTER-WIDTH+.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))

@@ -121,7 +121,7 @@ the first follows.")
 the first follows.")
 
 (defun substance-position (name)
-  "Return the number of substances defined before the one called NAME, or NIL if there is none."
+  "Return how many substances are defined before the substance NAME, or NIL if NAME is not defined."
   (position name (all-substances) :key #'substance-name :test #'same-name-p))
 
 (defun substance-ink (name)
@@ -158,8 +158,8 @@ the first follows.")
   (texture :plain :type keyword :read-only t))
 
 (defun choose-texture (name taken)
-  "Return a texture for the substance called NAME in a map: its usual texture, or the next one that
-is not in TAKEN, the textures of other substances of the map."
+  "Return a texture for the substance called NAME in a map: its usual texture or, if TAKEN contains
+that one, the next texture that is free. TAKEN are the textures of the map's other substances."
   (let* ((first (or (substance-position name) 0))
          (all (loop for position from first repeat (length +wall-textures+)
                     collect (nth-cyclic position +wall-textures+))))

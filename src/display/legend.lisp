@@ -22,7 +22,7 @@
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
 (defun named-entry (name sample &optional (more "") (width +sample-width+))
-  "Return a legend entry whose text is NAME, a string that is abridged if it is long, followed by
+  "Return a legend entry. Its text is the string NAME, abridged if NAME is long, and then the string
 MORE. SAMPLE is a function that draws the sample, WIDTH pixels wide."
   (let ((text (short-name name)))
     (make-entry (concatenate 'string text more) sample
@@ -161,8 +161,8 @@ number and the range of its parameters. The lists are sorted by number."
 ;;; Things: each look once, with the names of all things that look so.
 
 (defun sample-half-width (image)
-  "Return half the width of the sample of the thing of IMAGE, in pixels. It is as wide as on the map
-if a line of the legend has room for that."
+  "Return half the width, in pixels, of the sample of the thing of IMAGE. The sample is as wide as
+the thing on the map if a line of the legend has room for such a sample."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +greatest-thing-width+))))
     (thing-half-width image)))
 

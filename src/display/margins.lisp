@@ -83,8 +83,8 @@ the scale that suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is n
       (fitting-scale snapshot layers)))
 
 (defun drawn-scale (scale snapshot layers)
-  "Return two values: the scale, in pixels per cell, with which to draw a picture of SNAPSHOT with
-LAYERS, and the factor by which to magnify the drawn picture, with text and lines. SCALE is the
+  "Return two values for a picture of SNAPSHOT with LAYERS: the scale for drawing, in pixels per
+cell, and the factor by which to magnify the drawn picture with its text and lines. SCALE is the
 wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than suits the map and than
 +GREATEST-UNMAGNIFIED-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
@@ -263,8 +263,8 @@ PER-PIXEL times the height of its font."
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
 (defun call-on-part (function canvas snapshot)
-  "Call FUNCTION with the origin in the corner of the map of SNAPSHOT, and with its drawing on
-CANVAS clipped to the part of the map that SNAPSHOT shows."
+  "Call FUNCTION with the origin of CANVAS in the corner of the map of SNAPSHOT. Clip what FUNCTION
+draws on CANVAS to the part of the map that SNAPSHOT shows."
   (if (snapshot-part snapshot)
       (destructuring-bind (left top right bottom) (pixels-of (snapshot-part snapshot))
         (with-clipping (canvas 0 0 (- right left) (- bottom top))

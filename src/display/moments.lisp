@@ -43,7 +43,7 @@ the contents of each bin. FAILURE is the last failure of a command."
                     (robot-failure robot)))
 
 (defun initial-observation (new)
-  "Return the observation to compare NEW, the first one, with: empty hands, as when a run begins."
+  "NEW is the first observation of a run. Return one with empty hands to compare NEW with."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
 
 (defun changes-of-hands (old new)

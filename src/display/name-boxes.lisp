@@ -58,8 +58,8 @@ Return the last value of FUNCTION."
 ;;; Names.
 
 (defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
-  "A thing or robot on the map that has a name to write: it is called NAME, and is drawn up to HALF
-pixels around X, Y. ROBOT is the image of a robot, or NIL for a thing."
+  "A thing or robot on the map whose name, NAME, is to be written. It is drawn up to HALF pixels
+around X, Y. ROBOT is the image of a robot, or NIL for a thing."
   (name "" :type string :read-only t)
   (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
   (robot nil :read-only t))

@@ -43,8 +43,8 @@ part of the map to show, by default the whole map. If IN-COLOR is NIL, the pictu
 white.
 
 SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
-set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40, and
-makes the picture without its legend at most 900 x 700 pixels large if 4 is small enough. If SCALE
+set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. The
+picture without its legend is then at most 900 x 700 pixels large if 4 is small enough. If SCALE
 is larger than the scale that suits the map, and larger than 20, text and lines grow too. In a
 paper, text is readable in a column, 84 mm wide, if the picture is at most 400 pixels wide. On a
 page, 174 mm wide, text is readable if the picture is at most 820 pixels wide.

@@ -109,7 +109,7 @@ NIL" :export)
 (defun has-kickers-p (thing) (and (thing-kickers thing) t))
 
 (defun image-of-thing (thing &optional old)
-  "Return an image of THING: OLD, an earlier image or NIL, if OLD is still valid, else a new one."
+  "Return an image of THING: OLD if this earlier image is given and still valid, else a new image."
   (let ((attributes (thing-attributes thing)))
     (if (and old
              (eq attributes (thing-image-attributes old))

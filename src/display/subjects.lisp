@@ -108,8 +108,8 @@ snapshots are EQUAL if their worlds look the same."
         (visible-content (snapshot-robots snapshot))))
 
 (defun display-content (display robot)
-  "Return an object that represents what DISPLAY, one of +DISPLAYS+ except the world, shows of
-ROBOT, an image of a robot. The objects for two images are EQUAL if DISPLAY shows the same of both."
+  "Return an object that represents what DISPLAY shows of ROBOT, an image. DISPLAY is one of
++DISPLAYS+, but not the world. The objects for two images are EQUAL if DISPLAY shows them alike."
   (ecase display
     (:state (list (robot-image-x robot) (robot-image-y robot) (robot-image-angle robot)
                   (robot-image-speed robot) (robot-image-place robot)

@@ -104,8 +104,8 @@ kinds.")
         +letters+))
 
 (defun thing-names-by-size (world)
-  "Return the names of the things in WORLD, strings, sorted by the size of the largest thing with
-the name, the largest first, and then by name."
+  "Return the names of the things in WORLD, a list of strings. The names of the largest things are
+first. Names of things with the same size are in alphabetical order."
   (let ((sizes (make-hash-table :test #'equal)))
     (do-things (thing world)
       (let ((name (symbol-name (thing-name thing))))

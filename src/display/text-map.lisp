@@ -76,8 +76,8 @@ longer than COLUMNS has its own line."
   "The least width of a legend beside a map, in characters.")
 
 (defun side-legend (glyphs room rows paint)
-  "Return two values: a vector with a list of padded legend items for each of ROWS lines of a map,
-to write beside the map in ROOM characters, and the rest of GLYPHS, for which there is no room."
+  "Return two values: a vector with a list of padded legend items for each of ROWS lines of a map;
+and those of GLYPHS for which there is no room. The items fit beside the map in ROOM characters."
   (let* ((longest (loop for glyph in glyphs maximize (length (glyph-text glyph))))
          (width (min room (+ 2 longest)))
          (columns (if (<= +least-side-legend-width+ room) (max 1 (floor (+ room 2) (+ width 2))) 0))
@@ -208,8 +208,8 @@ part of its legend, if possible. A kind of thing keeps its letter while none is 
 places, things as letters, robots as arrows, and a legend. With ROWS, the string has at most ROWS
 lines if possible. REGION, a list (left top right bottom) in metres, is the part of the map to show.
 RADIUS, a number of cells, limits the part to the surroundings of ROBOT. LAYERS is a list of names
-such as :WAY and :BELIEF, which *PICTURE-LAYERS* documents. PAINT is NIL or a function of a string
-and of the name of a colour or NIL that returns the string in this colour. If ONLY-LEGEND, return
+such as :WAY and :BELIEF, which *PICTURE-LAYERS* documents. PAINT is NIL or a function. It takes
+a string and the name of a colour or NIL, and returns the coloured string. If ONLY-LEGEND, return
 the legend without the map. Call this function between ticks. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")

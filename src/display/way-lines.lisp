@@ -74,9 +74,9 @@ and do not overlap OTHERS. A very short way has none."
 
 (define-constant +lanes+ '((0 0) (5/4 5/2) (5/2 -5/4) (-5/4 -5/2) (-5/2 5/4))
   :test #'cl:equal
-  :documentation "The offsets at which several ways are drawn beside their real positions, by the
-number of the lane: lists (x y) in widths of the line. No two lanes share a row, a column or a
-diagonal, where ways would overlap.")
+  :documentation "The offsets of ways from their real positions in a picture of several ways: a list
+(x y) for each lane, in widths of the line. No two lanes share a row, a column or a diagonal,
+because ways would overlap there.")
 
 (define-record (way-line (:constructor make-way-line
                              (position pieces &key (color (nth-ink position))

@@ -50,8 +50,8 @@ COUNT - 1 successes before the last trial, which succeeds with the probability R
     next))
 
 (defun pass-probability (rate &key (at-least .95) (trials 200) (level .05))
-  "Return the probability that a check by IS-SUCCESS-RATE with these arguments passes if each trial
-succeeds with the probability RATE; and the average number of trials. Use this function to see which
+  "Return the probability that a check by IS-SUCCESS-RATE with these arguments passes, and the mean
+number of trials. RATE is the probability that a trial succeeds. Use this function to see which
 rates a check accepts: with the defaults, a rate of 95 % passes with a probability of .97, 90 % with
 .20, and 85 % with .003. Both values are exact except for rounding: PASS-PROBABILITY adds up all
 sequences of successes and failures, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."

@@ -14,7 +14,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return VALUE or, if LOG-P, its logarithm to base 10. Signals WRONG-ARGUMENT if there is none."
+  "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if that does not exist."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
                            "a number above 0 on a logarithmic axis; leave :log-x out, or give the
@@ -50,8 +50,8 @@ equal, the limits are at least LEAST-MARK-STEP farther out on each side."
   (if (and (not percent) (every #'integerp values)) 1 0))
 
 (defun padded-range (low high from to inset)
-  "Return the numbers at the ends of an axis between the pixels FROM and TO on which LOW and HIGH
-are INSET pixels from the ends. INSET is reduced to a sixth of the axis if it is more."
+  "Return the numbers at the ends of an axis between the pixels FROM and TO. LOW and HIGH are INSET
+pixels from the ends of this axis. INSET is reduced to a sixth of the axis if it is more."
   (let* ((span (rational (- to from)))
          (inset (min (rational inset) (/ span 6)))
          (margin (* (- high low) (/ inset (- span (* 2 inset))))))

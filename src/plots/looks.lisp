@@ -112,9 +112,9 @@
         finally (return (max 1 (1- count)))))
 
 (defun break-position (word count)
-  "Return the position at which to break WORD, whose first COUNT characters fit in a line. WORD is
-broken after the last dash, slash or similar character in that part, but not at its beginning;
-without such a character WORD is broken at COUNT."
+  "Return the position at which to break WORD. The first COUNT characters of WORD fit in a line. The
+position is after the last dash, slash or similar character among them, except the first character.
+Without such a character the position is COUNT."
   (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))

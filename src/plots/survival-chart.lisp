@@ -146,8 +146,8 @@ interval. END is the time until which the last of these steps is valid."
 :censored times :times times). A step is a list (time survival low high): the share that survives
 from that time on, from 0 to 1, and the bounds of its confidence band; before the first step the
 share is 1. TIMES are the times at which the trials ended, by the event or censoring; CENSORED are
-the times of those censored. Below the chart are the numbers at risk, computed from TIMES, with the
-heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
+the times of the censored trials. Below the chart are the numbers at risk, computed from TIMES, with
+the heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument survival-chart risk-label (stringp risk-label) "a string")
   (let* ((curves (checked-curves curves))

@@ -106,7 +106,7 @@ Store the last values of the variables in SIMULATION, or globally if SIMULATION 
                        (setf (global-value symbol) (symbol-value symbol)))))))))
 
 (defun call-in-other-run (simulation function)
-  "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current one."
+  "Call FUNCTION with the parameters and variables of SIMULATION, which is not the current run."
   (let ((around *simulation*))
     (when around (store-environment around))
     (in-any-case

@@ -221,6 +221,6 @@ number of a definition that has changed becomes :CHANGED."
            (format nil "~A has changed since the recording" (kind-and-name-text definition))))))
 
 (defun definition-differences (definitions)
-  "Return a list of texts about how DEFINITIONS of a journal differ from the current ones."
+  "Return a list of texts about how DEFINITIONS of a journal differ from the current definitions."
   (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

@@ -251,8 +251,8 @@ If FORK was rewound, its successor is used."
 ;;; The copy of an object in a fork.
 
 (defgeneric counterpart-in-current-run (object)
-  (:documentation "Return the copy, in the current simulation, of OBJECT, which belongs to the run
-that was forked; or NIL. Signals WRONG-ARGUMENT for an object that does not belong to a run.")
+  (:documentation "Return the copy of OBJECT in the current simulation, or NIL. OBJECT belongs to
+the run that was forked. Signals WRONG-ARGUMENT for an object that does not belong to a run.")
   (:method (object)
     (reject-argument 'counterpart "object" object
                      (one-line "a robot, a part of one, a thing, a designator, an odometer, a
@@ -279,7 +279,7 @@ task, a fluent or a valve"))))
 (addition counterpart)
 (defun counterpart (object &optional (fork (current-simulation)))
   "Return the copy of OBJECT in FORK, by default the current simulation. FORK is a direct or
-indirect fork of the run of OBJECT, or the run that replaced that run on REWIND. OBJECT may be a
+indirect fork of the run of OBJECT, or the successor of that run after REWIND. OBJECT may be a
 robot, part, thing, designator, odometer, task, fluent or valve. Return NIL if FORK has no copy: the
 thing is destroyed there, the designator invalid, or the task over. Signals WRONG-ARGUMENT."
   (check-argument counterpart fork

@@ -7,8 +7,8 @@
 ;;; they must be defined where it is loaded.
 
 (defgeneric external-name (object)
-  (:documentation "If OBJECT does not belong to one run, return its name, by which EXTERNAL-OBJECT
-finds it: a list (KIND argument...) of a keyword and plain data. Otherwise return NIL.")
+  (:documentation "Return the name of OBJECT, or NIL if OBJECT belongs to one run. The name is a
+list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJECT by this name.")
   (:method (object) (declare (ignore object)) nil)
   (:method ((map map)) (list :map (qualified-name (map-name map))))
   (:method ((blueprint blueprint)) (list :robot (qualified-name (blueprint-name blueprint))))
@@ -37,7 +37,7 @@ finds it: a list (KIND argument...) of a keyword and plain data. Otherwise retur
       (error "~(~A~) has fewer methods than that" name)))
 
 (defun external-object (kind argument &optional more)
-  "Return the object with the external name (KIND ARGUMENT [MORE]). Signals an error without one."
+  "Return the object with the external name (KIND ARGUMENT [MORE]), or signal an error."
   (or (typecase argument
         (string (case kind
                   (:map (find-map argument))

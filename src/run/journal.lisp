@@ -93,8 +93,8 @@ they close over. See RESTORED-ARGUMENTS."
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun record-operation (simulation operator arguments &optional request)
-  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for it, at the
-current tick, in the journal and the past of SIMULATION, if SIMULATION keeps them."
+  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for this call. If
+SIMULATION keeps a journal or a past, record the call there, at the current tick."
   (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (requested-inside-tick-p request))))
@@ -129,8 +129,8 @@ values that DIRTY-SIMULATION would restore have changed, record these, too."
 
 (define-constant +remark-limit+ 1000 :documentation "The largest number of remarks in a journal.")
 (define-constant +part-limit+ 500
-  :documentation "The number of remarks from which on no remarks about parts of plans are added: a
-plan that tries repeatedly makes many, and other remarks need room.")
+  :documentation "A journal with this many remarks gets no more remarks about parts of plans. A plan
+that tries repeatedly makes many such remarks, and other remarks need room.")
 
 (defun room-for-remark-p (journal kind)
   (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))

@@ -83,8 +83,8 @@ successor. Return SIMULATION."
        (or (not journal) (simulation-journal simulation))))
 
 (defun simulation-to-start (world seed journal)
-  "Return the simulation of WORLD to run live: a new simulation if ticks of the last one have
-passed, or if JOURNAL is true and the last one keeps no journal. SEED, if given, seeds the dice."
+  "Return the simulation of WORLD to run live. It is new if the last simulation is over, has passed
+ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (startable-p simulation journal))
            (end-simulation simulation "it has been started anew")
@@ -164,7 +164,7 @@ current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
                     (thinking :real)
                   &allow-other-keys)
   "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make
-the run the current simulation. ROBOT is a robot or a map with a robot in it, or the name of either.
+the run the current simulation. ROBOT is a robot, a map with a robot, or the name of a robot or map.
 A world that has run before starts anew, with SEED if SEED is given. The run keeps a journal unless
 JOURNAL is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks,
 so that it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see

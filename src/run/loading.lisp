@@ -219,7 +219,7 @@ DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed
 
 (defun load-saved-run (file anyway)
   "Load the run in FILE as LOAD-SIMULATION does. Return the simulation, and a list (symbol value) of
-the parameters that DIRTY-SIMULATION would restore in it."
+the parameters that DIRTY-SIMULATION would restore in this simulation."
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
   (let ((head (read-saved-run-head file)))
     (unless anyway (check-saved-definitions head))
@@ -228,9 +228,9 @@ the parameters that DIRTY-SIMULATION would restore in it."
 (addition load-simulation)
 (defun load-simulation (file &key anyway)
   "Return a new headless simulation in the state that SAVE-SIMULATION saved in FILE. The simulation
-has the same STATE-DIGEST as the saved run, continues exactly as that run would have, given the same
-requests, and has its journal, if any. The map, the robots and all other definitions that the run
-uses must be loaded. Nothing in FILE is executed. Signals:
+has the same STATE-DIGEST as the saved run, and its journal, if any. Given the same requests, it
+continues exactly as the saved run would have. The map, the robots and all other definitions that
+the run uses must be loaded. Nothing in FILE is executed. Signals:
 - DAMAGED-SIMULATION if FILE is damaged or is not a saved run
 - UNKNOWN-NAME if a definition that the run uses is not loaded
 - DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since the run was

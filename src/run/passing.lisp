@@ -210,8 +210,8 @@ failed."
            (wait-while-serving idle (min 0.02 (max 0 (- due (seconds-now)))))))
 
 (defun check-wait-while-paused (operator simulation)
-  "If OPERATOR waits for a live SIMULATION that is paused, signal MISUSE if no user can resume it;
-otherwise queue a warning, once in a run."
+  "OPERATOR waits for SIMULATION, a live run. If SIMULATION is paused and no user can resume it,
+signal MISUSE. If a user can resume it, queue a warning, once in a run."
   (when (paused-without-steps-p simulation)
     (unless *waits-while-paused-p*
       (reject-use "~(~A~): the run is paused, so this would wait for ever. Call (resume) first."

@@ -133,8 +133,8 @@ recorded. Return nothing."
            (notifying-phase-p (act-phase act)))))
 
 (defun acts-until (tick acts)
-  "ACTS is a list, the newest act first. Return its tail of acts done before the end of the tick
-TICK; and a list, the newest first, of the requests that were made but not performed before that."
+  "ACTS is a list, the newest act first. Return two values: the tail of acts done before the end of
+the tick TICK; and a list, the newest first, of requests made, but not performed, before this end."
   (let ((tail (member-if (lambda (act) (done-by-end-p act tick)) acts)))
     (values tail
             (remove-if-not (lambda (act) (requested-in-tick-p act tick)) (ldiff acts tail)))))

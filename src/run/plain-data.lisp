@@ -119,7 +119,7 @@
   (if (and (< start (length word)) (find (char word start) "+-")) (1+ start) start))
 
 (defun digits-p (word start)
-  "True if WORD has only digits from START to its end, and at least one."
+  "True if WORD has only digits from START to its end, and at least one digit."
   (and (< start (length word)) (= (length word) (skip-digits word start))))
 
 (defun exponent-p (word start)
@@ -193,7 +193,7 @@
       (setf (gethash text *uninterned-symbols*) (make-symbol name))))
 
 (defun find-or-make-symbol (text)
-  "Return the symbol that TEXT, PACKAGE::NAME, names; if there is none, an uninterned symbol."
+  "Return the symbol that TEXT, PACKAGE::NAME, names; if it does not exist, an uninterned symbol."
   (let* ((colons (or (search "::" text) (error "a name has no package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
@@ -213,7 +213,7 @@
         (error "no object has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
 (defun find-or-make-keyword (name word)
-  "Return the keyword NAME, written as WORD; if there is none, an uninterned symbol."
+  "Return the keyword NAME, written as WORD; if it does not exist, an uninterned symbol."
   (cond ((find-symbol name :keyword))
         (*numbered-objects* (make-keyword name))
         (t (uninterned-symbol word name))))

@@ -10,7 +10,7 @@
 
 (defstruct (repetition (:constructor make-repetition (simulation acts)) (:copier nil))
   "The repetition of a past in SIMULATION. ACTS are the acts that are not yet repeated, the oldest
-first. HELD are the requests that SIMULATION has made by itself and that are not yet due, the oldest
+first. HELD are the requests made by SIMULATION itself and not yet due, the oldest
 first. DIVERGED is the first tick at which an act could not be repeated exactly, or NIL."
   (simulation nil :type simulation :read-only t)
   (acts '() :type list)
@@ -50,7 +50,7 @@ arguments are compared: which of its commands a plan withdraws is known only on 
            (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
 
 (defun repeat-request (act repetition)
-  "Post the same request made by the fork itself, if any; otherwise repeat the request of ACT."
+  "If the fork itself has made the request of ACT too, post the fork's request. Else repeat ACT."
   (let* ((held (repetition-held repetition))
          (own (and (act-own-p act)
                    (find-if (lambda (request) (same-request-p request act)) held))))
@@ -119,8 +119,8 @@ arguments are compared: which of its commands a plan withdraws is known only on 
     (setf (timeline-on-moment timeline) nil)))
 
 (defun repeat-acts (simulation acts goal)
-  "Advance SIMULATION, a kept fork that is the current simulation, to the tick GOAL and repeat ACTS,
-which begin with the oldest. Return the tick at which a plan diverged, or NIL."
+  "Advance SIMULATION to the tick GOAL and repeat ACTS, the oldest first. SIMULATION is a kept fork
+and the current simulation. Return the tick at which a plan diverged, or NIL."
   (let ((repetition (make-repetition simulation acts))
         (*repeated-timeline* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.

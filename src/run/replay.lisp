@@ -163,8 +163,8 @@ DIFFERENT-DEFINITIONS if definitions have changed since the recording, unless AN
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun resolve-journal (journal operator)
-  "Return the journal that JOURNAL, an argument of OPERATOR, means: a journal, the name of a file,
-or NIL for the journal of the current simulation up to now."
+  "Return the journal that JOURNAL means. JOURNAL, an argument of OPERATOR, is a journal, the name
+of a file, or NIL for the journal of the current simulation up to now."
   (if journal
       (read-journal-if-file journal operator)
       (let ((simulation (current-simulation)))

@@ -66,8 +66,8 @@ clock of the current simulation, return that. Otherwise return NIL."
 ;;; Making the successor.
 
 (defun past-until (tick simulation)
-  "Return the past of SIMULATION at the end of the tick TICK; and a list, the newest first, of the
-requests that were made but not performed before that."
+  "Return two values: the past of SIMULATION at the end of the tick TICK; and a list, the newest
+first, of requests made, but not performed, before this end."
   (let* ((past (simulation-past simulation))
          (acts (past-acts past)))
     (when (= tick (simulation-tick simulation))
@@ -88,8 +88,8 @@ requests that were made but not performed before that."
                           tick))))
 
 (defun repeat-past (past asked tick)
-  "Return a copy of the run of PAST at the end of the tick TICK, with the requests ASKED waiting;
-and the tick at which a plan diverged while the past was repeated, or NIL."
+  "Return two values: a copy of the run of PAST at the end of the tick TICK, with the requests ASKED
+waiting; and the tick at which a plan diverged while the past was repeated, or NIL."
   (let* ((kept (first (past-forks past)))
          (run (await-fork (fork-record-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (fork-record-acts kept))))
@@ -104,8 +104,8 @@ and the tick at which a plan diverged while the past was repeated, or NIL."
 ;;; Replacing the run.
 
 (defun variable-setter (old)
-  "Return a function of a symbol and a value that sets the symbol where code in OLD sees it: the
-binding, the global value or both."
+  "Return a function of a symbol and a value. The function sets the symbol where code in OLD sees
+it: the binding, the global value or both."
   (cond ((headless-p old) #'set)
         ((not (eq old *simulation*)) (lambda (symbol value) (setf (global-value symbol) value)))
         ((eq old (global-value '*simulation*))
@@ -237,9 +237,9 @@ robots take no more commands. SIMULATION must keep forks, see KEEP-FORKS. TICKS 
 to the number of ticks that have passed since SIMULATION began to keep forks; 0 undoes the requests
 and changes since the last tick.
 - Requests and changes after that tick are undone. The journal records the rewind.
-- Commands and plans in progress at that tick continue, but programs do not. Continuations of
-  commands that are in progress when REWIND is called receive :INTERRUPT; continuations of commands
-  that continue are never called. So a program such as ROBOT-GO-TO issues no further commands.
+- Commands and plans in progress at that tick continue, but programs do not. When REWIND is
+  called, continuations of commands in progress receive :INTERRUPT. Commands that continue after it
+  never call their continuations. So a program such as ROBOT-GO-TO issues no further commands.
 - A call of RUN-PLAN that waits in another thread returns :STOPPED.
 - Messages are kept, and so are variables that programs have set themselves.
 - RUN-TICKS, RUN-UNTIL and CALL-IN-FORK use the successor of a fork that was rewound. The digest of

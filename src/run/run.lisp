@@ -124,7 +124,7 @@ simulation of WORLD. PREPARE is called with the new simulation before other thre
     (setf (timeline-run timeline) simulation)))
 
 (defun headless-p (simulation)
-  "True if SIMULATION is headless: its world is not the resident one, where top-level code works."
+  "True if SIMULATION is headless: its world is not the resident world of top-level code."
   (let ((world (simulation-world simulation)))
     (not (eq world (map-resident (world-map world))))))
 
@@ -224,7 +224,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until a request is made. In a live simulation at the
-rate :FREE, kickers wait for a request, too: otherwise millions of ticks would pass before one."
+rate :FREE, kickers wait for a request, too: else millions of ticks would pass before a request."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-in-progress-p world))))

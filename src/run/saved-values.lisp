@@ -38,7 +38,7 @@ the first element and a space before each other element."
   (if (array-has-fill-pointer-p array) (fill-pointer array) (array-total-size array)))
 
 (defun write-repeated-elements (array start inventory out)
-  "Write how many elements of ARRAY from START on are equal, and one. Return the index after these."
+  "Write the number of equal elements of ARRAY from START on, and their value. Return their end."
   (let* ((element (row-major-aref array start))
          (end (or (loop for index from (1+ start) below (element-count array)
                         unless (eql element (row-major-aref array index)) return index)

@@ -93,7 +93,7 @@ these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
           collect (definition-of :command entry)))
 
 (defun head-for-programs (simulation)
-  "Return the part of the head of a saved run that concerns programs in SIMULATION: the noise that
+  "Return what the head of a saved run says about programs in SIMULATION: the noise that
 DIRTY-SIMULATION would restore, and the dice of CL:RANDOM. For a live run there are no dice, because
 each of its threads has its own."
   (let ((dice (and (headless-p simulation)
@@ -148,7 +148,7 @@ each of its threads has its own."
                   name (damage-reason trouble)))))
 
 (defun write-simulation (simulation file without-p)
-  "Write SIMULATION, which is between ticks, to FILE; if WITHOUT-P is true, without the parts that
+  "Write SIMULATION, which is between ticks, to FILE. If WITHOUT-P is true, leave out the parts that
 cannot be saved. Return the truename of FILE."
   (when (simulation-ticking-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))

@@ -19,7 +19,7 @@
   (:documentation "A file cannot be used: it is damaged or was not saved by the simulator."))
 
 (defun report-damage (condition stream kind operator)
-  "Report to STREAM that the file of CONDITION is no usable KIND, and that OPERATOR saves one."
+  "Report to STREAM that the file of CONDITION is no usable KIND. Name OPERATOR, which saves one."
   (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
           (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition)
           operator))

@@ -34,8 +34,8 @@ position of its robot, if the robot is known."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun replay-for-picture (journal until own)
-  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; lists of the name
-of each robot and the pieces of its way; the moments found; and the user's moments OWN with their
+  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; a list for each
+robot, its name and the pieces of its way; the moments found; and the user's moments OWN with their
 positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
@@ -145,8 +145,8 @@ pixels wide. Return the Y below the last note."
     y))
 
 (defun moments-in-part (part moments)
-  "Return a list of the MOMENTS that have no position or are in PART (left top right bottom) of the
-map; and a list of the others. If PART is NIL, return MOMENTS."
+  "Return two lists: the MOMENTS in PART (left top right bottom) of the map or without a position;
+and the other MOMENTS. If PART is NIL, return MOMENTS."
   (flet ((elsewhere-p (moment)
            (destructuring-bind (left top right bottom) part
              (and (moment-x moment)

@@ -60,8 +60,8 @@ SEVERAL-P is true, texts name the robots."
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
 (defun group-note (group most)
-  "Return a note about GROUP: a list of the number of its spot, or NIL, and a text with at most MOST
-ticks, or with all ticks if MOST is NIL."
+  "Return a note about GROUP, a list of two elements: the number of its spot, or NIL; and a text
+with at most MOST ticks, or with all ticks if MOST is NIL."
   (list (and (moment-group-spot group) (spot-number (moment-group-spot group)))
         (format nil "~A: ~A"
                 (ticks-text (sort (mapcar #'moment-tick (moment-group-moments group)) #'<) most)
@@ -127,7 +127,7 @@ failed.")
 
 (defun spots-and-notes (moments limit several-p reach)
   "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
-note is a list (number text), whose number may be NIL. Notes about the user's own moments are always
+note is a list (number text); NUMBER may be NIL. Notes about the user's moments are always
 included, all others if LIMIT is NIL. For SEVERAL-P and REACH see GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
@@ -178,8 +178,8 @@ thing lies at the spot, for example because it was released there, the ring is a
                                (max 4 (to-pixels 1/2)))))))
 
 (defun number-positions-around (x y radius)
-  "Return a list of points (x y), the nearest first, at which the number of a spot at X, Y with a
-ring of RADIUS could be drawn."
+  "A spot at X, Y has a ring of RADIUS. Return a list of points (x y), the nearest first, at which
+the number of the spot could be drawn."
   (loop for distance in '(12 20 30 42 56)
         append (loop for turn below 12
                      for angle = (+ (/ pi -4) (* turn (/ pi 6)))

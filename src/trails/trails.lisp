@@ -26,7 +26,7 @@ the latest point first" :writable))
     (push (cons x y) (first (trail-pieces trail)))))
 
 (defun begin-trail-piece (trail)
-  "Begin a new piece of TRAIL where its robot was put, from where the robot may have driven on."
+  "Begin a new piece of TRAIL where its robot was put. Since then the robot may have moved."
   (let ((robot (trail-robot trail)) (begun-p (trail-placements trail)))
     (setf (trail-placements trail) (robot-placements robot))
     (push '() (trail-pieces trail))
