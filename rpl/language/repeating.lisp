@@ -111,7 +111,7 @@ source of the block. The code has a node for the block only if some form leaves 
 
 (define-expression turns
   "Runs BODY repeatedly, while the function UNTIL returns false for the environment. The function
-TIMES returns the largest number of turns, NIL for any number. A frame counts the turns left."
+TIMES returns the largest number of turns, NIL for any number. A frame counts down the turns."
   (:hot)                                ; 40 ns a turn
   (:parts (until function) (times function) (body node))
   (:steps
