@@ -156,5 +156,5 @@
 (test run-plan-alone.has-no-robot
   (with-messages
     (let ((failure (rpl:run-plan-alone (rpl:interp-lambda () (driver:rpl-robot-turn 1)))))
-      (is-true (has-words-p (princ-to-string failure) "No robot to drive" "RUN-PLAN on the robot")
+      (is-true (has-words-p (princ-to-string failure) "No robot to drive" "RUN-PLAN runs them")
                "~A" failure))))

@@ -138,3 +138,12 @@
     (let ((endings (endings (rpl:make-plan *sharing-plan* :compile compile) '() 12)))
       (is (equal '(:succeeded "(14 (12 1))") (first endings)))
       (is (every (lambda (ending) (equal ending (first endings))) endings) "~S" endings))))
+
+(test plans.may-have-failed-with-a-backquoted-form
+  (run:with-simulation (ars-worlds:robbie :seed 2)
+    (driver:run-plan (rpl:interp-lambda (color) (rpl:fail :class :lost :color `((:color ,color))))
+                     'red)
+    (run:run-ticks 1)
+    (let ((digest (run:state-digest time:*simulation*)))
+      (run:with-fork ()
+        (is (= digest (run:state-digest time:*simulation*)))))))

@@ -193,7 +193,7 @@ a list of pairs of functions (writer . initial), for slots that get their initia
       (find-method #'copy-plan-value '() (list (find-class class) (find-class t)))))
 
 (defun choose-copy-way (object)
-  (cond ((some (lambda (type) (typep object type)) *shared-types*) :share)
+  (cond ((or (comma-p object) (some (lambda (type) (typep object type)) *shared-types*)) :share)
         ((not (default-method-p object 'structure-object)) :method)
         ((and (lisp-symbol-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments form-behind-comma bound-in-walk-p variable-kind local-variable-p
-          known-variable-p special-variable-p local-function-p known-function-p macro-expander
+(export '(function-arguments comma-p form-behind-comma bound-in-walk-p variable-kind
+          local-variable-p known-variable-p special-variable-p local-function-p known-function-p macro-expander
           lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk users-symbol-p
           variable-name-p defvar-forms variable-name-trouble undefined-name still-undefined-p
           lock-violation locked-symbol copy-nicknames))
@@ -19,9 +19,13 @@ and NIL if the compiler does not know them."
         (values (second type) t)
         (values nil nil))))
 
+(defun comma-p (object)
+  "True if OBJECT is a comma in a backquoted form."
+  (internal (:sb-int #:comma-p) object))
+
 (defun form-behind-comma (object)
   "Return the form of OBJECT if it is a comma in a backquoted form, else NIL."
-  (and (internal (:sb-int #:comma-p) object)
+  (and (comma-p object)
        (internal (:sb-int #:comma-expr) object)))
 
 (defun bound-in-walk-p (variable environment)
