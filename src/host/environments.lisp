@@ -3,10 +3,10 @@
 (in-package :ars-magna.host)
 
 (export '(function-arguments comma-p form-behind-comma bound-in-walk-p variable-kind
-          local-variable-p known-variable-p special-variable-p local-function-p known-function-p macro-expander
-          lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk users-symbol-p
-          variable-name-p defvar-forms variable-name-trouble undefined-name still-undefined-p
-          lock-violation locked-symbol copy-nicknames))
+          local-variable-p known-variable-p special-variable-p local-function-p known-function-p
+          macro-expander lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk
+          users-symbol-p variable-name-p defvar-forms variable-name-trouble undefined-name
+          still-undefined-p lock-violation locked-symbol copy-nicknames))
 
 (defun function-arguments (name)
   "Return the argument types of the function NAME, as in a type (FUNCTION (type...)), and true; NIL
