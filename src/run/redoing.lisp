@@ -124,6 +124,8 @@ and the current simulation. Return the tick at which a plan diverged, or NIL."
   (let ((repetition (make-repetition simulation acts))
         (*repeated-timeline* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.
+    ;; The fork of a live run may have been kept before its plans reacted to its last tick.
+    (let-participants-act simulation)
     (advance-to goal repetition)
     (dolist (request (repetition-held repetition))
       (post-again request (simulation-timeline simulation)))
