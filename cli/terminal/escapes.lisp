@@ -25,7 +25,6 @@
   (cdr (assoc (string ink) *inks* :test #'string-equal)))
 
 (defun lines-in (text)
-  "Return the lines of TEXT, at least one."
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defun paint (text ink)

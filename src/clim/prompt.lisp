@@ -148,7 +148,6 @@ answer. Print a message in this case."
           (list :control-e :control-u text))))
 
 (defun running-line (conversation)
-  "Return the text of the running line, or NIL if no line is running."
   (and (conversation-thread conversation)
        (ars-magna.cli:running-line-p (conversation-session conversation))
        (console-entered (conversation-console conversation))))

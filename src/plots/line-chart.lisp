@@ -118,7 +118,6 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
             (and (point-high point) (text (point-high point))))))
 
 (defun consecutive-sublists (items test)
-  "Return a list of the longest sublists of consecutive ITEMS for which TEST is true."
   (let ((runs '()) (run '()))
     (dolist (item items (nreverse (if run (cons (nreverse run) runs) runs)))
       (cond ((funcall test item) (push item run))

@@ -162,7 +162,6 @@ same structure can be made. Signals MISUSE."
 ;;; Finding objects.
 
 (defun add-to-batch (object inventory)
-  "Add OBJECT to the batch of objects with the same shape in INVENTORY."
   (let* ((shape (shape-in-inventory object inventory))
          (batch (or (gethash shape (inventory-batches inventory))
                     (progn (push shape (inventory-shapes inventory))

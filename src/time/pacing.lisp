@@ -137,7 +137,6 @@ RATE. Signals WRONG-ARGUMENT."
 ;;; The thread ends after its tick. Endless user code is aborted only when somebody stops the run.
 
 (defun wait-for-end (pacing seconds)
-  "Wait at most SECONDS for the thread of PACING to end. Return true if it has ended."
   (loop with due = (+ (seconds-now) seconds)
         ;; A thread that was woken may have been interrupted before it could wake the next one.
         when (or (pacing-over-p pacing)

@@ -54,7 +54,6 @@ SEVERAL-P is true, texts name the robots."
     spots))
 
 (defun ticks-text (ticks most)
-  "Return a text that lists TICKS in order: at most MOST ticks, or all if MOST is NIL."
   (let ((more (if most (- (length ticks) most) 0)))
     (format nil "tick~P ~{~D~^, ~}~@[ and ~D more~]" (length ticks)
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))

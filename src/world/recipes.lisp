@@ -139,7 +139,6 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
 
 ;; What is noted is independent of later changes to a prototype, or to a map's name.
 (defun journal-location (location world)
-  "Return LOCATION, in WORLD, as an argument of MAKE-THING-AGAIN for the journal."
   (if (and (consp location) (not (eq :with (first location))))
       (cons (world-map world) (rest location))
       location))
