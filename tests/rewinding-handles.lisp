@@ -229,3 +229,26 @@ that look at the stack may leave some."
     (run:run-ticks 4)
     (run:rewind 2)
     (is (= 1 (count :error (base:take-messages) :key #'base:message-kind)))))
+
+;;; A live run's plans react in their thread, perhaps after a fork of that tick has been kept.
+
+(rpl:def-interp-proc turn-when-told (fluent)
+  (rpl:wait-for fluent)
+  (driver:rpl-robot-turn 1)
+  (rpl:wait-for driver:robot-stopped*))
+
+(test rewind.lets-plans-react-that-had-not-reacted-when-the-fork-was-kept
+  (with-rover (:seed 1 :keep t :thinking :real)
+    (let ((told (rpl:create-fluent 'told)) (digests '()))
+      (driver:begin-plan 'turn-when-told told)
+      (run:run-ticks 3)
+      (rpl:set-value told t)
+      (run::keep-fork time:*simulation* (run::simulation-past time:*simulation*))
+      ;; The plans' thread would do this now.
+      (let ((interface (driver::usable-interface)))
+        (driver::with-plans (interface) (driver::react-fully interface)))
+      (loop repeat 5 do (run:run-ticks 1) (push (run:state-digest) digests))
+      (base:take-messages)
+      (run:rewind 1)
+      (is (= (second digests) (run:state-digest)))
+      (is (null (base:take-messages))))))

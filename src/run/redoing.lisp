@@ -124,8 +124,9 @@ and the current simulation. Return the tick at which a plan diverged, or NIL."
   (let ((repetition (make-repetition simulation acts))
         (*repeated-timeline* (simulation-timeline simulation))
         (*standard-output* (make-broadcast-stream))) ; Plans have printed this the first time.
-    ;; The fork of a live run may have been kept before its plans reacted to its last tick.
-    (let-participants-act simulation)
+    ;; The fork may have been kept before a live run's plans, in their thread, reacted to its last
+    ;; tick. In other runs plans react inside ticks.
+    (when (timeline-real-p (simulation-timeline simulation)) (let-participants-act simulation))
     (advance-to goal repetition)
     (dolist (request (repetition-held repetition))
       (post-again request (simulation-timeline simulation)))
