@@ -306,3 +306,13 @@ And more."
                (is (< (search "1  100 (" text) (search "9  100 (" text)
                       (search "Conditions that the experiment no longer has:" text)
                       (search "5  100 (" text)))))))
+
+(test report.tells-of-errors-when-the-experiment-ends
+  (define-for-test (:robots ars-worlds:dot)
+    (:vary (size 1 2))
+    (:run (if (= size 2) (error "Boom.") size)))
+  (flet ((said () (with-output-to-string (out)
+                    (experiment:run-experiment 'question :trials 2 :stream out))))
+    (is-true (has-words-p (said) "2 trials had errors, the first: " "Boom. PRINT-RESULTS lists all"))
+    (define-for-test (:robots ars-worlds:dot) (:run t))
+    (is (not (mentions-p (said) "had errors")))))

@@ -5,11 +5,6 @@
 ;;; A map's y grows downwards and its angles clockwise. In the frame, as in ROS, y grows upwards and
 ;;; angles counterclockwise. The map's lower left corner is the frame's origin, see MAP-FRAME.
 
-(defun find-map-argument (operator map)
-  (unless (typep map '(or map symbol string))
-    (reject-argument operator 'map map "a map or the name of one"))
-  (find-map map))
-
 (defun check-pose (operator x y angle)
   (loop for (name value) in `((x ,x) (y ,y) (angle ,angle))
         unless (sane-number-p value)

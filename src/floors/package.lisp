@@ -6,6 +6,7 @@ YAML file and a PGM or PNG image; conversion between real metres and cells of ma
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-width #:map-height #:map-flags #:map-frame
-                #:map-substances #:map-substance-types #:map-parameters #:+wall+ #:find-map
+                #:map-substances #:map-substance-types #:map-parameters #:+wall+
+                #:find-map #:find-map-argument
                 #:defmap #:*substances* #:find-substance #:substance-name #:substance-parameter
                 #:bricks))

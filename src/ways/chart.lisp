@@ -36,11 +36,6 @@
                      (typep (second entry) '(real 1 1000))))
               costs)))
 
-(defun find-map-argument (operator map)
-  (cond ((map-p map) map)
-        ((or (stringp map) (and map (symbolp map))) (find-map map))
-        (t (reject-argument operator 'map map "a map, or the name of one"))))
-
 (addition make-chart)
 (defun make-chart (map &key (clearance 3/4) (costs '((doorway 2))))
   "Return a new chart of MAP, a map or the name of a map. No cell of the chart is barred. A metre

@@ -8,5 +8,6 @@ Stentz (2006). The layer uses walls and places, but neither robots nor things.")
   (:import-from :ars-magna.geometry #:pt #:pt-p #:make-pt #:pt-x #:pt-y)
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.world #:map-p #:map-name #:map-width #:map-height #:map-flags
-                #:map-places #:map-place-types #:+wall+ #:find-map #:number-pair-p
+                #:map-places #:map-place-types #:+wall+
+                #:find-map-argument #:number-pair-p
                 #:place-type-name #:place-type-index #:find-place-type #:doorway))

@@ -3,7 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(map-replaced map-form map-index point-index +wall+ +obsmove+ +obsview+ +occupied+
-          +opaque+ cell *maps* walk-grid cell-number grid-size +endless+ +no-limit+))
+          +opaque+ cell *maps* find-map-argument walk-grid cell-number grid-size +endless+
+          +no-limit+))
 
 ;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
 ;;; Cell (X, Y) covers [X, X+1) x [Y, Y+1) and has the index X + Y * width. Outside the map
@@ -85,6 +86,13 @@ the first use" :writable :export))
 ;;; The registry.
 
 (define-registry map "map" :object-p map-p :by-symbol t)
+
+(defun find-map-argument (operator map)
+  "Return MAP, the argument MAP of OPERATOR, if it is a map, or the map with the name MAP. Signals
+WRONG-ARGUMENT and UNKNOWN-NAME."
+  (unless (and map (typep map '(or map symbol string)))
+    (reject-argument operator 'map map "a map, or the name of one"))
+  (find-map map))
 
 (defgeneric map-replaced (old new)
   (:documentation "Called when the map NEW has replaced the map OLD. OLD is NIL if there was no such

@@ -150,6 +150,14 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
   (when (and until shard)
     (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
 
+(defun report-errors (results stream)
+  "If trials of RESULTS had errors, print to STREAM how many, and the first error."
+  (let ((errors (loop for sample in (results-samples results)
+                      append (remove "" (coerce (sample-errors sample) 'list) :test #'string=))))
+    (when errors
+      (format stream "~&~D trial~:P had errors, the first: ~A. PRINT-RESULTS lists all.~%"
+              (length errors) (string-right-trim "." (cut (first errors) 300))))))
+
 (defun run-and-read (experiment directory trials until shard workers time-limit stream)
   (flet ((run ()
            (run-in-directory experiment directory trials until shard workers time-limit stream)
@@ -157,6 +165,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
              (setf (results-until results) until
                    (results-conditions results)
                    (mapcar #'condition-name (experiment-conditions experiment)))
+             (when stream (report-errors results stream))
              results)))
     (call-with-directory (lambda () (call-with-trial-syntax #'run)) directory)))
 
@@ -179,7 +188,7 @@ UNTIL, a width, adds trials until the interval of each condition's success is at
 The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index
 . count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
 MERGE-RESULTS merges shards. Unless STREAM is NIL, the progress is printed to STREAM, with the name
-of a trial that takes much longer than others.
+of a trial that takes much longer than others, and at the end how many trials had errors.
 
 TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
 says; NIL for no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,
