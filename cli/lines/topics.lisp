@@ -64,7 +64,6 @@
   (or (experiment-documentation experiment) "Not documented."))
 
 (defun error-codes-with-commands ()
-  "Return lists (code command...) for all error codes."
   (let ((table '()))
     (dolist (command (all-commands) (nreverse table))
       (dolist (code (command-errors command))

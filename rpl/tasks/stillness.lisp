@@ -92,7 +92,6 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
     (if child (first-working-part child) task)))
 
 (defun obstacle-p (task others)
-  "True if TASK, or a task around TASK, is an obstacle to one of OTHERS."
   (some (lambda (other)
           (some (lambda (obstacle) (part-of-p task obstacle)) (obstacles other)))
         others))

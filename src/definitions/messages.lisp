@@ -108,7 +108,6 @@ listener, errors are shown at once"))
        (or (message-cause message) (eq :error (message-kind message)))))
 
 (defun shown-at-once-p (message queue)
-  "True if MESSAGE is shown at once when QUEUE has no listener."
   (or (eq :at-once (message-notable-p message))
       (and (message-queue-echoed queue)
            (or (unreported-error-p message) (eq t (message-notable-p message))))))

@@ -38,7 +38,6 @@ already has lower-case letters."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-spot (image hidden)
-  "Return the spot of the thing of IMAGE. HIDDEN is the number of things that this thing hides."
   (make-spot (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
                      (and (plusp hidden) hidden))
              (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))

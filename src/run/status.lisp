@@ -22,7 +22,6 @@
   (and (part-location part) (location-name (part-location part))))
 
 (defun slots-of-own-kind (part)
-  "Return the descriptions of the slots of the kind of PART that not all parts have."
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
 

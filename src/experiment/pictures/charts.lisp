@@ -38,7 +38,6 @@ values are the names of series, if there is only one such factor."
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
-  "Return the name of the series of SAMPLE: only the factor's value if the series have a title."
   (let ((text (and (series-title places factors) (factor-text (first places) sample))))
     (if (and text (string/= "" text))
         text
