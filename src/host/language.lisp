@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(*hot* compiler-note declaim-final assume-type form-calling global-value define-global
+(export '(*hot* compiler-note declaim-final form-calling global-value define-global
           weak-table-p make-similar-table make-weak weak-value define-event add-listener
           call-listeners finite-p positive-infinity-p double-to-bits bits-to-double
           finite-double-p cell-index tick-count double random-words random-state-words
@@ -19,11 +19,6 @@
 (defmacro declaim-final (&rest types)
   "Promise the compiler that the structure types TYPES get no further subtypes."
   `(declaim (sb-ext:freeze-type ,@types)))
-
-;; For values that were checked in a way that the compiler cannot see.
-(defmacro assume-type (type form)
-  "Return the value of FORM. The compiler assumes, without a check, that it is of TYPE."
-  `(sb-ext:truly-the ,type ,form))
 
 (defun form-calling (function body &rest arguments)
   "Return a form that calls FUNCTION with (lambda () BODY), of dynamic extent, and ARGUMENTS."

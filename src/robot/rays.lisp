@@ -94,9 +94,8 @@ while BODY walks."
                   ,@body)))))
 
 ;;; Scans are most of the cost of a robot that looks, so they have a separate walk, which meets
-;;; the same cells as WALK-GRID. Values common to the rays of a fan are computed once, cells of no
-;;; interest cost one test, and each axis has its own code. 75 x 75, 10 things: 10.8 -> 12.6 M
-;;; rays/s, some 5 % of it by leaving REACH out; 1000 x 1000 rooms, 100,000 things: 14.7 -> 19.7.
+;;; the same cells as WALK-GRID. Values common to the rays of a fan are computed once, and cells of
+;;; no interest cost one test. Without REACH, cells cost no count of borders.
 
 (declaim (inline begin-axis walk-fan))
 (defun begin-axis (back per stride behind ahead left-behind left-ahead)
@@ -134,19 +133,19 @@ CORNER, inline too, with the direction and the length of the ray."
               (begin-axis (minusp inverse-y) per-y width behind-y ahead-y
                           left-behind-y left-ahead-y)
             (declare (type index-step step-y) (type double-float at-y) (type grid-size left-y))
-            (macrolet ((enter-next (at per step left)
-                         `(let ((next (+ index ,step)))
+            (macrolet ((cross-border (at per step left)
+                         `(progn
                             (when reach
                               (when (zerop ,left) (return))
                               (decf ,left))
                             (incf ,at ,per)
-                            (when (logtest stops (aref flags next))
-                              (when (funcall visit next (aref flags next)) (return)))
-                            ;; AREF has made sure.
-                            (setf index (assume-type cell-index next)))))
-              (loop (if (< at-x at-y)
-                        (enter-next at-x per-x step-x left-x)
-                        (enter-next at-y per-y step-y left-y))))
+                            (setf index (the cell-index (+ index ,step))))))
+              (loop
+                (if (< at-x at-y)
+                    (cross-border at-x per-x step-x left-x)
+                    (cross-border at-y per-y step-y left-y))
+                (let ((flag (aref flags index)))
+                  (when (and (logtest stops flag) (funcall visit index flag)) (return)))))
             ;; Where the ray ended, it had crossed one border, and was about to cross the other.
             (flet ((look-past (crossed next per)
                      (when (<= (abs (- next crossed)) (* +contact-gap+ per))
