@@ -110,3 +110,31 @@ way. Return where it comes to, x and y, and the error code."
 
 (test robot.leaves-a-cell-that-was-blocked-around-it
   (is-ride (8.5 10 nil) '(10.5 10) pi '((10 10)) :ticks 2))
+
+(test sight.is-the-same-in-mirrors
+  "The robot sees a cell if it sees one of its corners, whichever. In the mirrored field, with the
+blocks mirrored, it sees the same."
+  (let ((dice (base:make-dice 11)) (seen 0))
+    (flet ((roll () (floor (base:roll-between 0 20 dice))))
+      (loop repeat 40
+            do (let* ((cells (loop repeat 60 collect (list (roll) (roll))))
+                      (pairs (loop repeat 20 collect (list (+ (roll) .3d0) (+ (roll) .4d0)
+                                                           (+ (roll) .7d0) (+ (roll) .6d0))))
+                      (answers (loop for mirror in '(nil :across :down)
+                                     collect (cells-seen cells pairs mirror))))
+                 (incf seen (count t (first answers)))
+                 (is (equal (first answers) (second answers)))
+                 (is (equal (first answers) (third answers))))))
+    (is (< 80 seen 720))))
+
+(defun cells-seen (cells pairs mirror)
+  "Return for each of PAIRS (x y to-x to-y) T if the second point's cell is seen from the first past
+blocks in CELLS, or NIL, all mirrored :ACROSS or :DOWN."
+  (flet ((turn (x y size)
+           (list (if (eq mirror :across) (- size x) x) (if (eq mirror :down) (- size y) y))))
+    (run:with-simulation (rider :clean t)
+      (blocks (loop for (x y) in cells collect (turn x y 19)))
+      (loop for (x y to-x to-y) in pairs
+            collect (and (apply #'robot:in-sight-p world:*world*
+                                (append (turn x y 20d0) (turn to-x to-y 20d0)))
+                         t)))))

@@ -180,3 +180,12 @@
                         (drawing (canvas)
                           (canvas:with-opacity (canvas 16/100)
                             (canvas:draw-rectangle canvas canvas:draw-gcontext* 0 0 1 1 t)))))))
+
+(test words.of-vertical-lines-stand-evenly-about-their-place
+  (loop for lines in '(("a") ("a" "b") ("a" "b" "c"))
+        do (let ((places (loop for text in (drawing (canvas)
+                                             (plots::write-vertical-lines canvas 50 90 lines))
+                               collect (chart-number "x" text))))
+             (is (= (length lines) (length places)))
+             (is (= (* 54 (length lines)) (reduce #'+ places)))
+             (is (apply #'<= places)))))
