@@ -29,8 +29,8 @@ Messages of takeovers may have pushed the first warning out of the queue.")
       "somebody outside of plans"))
 
 (defun takeover-text (resource older newer)
-  "Return this text: the tasks OLDER and NEWER, perhaps the same task, take RESOURCE from each other
-for ever. The text does not depend on their order."
+  "Return a text that says that the tasks OLDER and NEWER, perhaps the same task, take RESOURCE from
+each other for ever. The text does not depend on their order."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
@@ -79,7 +79,7 @@ with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
 (defun commands-in-tick (runner task)
   "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
-issued in this tick. Commands in earlier ticks that takeovers cut short count, too."
+issued in this tick. If takeovers cut short an earlier tick, its commands count, too."
   (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
     (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
       (setf note (setf (runner-note runner 'commands) (list tick))))
@@ -102,7 +102,7 @@ returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
 
 (defun count-command (task command outcome resource)
   "Count that TASK issues COMMAND on RESOURCE. Fail if the plan of TASK has issued more than
-*PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in WAIT-FOR-END-TEXT."
+*PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in WAIT-FOR-ACTION-TEXT."
   (let ((count (commands-in-tick (task-runner task) (task-top task))))
     (when (< *plan-command-limit* (incf (cdr count)))
       (fail :class :too-many-commands :limit *plan-command-limit*
@@ -188,7 +188,7 @@ NIL; reactions outside of WHOLE do not count."
 
 (defun ticks-before-replacement (older newer)
   "If NEWER cut short OLDER, an action of the same task, most likely by mistake, return how many
-ticks OLDER had: 0 or 1. Return NIL if the task may intend that, as in a reaction to an event."
+ticks OLDER had: 0 or 1. Return NIL if that may be intended, as in a reaction to an event."
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))

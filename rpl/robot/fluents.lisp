@@ -13,7 +13,7 @@ part is a symbol, NIL for the robot itself.")
 (pushnew '*fluent-variables* *variables-to-restore*)
 
 (defun fluent-kind (kind)
-  "Return the name of the kind of part KIND; NIL for ROBOT. Signals an error if KIND is unknown."
+  "Return the name of KIND, a kind of part; NIL for ROBOT. Signals an error if KIND is unknown."
   (unless (same-name-p kind 'robot)
     (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
@@ -90,8 +90,8 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
 (defun find-part (kind index operator)
-  "Return the part of KIND, of the plans' robot, that INDEX stands for: the part's number, the part
-itself, or a fluent with either value."
+  "Return the part of KIND of the plans' robot that INDEX stands for. INDEX is the number of the
+part, the part itself, or a fluent with either value."
   (let* ((index (fluent-value index))
          (parts (parts-of-kind (rpl-robot) kind)))
     (cond ((find index parts) index)
@@ -159,8 +159,8 @@ name in a list, or attributes and values. Signals WRONG-ARGUMENT (manual, figure
 
 (addition rpl-robot-part)
 (defun rpl-robot-part (kind index)
-  "Return the part of the plans' robot with the kind KIND, a symbol, and the number INDEX, perhaps a
-fluent. Signals WRONG-ARGUMENT; and MISUSE without a robot."
+  "Return a part of the plans' robot. KIND, a symbol, is the kind of the part; INDEX, perhaps a
+fluent, is its number. Signals WRONG-ARGUMENT; and MISUSE without a robot."
   (find-part kind index 'rpl-robot-part))
 
 ;;; A grab sets the fluents of what it ends at once, as the plan that grabs has nothing to wait for.

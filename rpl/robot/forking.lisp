@@ -14,14 +14,14 @@
   (car (find number (interface-eras interface) :key #'cdr :test #'>)))
 
 (defun interface-of-robot (robot simulation)
-  "Return the interface in SIMULATION to plans of the robot with the name of ROBOT, or NIL."
+  "Return the interface in SIMULATION for the robot that has the same name as ROBOT, or NIL."
   (find-if (lambda (participant)
              (and (interface-p participant)
                   (eq (robot-name robot) (robot-name (interface-robot participant)))))
            (simulation-participants simulation)))
 
 (defun same-era-p (task interface)
-  "True if the task of INTERFACE with the number of TASK, of another run, is TASK's counterpart."
+  "TASK is of another run. True if INTERFACE's task with the same number is TASK's counterpart."
   (let ((number (task-serial task)))
     (eq (era-of-task-number number (runner-client (task-runner task)))
         (era-of-task-number number interface))))
@@ -83,7 +83,7 @@ before the start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
       (with-plans (interface) (react-fully interface)))))
 
 (defun record-plan-action (interface function &rest arguments)
-  "Record in the run of INTERFACE that a call of FUNCTION with ARGUMENTS repeats the action."
+  "Record in the run of INTERFACE an action that a call of FUNCTION with ARGUMENTS repeats."
   (apply #'record-outside-act (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
@@ -110,7 +110,7 @@ Return FLUENT itself if no variable holds FLUENT."
         finally (return fluent)))
 
 (defun repeat-change (function name value)
-  "Call FUNCTION with VALUE and the fluent of this run that NAME stands for: see NAME-OF-FLUENT."
+  "Call FUNCTION with the fluent of this run with the name NAME (see NAME-OF-FLUENT) and VALUE."
   (funcall function
            (if (consp name)
                (destructuring-bind (variable index) name

@@ -47,7 +47,7 @@ prompt was given another robot later")
    (pulses '() list "lists (fluent's-name plan tick): the last pulses by commands")
    (unread '() list "errors of commands that plans have not read; see RECORD-UNREAD-END")
    (next-tick nil (or null real (eql :ready))
-              "published: the tick at which plans next go on, :READY for at once, or NIL"))
+              "published: the tick at which plans next go on; :READY if at once; or NIL"))
   (:link
    (origin '() list "the origin that messages name for the plans, made once")
    (ender nil (or null function) "the function that the robot calls when its run ends")
@@ -100,7 +100,7 @@ prompt was given another robot later")
           (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
 
 (defun call-holding (function interface)
-  "Call FUNCTION, interruptibly, as the holder of the plans of INTERFACE, which this thread locked."
+  "This thread has locked INTERFACE. Call FUNCTION, interruptibly, as the holder of its plans."
   (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held))
     (declare (dynamic-extent held))
     (in-any-case
@@ -117,7 +117,7 @@ plans of INTERFACE, do not wait; return NIL and false."
       (call-if-free (interface-lock interface) (lambda () (call-holding function interface)))))
 
 (defun wake-tick (interface)
-  "Return the tick at which the next plan of INTERFACE wakes that waits for time. Return NIL if no
+  "Return the earliest tick at which a plan of INTERFACE that waits for time wakes. Return NIL if no
 plan waits for time, or if a plan is ready. Any thread may call this function."
   (let ((tick (interface-next-tick interface)))
     (and (realp tick) tick)))
@@ -158,8 +158,8 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
 
 ;; A time limit may interrupt this: the count must come out even, or plans would yield forever.
 (defun call-wanting-plans (function interface)
-  "Count this thread among the threads that want the plans of INTERFACE, and call FUNCTION with a
-function without arguments. FUNCTION must call that function when this thread has the plans.
+  "Count this thread among the threads that want the plans of INTERFACE, and call FUNCTION. The
+argument is a function without arguments, which FUNCTION must call when this thread has the plans.
 Interrupts are deferred, except inside of ALLOWING-INTERRUPTS."
   (let ((waiting-p t))
     (flet ((have ()
@@ -173,7 +173,7 @@ Interrupts are deferred, except inside of ALLOWING-INTERRUPTS."
 (defun call-with-plans (function interface)
   "Call FUNCTION while no other thread touches the plans of INTERFACE. Signals MISUSE if a plan is
 known to run Lisp code that does not return, or waits in the debugger of an editor. At a plain REPL,
-a plan that waits in a debugger can be answered meanwhile."
+you can meanwhile answer a plan that waits in a debugger."
   (check-not-blocked interface)
   (check-not-in-debugger interface)
   (if (holding-p interface)

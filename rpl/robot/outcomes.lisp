@@ -117,12 +117,12 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))
 
 (defun fluent-in-plan (variable part)
-  "Return a plan's form for the fluent in VARIABLE; for PART's fluent if VARIABLE holds a vector."
+  "Return a form for plans: the fluent in VARIABLE, or PART's fluent if VARIABLE holds a vector."
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
 (defun fluent-form (kind clauses part)
-  "Return the form for the fluent in the first of CLAUSES of KIND, :pulse or :error; NIL without
-such a clause. PART is the name of the command's argument for the part."
+  "Return a form for the fluent in the first clause of KIND, :pulse or :error, in CLAUSES; NIL if
+there is no such clause. PART is the name of the command's argument for the part."
   (let ((fluent (second (assoc kind clauses))))
     (and fluent (fluent-in-plan fluent part))))
 
@@ -135,8 +135,8 @@ such a clause. PART is the name of the command's argument for the part."
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
   "Define the plan functions of COMMANDS. When a command ends, CLAUSES are carried out with ERR
-bound to its error code and RESULTS to its results: (:set fluent form), (:error fluent), which sets
-the fluent to ERR, (:pulse fluent), (:when form clause...). When a newer command of a plan
+bound to its error code and RESULTS to its results: (:set fluent form); (:error fluent), which sets
+the fluent to ERR; (:pulse fluent); (:when form clause...). When a newer command of a plan
 interrupts a command, CLAUSES are carried out at once, with :INTERRUPT and no results. A later
 answer to the interrupted command sets only the fluents of :SET, which describe the state of the
 robot. See reading 179."
@@ -178,7 +178,7 @@ robot. See reading 179."
 
 (defun advice-on-command (name)
   "NAME is a symbol that may begin with RPL-. Return sentences on how plans can issue the command
-after RPL-: by which function, or how to define the function; NIL if there is no such command."
+whose name follows RPL-: by which function, or how to define one; NIL if there is no such command."
   (let* ((text (symbol-name name))
          (command (and (starts-with-subseq "RPL-" text)
                        (find-command (subseq text (length "RPL-")) nil)))

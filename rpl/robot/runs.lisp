@@ -8,7 +8,7 @@
 
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
-  "How many ticks RUN-PLAN, in a headless run, lets pass before it gives a plan up.")
+  "How many ticks may pass in a headless run before RUN-PLAN gives a plan up.")
 
 (defun robot-to-drive ()
   "Return the robot of the current simulation that plans drive by default: the only robot, or the
@@ -205,8 +205,8 @@ rewound the run. PLAN drives the robot of RPL-INIT-ROBOT or, without such a call
 the current simulation. At the prompt, PLAN drives the robot that the prompt commands, even if the
 prompt has changed to that robot since RPL-INIT-ROBOT. Failures, deadlocks and limits are reported.
 RUN-PLAN ends a plan that is not over when RUN-PLAN returns or is aborted. But a plan of a rewound
-run continues in the run that replaces the rewound run. Signals UNKNOWN-NAME, and MISUSE, also if
-the run is over before it begins."
+run continues in the run that replaces the rewound run. Signals UNKNOWN-NAME; and MISUSE, for
+example if the run is over before the plan begins."
   (let ((interface (ensure-interface)))
     (check-may-wait interface)
     (let ((task nil) (state nil))
@@ -245,7 +245,7 @@ the run is over before it begins."
       (with-plans (interface) (react-fully interface)))))
 
 (defun repeat-end (subject)
-  "End SUBJECT, a task or a plan runner with all plans, in a repeated run, as in the original run."
+  "In a repeated run, end SUBJECT as in the original run: a task, or all plans of a plan runner."
   (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)

@@ -35,7 +35,7 @@ thread, or a plan has called this function, the plans end as soon as they can."
 
 ;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *robot-to-drive* (constantly nil)
-  "A function that returns the robot that plans drive by default if there are several, or NIL.")
+  "A function that returns the robot that plans drive if there are several robots, or NIL.")
 
 (defun commanded-robot ()
   "Return the robot that the prompt of this thread commands, or NIL."
@@ -100,7 +100,7 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 (defun rpl-init-robot (robot)
   "Let plans drive ROBOT from now on: a robot, the name of a robot, or a fluent with such a value.
 Create new fluents for the robot and each of its parts. Return the robot (manual C). Running plans
-end; of their cleanups only what takes no time is done. Call RPL-INIT-ROBOT before the other
+end; their cleanups run only as far as they take no time. Call RPL-INIT-ROBOT before the other
 functions with RPL- in their names. RUN-PLAN calls it for the only robot of a simulation or, at the
 prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME. Signals MISUSE if the robot is
 in another world than the current one."

@@ -175,15 +175,15 @@ pass TEST, except the action EXCEPT. Do nothing outside of plans."
 ;;; Issuing.
 
 (defun call-on-robot (interface function)
-  "Call FUNCTION, which does something with the robot of INTERFACE. If it signals an error because
-the robot is gone, end the plan at work."
+  "Call FUNCTION, which does something with the robot of INTERFACE. If FUNCTION signals an error
+because the robot is gone, end the plan at work."
   (handler-bind ((error (lambda (condition)
                           (declare (ignore condition))
                           (unless (interface-valid-p interface) (leave-plan)))))
     (funcall function)))
 
 (defun issue-action (interface command resource arguments outcome issue)
-  "Issue COMMAND on RESOURCE. OUTCOME returns the end's fluent settings. ISSUE is the trace record."
+  "Issue COMMAND on RESOURCE. OUTCOME returns fluent settings for its end; ISSUE is for the trace."
   (let* ((task (task-at-work interface))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
          (action (make-action command resource outcome task cleanup-p issue

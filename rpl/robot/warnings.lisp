@@ -11,8 +11,8 @@
   "The names of functions by which code may change a fluent, or have a plan do so.")
 
 (defun may-set-fluents-p (object seen)
-  "True if OBJECT, found in the code of a function, may change a fluent, directly or by functions
-that it calls. SEEN is a table of objects that have been examined."
+  "True if OBJECT, found in the code of a function, may change a fluent, directly or through
+functions that OBJECT calls. SEEN is a table of objects that have been examined."
   (cond ((member object *fluent-setters* :test #'equal))
         ((gethash object seen) nil)
         ((functionp object)
@@ -24,7 +24,7 @@ that it calls. SEEN is a table of objects that have been examined."
          (may-set-fluents-p (fdefinition object) seen))))
 
 (defvar *known-kickers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from each interface to an alist from kickers to whether they may change fluents.")
+  "A table of alists by interface. Each alist says of kickers whether they may change fluents.")
 
 (defun kicker-sets-fluents-p (kicker interface)
   (let ((known (assoc kicker (gethash interface *known-kickers*) :test #'eq)))
@@ -59,8 +59,8 @@ that it calls. SEEN is a table of objects that have been examined."
 ;; Plain data, so that forks have it, too.
 (defstruct (unread-end (:type list) (:conc-name unread-)
                        (:constructor make-unread (plan command part err)) (:copier nil))
-  "A record that COMMAND, a name, of the plan with the number PLAN ended with the error code ERR.
-PART is the index of the part; NIL stands for the robot."
+  "A record that the command with the name COMMAND of plan number PLAN ended with the error code
+ERR. PART is the index of the part; NIL stands for the robot."
   plan command part err)
 
 (defun part-number (resource)

@@ -61,8 +61,8 @@ variable is a list (name value)."
             (form-text (node-form (frame-node frame)) 40))))
 
 (defun visible-variables (frames)
-  "Return a table. Each key is an environment of FRAMES; the value lists the variables of the key
-that the innermost frame with that environment sees. FRAMES begin with the innermost frame."
+  "Return a table. Each key is an environment of FRAMES; its value lists those variables of the
+environment that the innermost frame with it sees. FRAMES begin with the innermost frame."
   (let ((table (make-hash-table :test 'eq)))
     (dolist (frame frames table)
       (loop for (environment . variables) in (visible-levels frame)

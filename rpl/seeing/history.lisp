@@ -46,10 +46,10 @@
 
 (addition trace-of)
 (defun trace-of (which &key event form runner)
-  "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, perhaps
-over, its number, or NIL for all. If EVENT is an event or a list of events, return only entries of
-these events. If FORM names an operator, return only entries at calls of that operator. RUNNER is a
-plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
+  "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, which may
+be over, or its number; NIL for all. If EVENT is an event or a list of events, return only entries
+of these events. If FORM names an operator, return only entries at calls of that operator. RUNNER is
+a plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
 trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (descendant-test number trace) (constantly t))))
@@ -61,7 +61,7 @@ trace was kept."
 
 (addition task-history)
 (defun task-history (task &key runner)
-  "Return a list of the trace entries of TASK, a task or its number, alone, in order. See TRACE-OF."
+  "Return a list of the trace entries of TASK itself, a task or its number, in order. See TRACE-OF."
   (multiple-value-bind (trace number) (trace-to-read task runner)
     (loop for entry across trace
           when (eql number (trace-entry-task entry)) collect entry)))

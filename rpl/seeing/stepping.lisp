@@ -81,9 +81,9 @@ next expression; if UNTIL is NIL, until the task is over."
   (until nil :type (or null frame (eql :next))))
 
 (defgeneric next-form (node frame)
-  (:documentation "Return the expression that the next step of FRAME, a frame of NODE, begins, and
-true if the expression is a leaf. Return NIL if the step begins no expression, and if the expression
-has a step of its own.")
+  (:documentation "NODE is the node of FRAME. Return the expression that the next step of FRAME
+begins, and true if it is a leaf. Return NIL if the step begins no expression, or an expression that
+has its own step.")
   (:method (node frame)
     (if (and (zerop (frame-counter frame)) (null (frame-data frame)))
         (values (node-form node) nil)
@@ -96,7 +96,7 @@ has a step of its own.")
           nil))))
 
 (defun note-frame-return (course task frame)
-  "If TASK, before a step at FRAME, has returned to COURSE's frame UNTIL, record that in COURSE."
+  "Record in COURSE if TASK, before a step at FRAME, has returned to the frame UNTIL of COURSE."
   (let ((until (stepping-course-until course)))
     (when (and (frame-p until)
                (eq task (stepping-course-within course))

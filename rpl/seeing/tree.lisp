@@ -138,6 +138,6 @@ are among FOLDED are left out. No task may go on meanwhile."
                      :plans (length plans) :tasks (runner-alive runner))))
 
 (defun runner-change-mark (runner)
-  "Return a list that is no longer EQUAL after tasks of RUNNER change. Callable in any thread."
+  "Return a list that is not EQUAL to an earlier one if tasks of RUNNER changed. For any thread."
   (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))

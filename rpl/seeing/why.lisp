@@ -28,7 +28,7 @@ empty string if the task had not begun."
         thereis (and last (eq :block (trace-entry-event last)))))
 
 (defun earlier-entry (trace index test)
-  "Return the last entry of TRACE before INDEX, in the same tick, of which TEST is true, or NIL."
+  "Return the last entry of TRACE before INDEX that is in the same tick and passes TEST, or NIL."
   (loop with tick = (trace-entry-tick (aref trace index))
         for i from (1- index) downto 0
         for entry = (aref trace i)

@@ -103,8 +103,8 @@ itself, innermost first. Leave out parts that were stopped before."
       (setf (runner-mask runner) (logior +interrupt+ (runner-mask runner))))))
 
 (defun block-task (task &optional suspension)
-  "Block TASK once more, which keeps it from running. If SUSPENSION is true, the status of TASK is
-shown as suspended."
+  "Block TASK, so that it does not run. Blocks are counted. If SUSPENSION is true, the status of
+TASK is shown as suspended."
   (let ((blocked (blocked-p task)))
     (incf (task-blocked task))
     (when suspension (incf (task-suspensions task)))
@@ -136,7 +136,7 @@ shown as suspended."
 
 (defun call-or-post (word task function)
   "Call FUNCTION now if TASK has no runner, or if the caller is a plan of the runner of TASK.
-Otherwise post it for the next reaction. FUNCTION does the work of WORD on TASK. Return TASK."
+Otherwise post FUNCTION for the next reaction. FUNCTION does the work of WORD on TASK. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
@@ -162,7 +162,7 @@ keep the task around it from ending.
 (addition wake-up)
 (defun wake-up (task)
   "Undo SUSPEND of TASK, and return TASK. WAKE-UP does not undo WITH-TASK-BLOCKED and similar
-constructs. Can be called from anywhere, as SUSPEND (from CRAM)."
+constructs. Like SUSPEND, it can be called from anywhere (from CRAM)."
   (check-argument wake-up task (task-p task) "a task, such as the name of a :tag")
   (let ((task (task-for-caller task)))
     (call-or-post #'wake-up task

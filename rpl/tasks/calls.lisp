@@ -57,7 +57,7 @@ after the fixed arguments, or their forms. Elements for which WRONG-P is false a
 
 (defun arguments-misfit-text (shape arguments &key (wrong-p #'keywordp))
   "Return a text that says why ARGUMENTS, or forms for them, do not fit SHAPE; NIL if they may fit.
-WRONG-P is as for KEYWORD-SLIP."
+WRONG-P is as for UNKNOWN-KEYWORD-TEXT."
   (let* ((count (length arguments))
          (rest (nthcdr (shape-fixed shape) arguments)))
     (cond ((not (<= (shape-least shape) count (shape-most shape)))
@@ -73,8 +73,8 @@ WRONG-P is as for KEYWORD-SLIP."
 ;;;; Plan functions for commands
 
 (defun note-plan-function (name call wait &optional fluent codes results)
-  "Record that plans write CALL instead of a call of the command NAME, and then (wait-for WAIT),
-unless WAIT is NIL. CALL is the plan function with the names of its arguments. The first argument is
+  "Record that plans write CALL, and then (wait-for WAIT) unless WAIT is NIL, instead of a call of
+the command NAME. CALL is the plan function with the names of its arguments. The first argument is
 the number of a part if the robot may have several such parts. FLUENT is the form of the fluent that
 has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents for the results."
   (setf (get name 'plan-call) (list call wait)

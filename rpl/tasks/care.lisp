@@ -22,8 +22,8 @@
   "Functions to call when a failure happens, with the failure, its task and its frame.")
 
 (defun failure-of (condition task frame)
-  "Return the failure for CONDITION, which TASK at FRAME has met, with all data of a failure. The
-failure counts as the number of steps that take as long. So a plan that only fails uses its slice."
+  "Return the failure for CONDITION, which TASK at FRAME has met, with all data of a failure. Count
+the failure as steps that take as long, so that a plan that only fails uses up its slice."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition

@@ -37,7 +37,7 @@ steps a tick, or any number of steps if BUDGET is NIL."
         (runner-limit runner) (+ (runner-steps runner) steps)))
 
 (defun give-budget (runner)
-  "Allow the reaction of RUNNER that now begins the rest of this tick's budget of steps."
+  "A reaction of RUNNER begins. Let it use the rest of this tick's budget of steps."
   (let ((budget (runner-budget runner)) (tick (runner-tick runner)))
     (setf (runner-slice runner)
           (max 1 (min +slice+ (floor (or budget *runaway-limit*) 10))))
@@ -74,7 +74,7 @@ steps a tick, or any number of steps if BUDGET is NIL."
         (runner-pause runner) 0))
 
 (defun resume-runner-tasks (runner)
-  "Let the tasks of RUNNER run again after STAND-STILL."
+  "Let the tasks of RUNNER run again after STOP-RUNNER-TASKS."
   (setf (runner-still-until runner) nil))
 
 (addition charge-ticks)
@@ -89,7 +89,7 @@ has happened. If thinking is not charged, do nothing. Returns nothing. Signals W
   (values))
 
 (defun count-steps (steps runner task)
-  "Count STEPS more steps of RUNNER for TASK, or for no task if TASK is NIL, if steps are counted."
+  "If steps are counted, count STEPS more steps of RUNNER for TASK; for no task if TASK is NIL."
   (when (and (runner-charged-p runner)
              (runner-budget runner)
              (not (and task (task-uncounted-p task))))

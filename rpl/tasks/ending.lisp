@@ -118,7 +118,7 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
     (when timer (cancel-timer timer (runner-timers (task-runner task))))))
 
 (defun release-held (runner)
-  "Queue the ready tasks of RUNNER again that were put aside because they were blocked."
+  "Queue again those ready tasks of RUNNER that were put aside because they were blocked."
   (dolist (task (nreverse (shiftf (runner-held runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
 

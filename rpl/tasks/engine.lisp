@@ -47,8 +47,8 @@ progress, may still post.
     (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
 (defconstant +steps-of-start+ 100
-  "How many steps of a reaction the start of a plan counts as. So endless starts use up the reaction
-before the heap. With a budget of steps, the start of a plan counts as one step.")
+  "How many steps of a reaction the start of a plan counts as. So endless starts of plans use up the
+reaction before the heap. With a budget of steps, the start of a plan counts as one step.")
 
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS as a top-level task of RUNNER. Return
@@ -275,7 +275,7 @@ LIMIT is NIL, until nothing can run. The other cleanups are abandoned, with a wa
 
 (addition run-plan-alone)
 (defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
-  "Run PLAN, a plan procedure or its name, with the list ARGUMENTS by RUNNER in virtual time. Time
+  "In virtual time, let RUNNER run PLAN, a plan procedure or its name, with the list ARGUMENTS. Time
 jumps to the next tick at which a task wakes. Return the plan's value, or its failure. The second
 value is :succeeded, :failed, :evaporated, :deadlock (reported as an error message) or :limit (if
 the tick LIMIT came first). If the plan is not over then, or at a non-local exit from

@@ -76,7 +76,7 @@ MISUSE" :writable))
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)
-  "Return sentences about what to write instead of NAME, given as a plan but no plan; or NIL."
+  "NAME was given as a plan but is no plan. Return sentences about what to write instead; or NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
@@ -281,8 +281,8 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
             append (code-in (instance-slot node index)))))
 
 (defun shared-code (code)
-  "Return a list of the nodes that can be reached from CODE, a node or procedure, and true, if forks
-can share these nodes. Return NIL and false if one of them has closed over something."
+  "If forks can share the nodes that can be reached from CODE, a node or procedure, return a list of
+these nodes, and true. Return NIL and false if one of them has closed over something."
   (let ((seen (make-hash-table :test 'eq)) (nodes '()) (work (list code)))
     (loop while work
           do (let ((object (pop work)))

@@ -37,7 +37,7 @@ with the task, a column and STREAM."
   (cut (failure-text failure) 500))
 
 (defun write-some (control items stream)
-  "Write the first 30 of ITEMS to STREAM by the format string CONTROL, and the number of the rest."
+  "Write the first 30 of ITEMS to STREAM, each by the format string CONTROL, and count the rest."
   (let ((more (nthcdr 30 items)))
     (dolist (item (ldiff items more)) (format stream control item))
     (when more (format stream "    ... and ~D more~%" (length more)))))
@@ -54,8 +54,8 @@ with the task, a column and STREAM."
              append (remove-if-not #'symbolp (ensure-list type)))))
 
 (defun probable-slip-p (type class)
-  "True if the symbol TYPE may be a misspelt CLASS. The names differ in a few letters, not only in
-digits, or in the ending, as STUCK and STUCKED; or only one of two equal names is a keyword."
+  "True if the symbol TYPE may be a misspelt CLASS. The names differ in the ending, as STUCK and
+STUCKED, or in a few letters and not only in digits; or they are equal and only one is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
          (ending-p (short long)
            (and (<= 4 (length short))
@@ -78,8 +78,8 @@ FAILURE, and this class; or NIL."
           when type return (values type class))))
 
 (defun clause-for-errors (failure)
-  "Return the type of a handler clause around FAILURE that matches Lisp errors, if FAILURE is not
-from a Lisp error; otherwise NIL."
+  "If FAILURE is not from a Lisp error, return the type of a handler clause around FAILURE that
+matches Lisp errors; otherwise NIL."
   (unless (typep failure 'lisp-failure)
     (loop for form in (failure-plan-backtrace failure)
           thereis (find-if (lambda (type)
@@ -87,7 +87,7 @@ from a Lisp error; otherwise NIL."
                            (clause-types form)))))
 
 (defun misspelt-handler-text (failure)
-  "Return a text that a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
+  "Return a text if a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
   (multiple-value-bind (type class) (misspelt-handler-type failure)
     (let ((error-type (clause-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
@@ -153,7 +153,7 @@ that returns true is responsible for reporting a failure of the task. The functi
 any thread that lets plans react.")
 
 (defun report-end (task &optional awaited-p)
-  "If TASK, a top-level task just ended, has failed, report that. AWAITED-P: see REPORT-FAILURE."
+  "TASK, a top-level task, has ended. If it has failed, report that. AWAITED-P: see REPORT-FAILURE."
   (unless (some (lambda (hook) (funcall hook task)) *plan-end-hooks*)
     (when (eq (task-state task) :failed)
       (report-failure (task-result task) awaited-p))))
@@ -200,7 +200,7 @@ from the inside to the outside, and have the names of operators.)"
 (addition find-task)
 (defun find-task (place &optional (within *runner*))
   "Return the running or waiting task at PLACE, a value of TASK-PLACE or the number of a task; NIL
-if there is no such task. WITHIN is a plan runner, or a task at whose parts PLACE starts."
+if there is no such task. WITHIN is a plan runner, or a task; PLACE then starts at its parts."
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)

@@ -259,8 +259,8 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
 
 (defgeneric note-outside-call (client word arguments subject)
   (:documentation "Record a call of the function WORD by code outside of the plans of CLIENT, see
-RUNNER-CLIENT. The arguments of the call are the list ARGUMENTS and then SUBJECT, one of these
-plans' tasks or their plan runner.")
+RUNNER-CLIENT. The arguments of the call are the list ARGUMENTS and then SUBJECT, a task of these
+plans or their plan runner.")
   (:method (client word arguments subject)
     (declare (ignore client word arguments subject))
     (values)))
@@ -277,7 +277,7 @@ thread, or in the run that replaced a rewound run. Return TASK if TASK has no co
   (or (null runner) (eq runner *runner*)))
 
 (defun task-for-caller (task)
-  "Return TASK or, for a caller outside of the plans of TASK, its counterpart: see TASK-NOW."
+  "Return TASK; to a caller outside of the plans of TASK, return its CURRENT-COUNTERPART."
   (let ((runner (task-runner task)))
     (if (inside-plans-p runner)
         task

@@ -43,8 +43,8 @@ the running task wait until then."
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
 (defun wait-for-delivery (task frame value)
-  "If TASK must deliver a notice first, make TASK wait, to continue with FRAME and VALUE, and return
-true."
+  "If TASK must deliver a notice first, make TASK wait, and return true. TASK will continue with
+FRAME and VALUE."
   (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
     (when notice
       (park task notice)
@@ -135,8 +135,8 @@ true."
            +parked+)))
 
 (defun check-interruptions (task frame value)
-  "Evaporate TASK if requested, or let TASK yield to a higher level or because it has used its
-steps. FRAME and VALUE are what the last step returned. Return what RUN-STEPS goes on with."
+  "Evaporate TASK if that was requested; or let TASK yield, to a higher level or because it has used
+its steps. FRAME and VALUE are what the last step returned. Return what RUN-STEPS goes on with."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))

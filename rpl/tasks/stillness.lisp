@@ -24,20 +24,20 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
     '()))
 
 (defun all-preemptors (task)
-  "Return the tasks that keep TASK, or a task around it, from running by owning what it needs."
+  "Return the tasks that own what TASK, or a task around it, needs in order to run."
   (loop for each in (lineage task)
         append (loop for frame in (frame-chain (task-frame each))
                      append (preemptors each (frame-data frame)))))
 
 (defun working-parts (task)
-  "Return the innermost parts of TASK at the level of TASK, which leaves out policies."
+  "Return the innermost parts of TASK at TASK's level. Policies, at other levels, are left out."
   (let ((children (remove (task-level task) (task-children task) :key #'task-level :test #'<)))
     (if children
         (loop for child in children append (working-parts child))
         (list task))))
 
 (defun obstacles (task)
-  "Return the tasks that must go on before TASK itself, apart from its parts, can; NIL if unknown."
+  "Return the tasks that must go on before TASK itself (not its parts) can go on; NIL if unknown."
   (or (and (task-awaiting task) (tasks-awaited (task-awaiting task)))
       (all-preemptors task)))
 
@@ -58,7 +58,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (:method (awaited) (awaited-text awaited)))
 
 (defun wait-text (task)
-  "Return a text of what TASK waits for, as TASK-AWAITS does, with the tasks known to own it."
+  "Return a text of what TASK waits for, as TASK-AWAITS does, and which tasks are known to own it."
   (and (task-awaits task)
        (if (tasks-awaited (task-awaiting task))
            (stuck-wait-text (task-awaiting task))
@@ -139,7 +139,8 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun end-wait-advice (name part tasks)
-  "Return the text of a form that waits for the end of command NAME on PART; NIL if TASKS do so."
+  "Return the text of a form that waits for the end of command NAME on PART; NIL if TASKS already
+do."
   (let ((text (wait-for-end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
@@ -199,7 +200,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
        (not (exit-in-p form))))
 
 (defun endless-advice (tasks)
-  "Return a sentence that a form around TASKS does not end by itself, or NIL."
+  "Return a sentence that says that a form around TASKS does not end by itself, or NIL."
   (let ((form (loop for task in tasks
                     thereis (find-if #'endless-form-p
                                      (plan-backtrace task (task-frame task))))))
@@ -241,7 +242,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (warn-of-wait task (no-fluent-advice task)))
 
 (defun warn-of-awaited-value (task value)
-  "Queue a warning, once for each form, if TASK waits for VALUE, probably not meant as a condition."
+  "If VALUE, which TASK waits for, is hardly meant as a condition, warn once for each form."
   (multiple-value-bind (kind remedy)
       (typecase value
         (number (values "number" (format nil "(wait-time ~A) waits for that many ticks" value)))
@@ -267,7 +268,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
               "something that cannot happen")))
 
 (defun text-of-blocks (tasks)
-  "Return a text that blocked parts of TASKS must be woken; NIL if no part is blocked."
+  "Return a text that says that blocked parts of TASKS must be woken; NIL if no part is blocked."
   (let ((blocked (remove-if-not #'plusp (mapcan #'all-tasks tasks) :key #'task-blocked)))
     (and blocked
          (format nil "a call, such as of WAKE-UP, that lets ~{~A~^ and ~} go on"
