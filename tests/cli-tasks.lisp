@@ -34,7 +34,7 @@
          (run:run-ticks 2)
          (setf (ars-magna.rpl-robot::interface-hog ars-magna.rpl-robot::*interface*) task
                (ars-magna.rpl::task-state task) :running)
-         (is (search "keeps the plans' thread" (type-here "trace-plans on")))
+         (is (search "keeps the plans' thread busy" (type-here "trace-plans on")))
          (is (null ars-magna.rpl-robot:*trace-plans*))
          (setf (ars-magna.rpl::task-state task) :waiting)))
      '(ars-user::butler))))

@@ -190,8 +190,8 @@ started a new run. Fluents keep their last values."
 
 (defmethod check-forkable ((interface interface))
   (when (participant-around-p interface)
-    (refuse-fork "a plan is at work here. In the text of a plan PROJECT and TRY-BEST fork the run ~
-                  when the plans have come to rest.")))
+    (refuse-fork "a plan is at work here. In the text of a plan, use PROJECT or ~
+                  TRY-BEST, which fork the run when the plans are at rest.")))
 
 (defun call-holding-at-rest (interface function)
   "Call FUNCTION while this thread holds the plans of INTERFACE, and return its value. Return :BUSY

@@ -41,7 +41,7 @@ prompt was given another robot later")
    (wish-tick nil t "the tick that the count in WISHES-SERVED is for"))
   (:memory
    (eras '() list "the eras of tasks, the newest first; see forking.lisp")
-   (warned '() list "conses of a warning of takeovers and its tick")
+   (warned '() list "an alist from warnings of takeovers to ticks")
    (outside nil symbol "the command in progress that no plan has issued, or NIL")
    (last-command '() list "the plan, the function and the part of the last command")
    (pulses '() list "lists (fluent's-name plan tick): the last pulses by commands")
@@ -153,7 +153,7 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
 (defun check-not-blocked (interface)
   (let ((task (blocking-task interface)))
     (when (and task (not (eq (current-thread) (interface-thread interface))))
-      (reject-use "The plan ~A keeps the plans' thread, at ~A. (end-plan :all) ends it."
+      (reject-use "The plan ~A keeps the plans' thread busy, at ~A. (end-plan :all) ends it."
                   (task-label (task-top task)) (form-text (task-form task))))))
 
 ;; A time limit may interrupt this: the count must come out even, or plans would yield forever.

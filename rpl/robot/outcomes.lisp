@@ -189,8 +189,8 @@ whose name follows RPL-: by which function, or how to define one; NIL if there i
            (format nil "plans use the function ~(~A~)." own))
           ((and same-p (not (has-plan-function-p (command-name command))))
            (let ((*print-case* :downcase))
-             (format nil "no fluent tells plans of the end of the command ~A yet. Define ~
-                          a fluent: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
+             (format nil "no fluent yet reports the end of the command ~A to plans. Define a ~
+                          fluent: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
                           (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the ~
                           package ars-magna.rpl-robot, with a name of yours for my-fluent*."
                      (string-downcase (command-name command))

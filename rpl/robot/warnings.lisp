@@ -132,8 +132,8 @@ supersedes that of an earlier end of the same command."
 (defun unawaited-advice (action)
   "Return a sentence that says what to do if ACTION should end with its plan; or NIL."
   (if (eq :evaporated (task-state (action-task action)))
-      (format nil "The task that issued it was ended before, as by a deadline. If the command ~
-                   should end as well, stop the robot: (rpl-robot-stop).")
+      (format nil "The task that issued it was ended before, for example by a deadline. If the ~
+                   command should end as well, stop the robot: (rpl-robot-stop).")
       (let ((wait (wait-for-action-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan should end with the command, let the plan ~A." wait)))))
 

@@ -139,8 +139,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun end-wait-advice (name part tasks)
-  "Return the text of a form that waits for the end of command NAME on PART; NIL if TASKS already
-do."
+  "Return a text: a form that waits for the end of command NAME on PART; NIL if TASKS wait for it."
   (let ((text (wait-for-end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))

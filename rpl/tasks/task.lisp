@@ -45,7 +45,7 @@ environment around it" :writable :export)
 MEMORY" :writable :export))
 
 (defun frame-state (frame)
-  "Return the state of FRAME, a keyword or, if its node has no states, the number of parts begun."
+  "Return the state of FRAME: a keyword; or the number of parts begun, if its node has no states."
   (let ((states (node-states (frame-node frame))))
     (if (plusp (length states))
         (svref states (frame-counter frame))
@@ -142,7 +142,7 @@ NIL" :writable :export)
         while each collect each))
 
 (defun frames-around (task &optional (frame (task-frame task)))
-  "Return a list of the frames of TASK from FRAME on and of the tasks around TASK, innermost first."
+  "Return a list, innermost first, of the frames of TASK from FRAME on and of the tasks around it."
   (nconc (frame-chain frame)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 

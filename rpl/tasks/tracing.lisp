@@ -89,5 +89,5 @@ in the trace. ISSUE is a value of NOTE-COMMAND."
     (funcall function)))
 
 (defmacro with-answer ((issue error) &body body)
-  "Run BODY as CALL-WITH-ANSWER calls its function."
+  "Run BODY, which applies the answer to ISSUE with the error code ERROR: see CALL-WITH-ANSWER."
   `(call-with-answer ,issue ,error (lambda () ,@body)))

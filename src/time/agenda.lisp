@@ -25,7 +25,7 @@
   (:fixed
    (function #'identity function "the function of the event that is called in its tick" :export)
    (interrupt nil (or null function)
-              "the function, of the event, to call if the event is interrupted" :export)
+              "the function to call, with the event, if the event is interrupted" :export)
    (resource nil t "the resource that the event occupies, or NIL" :export))
   (:state
    (time 0 tick-count "the tick that the event waits for" :export)
@@ -58,7 +58,7 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 (declaim (inline add-to-ring detach-ring))
 (defun add-to-ring (last event)
-  "Add EVENT to the ring with the last event LAST (NIL: empty). Return EVENT, the new last event."
+  "Add EVENT to the ring whose last event is LAST (NIL: empty). Return EVENT, the new last event."
   (setf (event-queued-p event) t
         (event-next event) (if last (shiftf (event-next last) event) event))
   event)
@@ -133,15 +133,15 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
   "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."
   (declare (type tick-count delay))
   (when (event-queued-p event)
-    (reject-use "An event that still waits in its bucket cannot be queued again."))
+    (reject-use "An event that is still in the queue cannot be queued again."))
   (setf (event-time event) (the tick-count (+ (agenda-tick agenda) (max 1 delay))))
   (activate agenda event)
   (when (event-resource event) (set-pending-event agenda event (event-resource event)))
   (put-in-bucket agenda event))
 
 (defun queue-event (agenda delay function &key resource (priority 0) interrupt)
-  "Queue a new event that calls FUNCTION with itself DELAY ticks from now (at least 1) and return
-it. RESOURCE must have no pending event. INTERRUPT is called with the event if interrupted."
+  "Queue and return a new event, which calls FUNCTION with itself DELAY ticks from now (at least 1).
+RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is called with it."
   (let ((event (%make-event function)))
     (setf (event-resource event) resource
           (event-priority event) priority
@@ -239,7 +239,7 @@ it. RESOURCE must have no pending event. INTERRUPT is called with the event if i
   (:method ((request request)) (request-operator request)))
 
 (define-record (interruption (:constructor make-interruption (tick what asker by by-asker)))
-  "The record that, in TICK, request BY of BY-ASKER interrupted request WHAT of ASKER."
+  "A record: in TICK, the request BY of BY-ASKER interrupted the request WHAT of ASKER."
   (tick 0 tick-count "the tick of the interruption" :export)
   (what nil t "the name of what was interrupted" :export)
   (asker nil t "a note of who had asked for that" :export)

@@ -16,8 +16,8 @@ aborted."
 
 (addition asking)
 (defmacro asking ((object) &body body)
-  "Run BODY while the world of OBJECT, a simulation or robot, stands still, as ASK calls a function.
-Return its values."
+  "Run BODY, as ASK calls a function, while the world of OBJECT, a simulation or robot, stands
+still. Return its values."
   `(ask ,object (lambda () ,@body)))
 
 ;;; Questions of other threads.

@@ -11,7 +11,7 @@
 ;;; Resting.
 
 (defun sleep-until-woken (custody seconds &optional (may-p (constantly t)))
-  "Sleep for SECONDS, or until another thread asks a question, if the function MAY-P returns true."
+  "If the function MAY-P returns true, sleep for SECONDS or until another thread asks a question."
   (setf (custody-asleep-p custody) t)
   (memory-barrier)
   (when (and (funcall may-p) (null (custody-questions custody)))

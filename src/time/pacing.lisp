@@ -102,7 +102,7 @@ needed. CALLS records the calls of users' code by the thread."
   (check-argument-type 'set-rate 'rate rate 'rate))
 
 (defun set-paused (simulation paused-p steps)
-  "If SIMULATION is live, pause it after STEPS more ticks if PAUSED-P is true, else resume it."
+  "If PAUSED-P is true, pause the live SIMULATION after STEPS more ticks; otherwise resume it."
   (if-paced (pacing simulation)
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
@@ -192,7 +192,7 @@ interrupted."
   timeline)
 
 (defun call-without-clock (timeline function)
-  "Stop the thread that paces TIMELINE's world; return the value of FUNCTION, called with custody."
+  "Stop the thread that paces TIMELINE's world. Call FUNCTION with custody, and return its value."
   (let ((custody (timeline-custody timeline)))
     (loop
       (block busy
@@ -221,8 +221,8 @@ interrupted."
                                           (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-in-progress (simulation)
-  "Return two values: a text that names the users' code in which the thread of the live SIMULATION
-is, and the number of calls of users' code begun in this thread. Return NIL if the thread is not in
+  "Return two values: a text that names the users' code that the thread of the live SIMULATION is
+in, and how many calls of users' code have begun in that thread. Return NIL if the thread is not in
 users' code, or waits in a debugger."
   (if-paced (pacing simulation)
     (let* ((calls (pacing-calls pacing))
@@ -236,7 +236,7 @@ users' code, or waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "Abort users' code of the live SIMULATION named as slow by a warning. True if the code still ran."
+  "If users' code of the live SIMULATION that a warning has named still runs, abort it. True if so."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

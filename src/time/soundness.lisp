@@ -5,7 +5,7 @@
 (export '(fill-agenda check-pending-event check-request))
 
 (defun restore-event (agenda event)
-  "Enter EVENT, whose slots say that it is pending, into AGENDA. Signals CONTRADICTION."
+  "Enter EVENT into AGENDA. The slots of EVENT say that it is pending. Signals CONTRADICTION."
   (let ((resource (event-resource event)))
     (must-hold (and (event-pending-p event)
                     (< (agenda-tick agenda) (event-time event)

@@ -17,7 +17,7 @@
 ;;; Secluded code can change only the runs that it has begun itself.
 
 (defvar *seclusion* nil
-  "The mark of the secluded code that this thread runs, a symbol that its timelines get; or NIL.")
+  "A symbol that marks the secluded code that this thread runs, and its timelines; or NIL.")
 
 (defmacro with-seclusion (&body body)
   "Run BODY as secluded code: BODY can change and command only runs that have begun in BODY."
@@ -42,7 +42,7 @@ first"))
    (phase 0 fixnum
           "the number of phases of the current tick that have begun; 0 between ticks" :export)
    (moments 0 fixnum
-            "the number of times in the tick that code which forks repeat was called or has acted"
+            "the number of calls and acts, in the tick, of code that forks repeat"
             :export)
    (on-moment nil (or null function) "a function to call before MOMENTS is counted up, or NIL"
                                      :export)
@@ -52,7 +52,7 @@ first"))
    (seclusion *seclusion* symbol "the mark of the secluded code that made the timeline, or NIL")
    (run nil t "the run that the timeline belongs to, or NIL" :export)
    (over nil (or null string)
-         "the reason why the run is over, a sentence without full stop; NIL if it is not" :export)
+         "why the run is over, a sentence without full stop; NIL if the run is not over" :export)
    (tick-dice (make-tick-dice) tick-dice
               "the dice of CL:RANDOM for users' code that changes the world" :export)
    (custody (make-custody) custody "the custody, which records the thread that owns the timeline and
@@ -82,7 +82,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 
 (addition *simulation*)
 (defvar *simulation* nil
-  "The current simulation: that of WITH-SIMULATION or the simulator's thread, or SIMULATOR's last.")
+  "The current simulation: of WITH-SIMULATION, of the simulator's thread, or of the last SIMULATOR.")
 
 (setf *reporting-run* (lambda () *simulation*))
 
@@ -95,7 +95,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
                       "Use (simulator ROBOT) or (with-simulation (ROBOT) ...)."))))
 
 (defun check-not-over (object &optional operator)
-  "Signal MISUSE, about the function OPERATOR if given, if the run of OBJECT is over."
+  "Signal MISUSE if the run of OBJECT is over. The error names the function OPERATOR, if given."
   (let ((timeline (timeline-of object)))
     (when (timeline-over timeline)
       (reject-finished-run "~@[~(~A~): ~]The run in ~(~A~) is over, at tick ~D: ~A. ~
@@ -119,7 +119,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 ;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun count-moment (timeline)
-  "Record that code is about to run in a tick of TIMELINE with a changed world. Forks repeat it."
+  "Record that code is about to run in a tick of TIMELINE that changed the world. Forks repeat it."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
@@ -143,8 +143,8 @@ requests that they made are repeated, too."
   "Signal MISUSE if the current code is secluded, and the run of OBJECT did not begin in that code."
   (when (and *seclusion* (not (eq *seclusion* (timeline-seclusion (timeline-of object)))))
     (reject-use "This object belongs to another run than the one that was made for this code, and ~
-                 cannot be commanded or changed here. Names of robots and FIND-THING return the ~
-                 objects of this run.")))
+                 cannot be commanded or changed here. To get the objects of this run, use names of ~
+                 robots, and FIND-THING.")))
 
 (defun check-own-run (timeline)
   "Signal MISUSE if the current code must not change the run of TIMELINE, because the code is
@@ -157,7 +157,7 @@ secluded from that run, or works in a fork of another run in the same map."
                (eq (timeline-name own) (timeline-name timeline)))
       (reject-use "This object belongs to another run than the fork in which this code works, at ~
                    tick ~D. (counterpart OBJECT *SIMULATION*) returns the copy of a robot or thing ~
-                   in the fork; names of robots and FIND-THING return the objects of the fork."
+                   in the fork; names of robots, and FIND-THING, give the objects of the fork."
                   (timeline-tick own)))))
 
 ;;; Requests.
@@ -179,11 +179,11 @@ over (reading 219)."
   (values))
 
 (defun post-again (request timeline)
-  "Put REQUEST, taken from the inbox of TIMELINE, back as the last. Called by the world's thread."
+  "Put REQUEST, from the inbox of TIMELINE, back as the last. The world's thread calls this."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
-  "Remove REQUEST from the inbox of TIMELINE. Return true, or NIL if another thread did so before."
+  "Remove REQUEST from the inbox of TIMELINE. Return true; NIL if another thread had removed it."
   (loop for inbox = (timeline-inbox timeline)
         unless (member request inbox) return nil
         when (swap-if-eq (timeline-inbox timeline) inbox (remove request inbox))
@@ -207,7 +207,7 @@ first; in each group, the oldest comes first."
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "As this tick of TIMELINE ends, call the function named FUNCTION, after those passed before."
+  "When this tick of TIMELINE ends, call the function named FUNCTION, after those passed before."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)
@@ -242,7 +242,7 @@ first; in each group, the oldest comes first."
 ;;; the run, and these are in the journal.
 
 (defun thinking-charge (mode)
-  "Return the cost of thinking in MODE, NIL for no ticks or a plist, and true if MODE is valid."
+  "Return the cost of thinking in MODE, a plist or NIL for no ticks; and true if MODE is valid."
   (cond ((member mode '(:free :real)) (values nil t))
         ((member mode '(:charged (:charged)) :test #'cl:equal) (values '(:charged t) t))
         ((and (typep mode '(cons (eql :charged) (cons (eql :budget) (cons t null))))

@@ -34,8 +34,8 @@ position of its robot, if the robot is known."
                                (mapcar #'robot-name (simulation-robots simulation)))))))
 
 (defun replay-for-picture (journal until own)
-  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; a list for each
-robot, its name and the pieces of its way; the moments found; and the user's moments OWN with their
+  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; for each robot, a
+list of its name and the pieces of its way; the moments found; and the user's moments OWN with their
 positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
@@ -132,8 +132,8 @@ robot in the list of robots of its world."
     (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
 
 (defun draw-notes (canvas notes left y width)
-  "Write NOTES, lists of a number or NIL and a text, below each other from Y on, at most WIDTH
-pixels wide. Return the Y below the last note."
+  "Write NOTES below each other from Y on, at most WIDTH pixels wide. Each note is a list: a number
+or NIL, and a text. Return the Y below the last note."
   (let ((most (max 20 (floor (- width 24) (character-width canvas +note-size+)))))
     (loop for (number text) in notes
           do (when number
@@ -186,7 +186,7 @@ the other moments."
 (defun check-run-picture-arguments (journal moments until &key kinds limit title layers scale)
   "Check the arguments of SAVE-RUN-PICTURE. Return MOMENTS as moments. Signals WRONG-ARGUMENT."
   (check-argument save-run-picture limit (or (null limit) (whole-p limit 0 1000000))
-                  "a whole number, the most lines below the map, or NIL for all")
+                  "the largest number of lines below the map, a whole number, or NIL for all")
   (check-moment-kinds 'save-run-picture kinds)
   (check-map-options 'save-run-picture :title title :layers layers :scale scale)
   (checked-moments 'save-run-picture moments
@@ -196,10 +196,10 @@ the other moments."
 (define-with-keywords save-run-picture
     (file &key journal until moments (kinds t) (limit 24) part title
                (layers (remove :tracks *picture-layers*)) (in-color t) scale anyway)
-  "Save in FILE, replacing it, a picture of a run: its world at the end, the ways of its robots, and
-numbers that refer to events listed below the map. Return the file's truename. JOURNAL is a journal
-or a file with a journal, by default the journal of the current simulation; UNTIL is the last tick,
-by default the end of JOURNAL.
+  "Save a picture of a run in FILE, which is replaced: the world at the end, the ways of its robots,
+and numbers that refer to events listed below the map. Return the file's truename. JOURNAL is a
+journal or a file with a journal, by default the journal of the current simulation; UNTIL is the
+last tick, by default the end of JOURNAL.
 
 The picture shows these events: a robot grasps, releases or stows a thing; a command fails; a plan
 or a part of a plan fails or is ended; an error occurs in your code. KINDS is a list of the kinds of

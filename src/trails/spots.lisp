@@ -12,7 +12,7 @@
   (number 0 :type fixnum))
 
 (defstruct (moment-group (:constructor make-moment-group (spot words weight)) (:copier nil))
-  "A group of MOMENTS, latest first, with the same text WORDS at the same SPOT, NIL if unknown."
+  "A group of MOMENTS, latest first, with the same text WORDS at the same SPOT (NIL if unknown)."
   (spot nil :type (or null spot) :read-only t)
   (words "" :type string :read-only t)
   (weight 0 :type fixnum :read-only t)
@@ -204,7 +204,7 @@ is too small, return its middle."
 
 (defun number-position (shown x y radius taken rather-not)
   "Return the point (x y) for the number of a spot at X, Y with a ring of RADIUS. The number is
-inside the box SHOWN and, if possible, outside the boxes TAKEN and RATHER-NOT; TAKEN matter more."
+inside the box SHOWN and, if possible, outside the boxes TAKEN and RATHER-NOT; TAKEN have priority."
   (let ((places (number-positions-around x y radius)))
     (flet ((free (taken) (find-if (lambda (place) (free-position-p place shown taken)) places)))
       (or (free (append taken rather-not)) (free taken) (free '())
