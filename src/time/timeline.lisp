@@ -82,7 +82,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 
 (addition *simulation*)
 (defvar *simulation* nil
-  "The current simulation: of WITH-SIMULATION, of the simulator's thread, or of the last SIMULATOR.")
+  "The current simulation: of WITH-SIMULATION, the simulator's thread, or the last SIMULATOR call.")
 
 (setf *reporting-run* (lambda () *simulation*))
 
