@@ -35,13 +35,13 @@ simulation are undone at its end and do not affect other simulations.")
 ;;; variables of the one that is current outside are restored.
 
 (defvar *saved-outer-globals* nil
-  "In a headless simulation, a list whose rest saves global values. The rest is (run (symbol .
-value)...) if another live run was started in the simulation: RUN is the live run that was current
-outside, and the values are those of its *SIMULATION-VARIABLES*. Otherwise the rest is empty.")
+  "In a headless simulation, a list; its REST holds saved global values. The REST is empty until
+another live run is started in the simulation. Then it is (run (symbol . value)...): the live run
+that was current outside, and the values of *SIMULATION-VARIABLES* in that run.")
 
 (defun save-outer-globals (simulation)
-  "Save the global values of *SIMULATION-VARIABLES* if SIMULATION, started inside a headless
-simulation, is about to set them while another live run is current outside."
+  "Save the global values of *SIMULATION-VARIABLES*, which SIMULATION is about to set, if SIMULATION
+was started in a headless simulation while another live run is current outside."
   (let ((current (global-value '*simulation*)))
     (when (and *saved-outer-globals*
                (null (rest *saved-outer-globals*))
@@ -69,7 +69,7 @@ simulation in which SIMULATION was started."
       (setf (global-value symbol) (symbol-value symbol)))))
 
 (defun store-environment (simulation)
-  "Store in SIMULATION, in which this thread works, the current values of its variables."
+  "Store the current values of its variables in SIMULATION. This thread works in SIMULATION."
   (setf (simulation-environment simulation) (environment-in-this-thread simulation))
   (set-variables-globally simulation))
 

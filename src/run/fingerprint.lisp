@@ -206,7 +206,7 @@ number of a definition that has changed becomes :CHANGED."
               (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
-  "Return how DEFINITION, (kind name number), differs from its namesake in OTHERS, a text or NIL."
+  "Return a text on how DEFINITION (kind name number) differs from its namesake in OTHERS; or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
     (cond ((recorded-as-undefined-p definition)

@@ -9,7 +9,7 @@
 ;;; is bound while code works in the fork.
 
 (defvar *fork-operator* 'fork-simulation
-  "The operator called by the user that makes the fork, as named in error messages.")
+  "The operator that the user called to make the fork, for error messages.")
 
 (defun refuse-fork (reason &rest arguments)
   "Signal MISUSE: no fork can be made. The message is REASON, a format control for ARGUMENTS."
@@ -66,7 +66,7 @@ cannot be copied."
 
 (defun environment-of-fork (simulation)
   "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
-has no dice for CL:RANDOM, which is so if it is live, new dice are made."
+has no dice for CL:RANDOM, as in a live run, new dice are made."
   (let ((environment (environment-of simulation)))
     (if (assoc *random-state-variable* environment)
         environment
@@ -110,7 +110,7 @@ the PARTICIPANTS. Return the value of FUNCTION."
       (funcall function)))
 
 (defconstant +fork-attempts+ 2000
-  "How many times making a fork is tried, once a tick or some milliseconds.")
+  "The maximum number of attempts to make a fork, one each tick or every few milliseconds.")
 
 (defun keep-trying-to-fork (simulation try)
   "Call the function TRY until it returns a fork of SIMULATION instead of :BUSY; return the fork.
@@ -186,15 +186,15 @@ would, given the same requests. ARGUMENTS are the simulation, by default the cur
   :seed           an integer that seeds all further randomness in the copy
   :continuations  true to copy the continuations of commands in progress, too, with the values
                   they close over; by default only continuations of plans are called in the fork
-- Each run has its own state of fluents and valves, even of those in global variables. WITH-FORK
-  binds the robots' names; other global variables are shared.
+- Each run has its own fluents and valves, including those in global variables. WITH-FORK binds the
+  robots' names; other global variables are shared.
 - Code that runs in the fork must not change or command the original run: that signals MISUSE.
   COUNTERPART returns the fork's own objects.
 - A live run is forked between two ticks. In a live run, CL:RANDOM uses the dice of each thread; in
   the fork it draws other numbers. All else continues as in the original.
 - Observers stay with the original.
-Signals MISUSE inside a tick, in which no continuation runs, and inside a plan's own step. Signals
-CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
+Signals MISUSE inside a tick (continuations run between ticks), and inside a plan's own step.
+Signals CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
   (multiple-value-bind (simulation options) (parse-fork-arguments arguments)
     (check-fork-options options)
     (check-not-over simulation *fork-operator*)

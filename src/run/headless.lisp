@@ -48,9 +48,9 @@ options of WITH-SIMULATION."
                          :variables variables :keep keep)))))
 
 (defun call-in-headless (function simulation &key variables keep)
-  "Call FUNCTION with the headless SIMULATION as the current simulation. Its robots are the values
-of their names and of VARIABLES, further symbols that name some of the robots. KEEP says how many
-forks the run keeps, see KEEP-FORKS. The run is over at the end."
+  "Call FUNCTION with the headless SIMULATION as the current simulation. The names of its robots,
+and VARIABLES, further symbols that name some of them, are bound to them. KEEP says how many forks
+the run keeps, see KEEP-FORKS. The run is over at the end."
   (when *simulation* (store-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
@@ -124,7 +124,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
       (call-listeners *rewound-end-hooks* simulation last))))
 
 (defun variables-among (names)
-  "Return a list of the symbols in NAMES, a list of names or a single name, that can be variables."
+  "NAMES is a list of names or a single name. Return a list of those that can be variables."
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
@@ -141,10 +141,10 @@ SIMULATION was forked, because ticks may have passed in the fork."
 
 (addition simulation-errors)
 (defun simulation-errors (&optional (simulation (current-simulation)))
-  "Return the errors in user code called by SIMULATION, and the failures of its plans, as
-USER-CODE-ERRORs: at most the latest 1000, the oldest first, whether or not they were signalled,
-shown or read. If SIMULATION was rewound, its successor is used. When a simulator starts, the errors
-of earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
+  "Return the latest errors in user code called by SIMULATION and failures of its plans, at most
+1000, as USER-CODE-ERRORs, the oldest first. They include errors that were signalled, shown or read.
+If SIMULATION was rewound, its successor is used. When a simulator starts, the errors of earlier
+live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest-successor (resolve-simulation simulation 'simulation-errors))))
     (user-code-errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest-successor run)))))))
@@ -225,7 +225,7 @@ reported:
 - :SIGNAL signals the first error or failure as a USER-CODE-ERROR. RUN-TICKS signals it at the end
   of the tick, or WITH-SIMULATION at its own end.
 - :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.
-With each of the three, a warning goes to the error output if no ticks have passed although
+With each value of ERRORS, a warning goes to the error output if no ticks have passed although
 something was requested, or if a plan waits for an event that nothing in the run can cause."
   (let* ((form-p (robots-form-p robots environment))
          (robots (if form-p robots (strip-quote robots)))

@@ -73,7 +73,7 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
 (defconstant +most-elements-in-line+ 1000 "The most elements of a list or array in a line.")
 (defconstant +max-nesting+ 50 "The deepest nesting of lists without numbers.")
 (defconstant +characters-per-object+ 300000
-  "About the most characters that are written for one object.")
+  "The approximate maximum of characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
   "Objects of the same SHAPE. If they are structures, FIELDS are their slots."
@@ -82,8 +82,8 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
   (members (make-array 4 :adjustable t :fill-pointer 0) :type vector :read-only t))
 
 (defstruct (inventory (:constructor make-inventory ()) (:copier nil))
-  "The objects of a run that is to be saved. STATES is a hash table from each object that was found
-to :FOUND or :NUMBERED. At the end, :NUMBERED is replaced by the number of the object."
+  "The objects of a run that is to be saved. STATES is a hash table; its keys are the objects found
+so far, its values :FOUND or :NUMBERED. At the end, the number of the object replaces :NUMBERED."
   (states (make-hash-table :test 'eql) :type hash-table :read-only t)
   (external-objects '() :type list)
   (batches (make-hash-table :test 'equal) :type hash-table :read-only t)
@@ -181,7 +181,7 @@ was found before. Return true if it was found before."
     state))
 
 (defun mark-numbered (object inventory)
-  "Give OBJECT a number in INVENTORY. The contents of an OBJECT of the run are surveyed later."
+  "Give OBJECT a number in INVENTORY. If it belongs to the run, its contents are recorded later."
   (unless (gethash object (inventory-states inventory))
     (multiple-value-bind (name other-p) (checked-external-name object)
       (cond ((null name)

@@ -173,7 +173,7 @@
     (error "the journal ends at tick ~D, before its last entry" (second end))))
 
 (defun journal-from-data (data)
-  "Return the journal of DATA, all data in its file. Signals an error if DATA are no valid journal."
+  "Return the journal made from DATA, all data of a file. Signals an error if DATA are invalid."
   (check-head (first data))
   (let ((journal (make-journal (uiop:remove-plist-key :remarks (third (first data)))))
         (entries (checked-entries (butlast (rest data))))
@@ -186,7 +186,7 @@
     journal))
 
 (defun read-journal (file &optional (operator 'read-journal))
-  "Return the journal in FILE. Errors name OPERATOR, whose argument FILE is. Signals
+  "Return the journal in FILE. Error messages name OPERATOR, which got FILE. Signals
 DAMAGED-JOURNAL, which names the wrong entry, if FILE does not contain a complete journal;
 WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))

@@ -11,8 +11,8 @@
 
 (addition *journal-limit*)
 (defparameter *journal-limit* 1000000
-  "The largest number of entries of a journal, each of about 200 bytes. When a journal is full, a
-warning says so; such a journal repeats the run only up to that tick.")
+  "The largest number of entries of a journal, each of about 200 bytes. A warning says when a
+journal becomes full. From then on it records nothing, and a replay ends at that tick.")
 
 (addition journal-p)
 (define-record (journal (:constructor make-journal (header)))
@@ -70,7 +70,7 @@ Signals WRONG-ARGUMENT."
                        (journal-length journal) tick)))
 
 (defun room-left-p (journal)
-  "True if JOURNAL has room for another entry, always if *JOURNAL-LIMIT* is not a number."
+  "True if JOURNAL has room for one more entry, or if *JOURNAL-LIMIT* is not a number."
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
 
@@ -93,8 +93,8 @@ they close over. See RESTORED-ARGUMENTS."
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun record-operation (simulation operator arguments &optional request)
-  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for this call. If
-SIMULATION keeps a journal or a past, record the call there, at the current tick."
+  "If SIMULATION keeps a journal or a past, record there, at the current tick, a call of OPERATOR, a
+symbol, with the list ARGUMENTS, or else the REQUEST for this call."
   (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (requested-inside-tick-p request))))
@@ -147,7 +147,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
         remark))))
 
 (defun remove-remark (simulation remark)
-  "Remove REMARK, which the function REMARK has returned, from the journal of SIMULATION."
+  "Remove REMARK, a value of ADD-REMARK, from the journal of SIMULATION."
   (let ((journal (simulation-journal simulation)))
     (when journal
       (loop for remarks = (journal-remarks journal)
@@ -176,7 +176,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                             :definitions (definitions-of simulation)))))
 
 (defun set-initial-thinking (simulation mode)
-  "Set the thinking mode of SIMULATION, before its first tick, to MODE, also in its journal."
+  "Set the thinking mode of SIMULATION, also in its journal, to MODE. No tick has passed yet."
   (set-timeline-thinking (simulation-timeline simulation) mode)
   (when (simulation-journal simulation)
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
@@ -193,7 +193,7 @@ since the journal was begun. No tick of SIMULATION has passed yet."
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun journal-up-to-now (simulation)
-  "Return the journal of SIMULATION, extended to now unless full. Signals MISUSE without a journal."
+  "Return the journal of SIMULATION, extended to now unless it is full. Signals MISUSE if none."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Start it with a journal: ~
                                   (with-simulation (ROBOT :journal t) ...), or (simulator ROBOT) ~

@@ -48,7 +48,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
   "How to pass ticks at the prompt.")
 
 (defun undone-request-names (simulation)
-  "Return the names of requests to SIMULATION and plans not begun; and those of these plans alone."
+  "Return two lists of names: of requests to SIMULATION and plans not begun; of these plans alone."
   (let ((plans (unfinished-in-participants simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.

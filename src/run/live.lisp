@@ -95,7 +95,7 @@ ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the d
              simulation))))
 
 (defun call-while-starting (world function)
-  "Stop the clock of WORLD, and call FUNCTION, which starts it again, with custody of WORLD. Signals
+  "With custody of WORLD, stop its clock and call FUNCTION, which starts the clock again. Signals
 MISUSE in a nested call, when this thread is already starting WORLD."
   (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
     (flet ((start ()

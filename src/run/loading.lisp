@@ -173,7 +173,7 @@ Parameters that are not in SETTINGS get their defaults."
     simulation))
 
 (defun simulation-from-lines (reader head octets)
-  "Return the simulation in READER, a file of OCTETS octets whose head HEAD has been read."
+  "Return the simulation in READER, a file of OCTETS octets. Its head, HEAD, has been read already."
   (let ((loader (make-empty-loader octets)))
     (read-object-definitions reader loader)
     (let* ((requests (read-object-contents reader loader))
@@ -239,7 +239,7 @@ the run uses must be loaded. Nothing in FILE is executed. Signals:
   (values (load-saved-run file anyway)))
 
 (defun call-with-loaded-simulation (function file &key anyway keep)
-  "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADER-SIMULATION."
+  "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADED-SIMULATION."
   (multiple-value-bind (simulation noise) (load-saved-run file anyway)
     (call-with-parameters
      (settings-of simulation)

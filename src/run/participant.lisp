@@ -30,7 +30,7 @@
   (values))
 
 (define-participant-function participant-origin (participant)
-  "Return the name of PARTICIPANT for messages and restarts, in the form for CALL-USER-CODE."
+  "Return the name of PARTICIPANT for messages and restarts, in the form that CALL-USER-CODE takes."
   "a participant of the run")
 
 (define-participant-function participant-busy-p (participant simulation)

@@ -41,8 +41,8 @@ error in users' code has to be signalled."
              (when (custody-questions custody) (answer-questions custody)))))
 
 (defun pass-ticks (count simulation)
-  "Pass COUNT ticks of SIMULATION, which this thread owns, as many at a time as its gate, if any,
-allows. Meanwhile no other code, not even a continuation, can pass ticks of SIMULATION."
+  "Pass COUNT ticks of SIMULATION, which this thread owns. A gate of SIMULATION may limit how many
+pass at a time. Meanwhile no other code, not even a continuation, can pass ticks of SIMULATION."
   (let ((timeline (simulation-timeline simulation)) (gate (simulation-gate simulation)))
     (setf (timeline-passing-p timeline) t)
     (in-any-case

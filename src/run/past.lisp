@@ -13,10 +13,10 @@
                 (:copier nil))
   "A request or change to a run, called an act. KIND is :REQUEST for a request performed at the
 start of a tick, else :CHANGE. TICK is the tick in which the act was made, or the tick before it if
-the act was made between ticks. PHASE is the phase of that tick, or 0 between ticks. MOMENT is the
-number of earlier acts in the tick that forks repeat by themselves. OWN-P is true of an act that
-forks repeat by themselves. OPERATOR is a function, or the name of an operator with externalized
-ARGUMENTS; ARGUMENTS are memorized. ASKER is a note of who made the act, or NIL."
+the act was made between ticks. PHASE is the phase of that tick, or 0 between ticks. OWN-P is true
+if forks repeat the act by themselves. MOMENT is the number of earlier acts of this kind in the
+tick. OPERATOR is a function or the name of an operator. ARGUMENTS are memorized and, with a name,
+also externalized. ASKER is a note of who made the act, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -35,11 +35,11 @@ ARGUMENTS; ARGUMENTS are memorized. ASKER is a note of who made the act, or NIL.
 (defstruct (run-past (:conc-name past-)
                      (:constructor make-past (limit &key forks acts cost (count (length acts))))
                      (:copier nil))
-  "What is kept of a run's past: at most LIMIT forks, FORKS, and COUNT acts, ACTS, each list with
-the newest first. The next fork is made at the tick NEXT or later, and not before the time DUE, in
+  "The kept part of a run's past: FORKS, at most LIMIT forks, and ACTS, COUNT acts; both are lists,
+newest first. The next fork is made at the tick NEXT or later, and not before the time DUE, in
 seconds. If DUE has not come at the tick NEXT, the clock is read again PACE ticks later. ROLLED is
 the last known state of the dice of programs, or NIL. COST is the average number of seconds that a
-fork takes. WANTED is the time, in seconds, since which the busy run postpones a fork; or NIL."
+fork takes. WANTED is the time, in seconds, at which a busy run postponed a fork; or NIL."
   (limit 0 :type fixnum)
   (forks '() :type list)
   (acts '() :type t)
@@ -134,7 +134,7 @@ recorded. Return nothing."
 
 (defun acts-until (tick acts)
   "ACTS is a list, the newest act first. Return two values: the tail of acts done before the end of
-the tick TICK; and a list, the newest first, of requests made, but not performed, before this end."
+the tick TICK; and a list, the newest first, of requests made but not performed by then."
   (let ((tail (member-if (lambda (act) (done-by-end-p act tick)) acts)))
     (values tail
             (remove-if-not (lambda (act) (requested-in-tick-p act tick)) (ldiff acts tail)))))
@@ -160,7 +160,7 @@ REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T."
 (defparameter *fork-time-share* 1/100
   "The part of its time that a run may spend on forks: with 1, a run keeps a fork at each tick.")
 (defparameter *most-fork-octets* (expt 2 28)
-  "The estimated number of octets that the kept forks of a run may take at most.")
+  "The maximum size of the kept forks of a run, in octets (estimated).")
 
 (defun most-forks (simulation past)
   (let ((octets (+ 50000 (octets-of-copy (simulation-world simulation))))) ; of a fork, roughly
@@ -203,7 +203,7 @@ whose removal leaves the smallest gap in proportion to its age."
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun update-fork-cost (past began)
-  "Update in PAST the average cost of a fork, by a fork just made, begun at BEGAN, in seconds."
+  "Update the average cost of a fork in PAST by a fork just made, begun at time BEGAN, in seconds."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *fork-time-share* 1)
@@ -211,7 +211,7 @@ whose removal leaves the smallest gap in proportion to its age."
                               began))))
 
 (defun keep-fork (simulation past)
-  "Keep a fork of SIMULATION, which is between ticks, in PAST, if a fork can be made. If a
+  "If a fork of SIMULATION can be made, keep it in PAST. SIMULATION is between ticks. If a
 participant is busy, try again at the end of the next tick."
   (discard-past-if-full simulation past)
   (let* ((began (or (past-wanted past) (seconds-now)))

@@ -123,7 +123,7 @@
   (and (< start (length word)) (= (length word) (skip-digits word start))))
 
 (defun exponent-p (word start)
-  "True if WORD from START on is the exponent of a float, of at most six characters."
+  "True if the part of WORD that begins at START is a float's exponent of at most six characters."
   (and (find (char word start) "desfDESF")
        (< (- (length word) start) 7)
        (digits-p word (skip-sign word (1+ start)))))
@@ -241,7 +241,7 @@
        (char= #\Space (char-at text (1+ position)))))
 
 (defun read-tail (text start depth)
-  "Return the datum in TEXT from START on, the tail of a dotted list, and the position after it."
+  "Return the tail of a dotted list, which begins at START in TEXT, and the position after it."
   (multiple-value-bind (tail end) (read-datum text start depth)
     (unless (char= #\) (char-at text end)) (error "a dotted list has something after its tail"))
     (values tail end)))
@@ -261,7 +261,7 @@
     (values (nreconc elements tail) (1+ position))))
 
 (defun read-datum (text &optional (start 0) (depth 0))
-  "Return the datum in TEXT from START on, and the position after it. Errors tell the reason."
+  "Return the datum that begins at START in TEXT, and the position after it. Errors say why."
   (case (char-at text start)
     (#\( (read-list text start (1+ depth)))
     (#\" (read-quoted text start))

@@ -39,7 +39,7 @@ counterpart in another run. Other objects, circular lists and very large lists a
 
 (defgeneric dereference (kind arguments simulation)
   (:documentation
-   "Return the object in SIMULATION that the reference (KIND . ARGUMENTS), KIND a symbol, names.")
+   "Return the object in SIMULATION named by the reference (KIND . ARGUMENTS). KIND is a symbol.")
   (:method (kind arguments simulation)
     (unless (and (typep arguments '(cons t (cons (integer 0) null)))
                  (find-kind-name kind 'part))
@@ -47,9 +47,9 @@ counterpart in another run. Other objects, circular lists and very large lists a
     (robot-part (robot-in simulation (first arguments)) kind (second arguments))))
 
 (defmacro define-dereference (kind lambda-list &body body)
-  "Define how to find the object in SIMULATION that a reference of KIND, a keyword, names. BODY
-returns the object. In BODY, the variables of LAMBDA-LIST are bound to the arguments of the
-reference, and SIMULATION to the simulation."
+  "Define how to find the object in SIMULATION for a reference of KIND, a keyword. BODY returns the
+object. In BODY, the variables of LAMBDA-LIST are bound to the arguments of the reference, and
+SIMULATION to the simulation."
   `(defmethod dereference ((kind (eql ,kind)) arguments simulation)
      (declare (ignorable simulation))
      (destructuring-bind ,lambda-list arguments ,@body)))
@@ -137,11 +137,11 @@ reference, and SIMULATION to the simulation."
 ;;; that a function given to SCHEDULE acts on the run in which it is called.
 
 (defstruct (object-placeholder (:constructor make-object-placeholder (reference)) (:copier nil))
-  "A placeholder for the object of a run that REFERENCE, a value of EXTERNALIZE, names."
+  "A placeholder for an object of a run. REFERENCE, a value of EXTERNALIZE, names the object."
   (reference nil :type list :read-only t))
 
 (defun placeholder-for (object)
-  "Return the representation of OBJECT, which is not copied, in memorized arguments."
+  "Return what represents OBJECT, which is not copied, in memorized arguments."
   (cond ((nameable-p object)
          (let ((reference (externalize object)))
            (if (eq reference object) object (make-object-placeholder reference))))

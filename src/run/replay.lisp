@@ -22,7 +22,7 @@
 
 (defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
-are those of the robots; a text says so if a robot is now in another map."
+are the robots' blueprints. A text says so if a robot is now in another map."
   (append (definition-differences (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
@@ -102,7 +102,7 @@ are those of the robots; a text says so if a robot is now in another map."
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
 (defun complete-settings (settings)
-  "Return a list (name value) for each parameter, from SETTINGS or else with the default."
+  "Return lists (name value), one for each parameter: its value in SETTINGS or else its default."
   (loop for parameter in (all-parameters)
         collect (or (find parameter settings :key (lambda (setting)
                                                     (find-parameter (first setting))))
@@ -159,7 +159,7 @@ DIFFERENT-DEFINITIONS if definitions have changed since the recording, unless AN
     (funcall function)))
 
 (defmacro replaying ((anyway) &body body)
-  "Run BODY, which replays a journal; if ANYWAY, even if definitions have changed since recording."
+  "Run BODY, which replays a journal. True ANYWAY permits definitions changed since the recording."
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun resolve-journal (journal operator)

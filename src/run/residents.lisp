@@ -49,7 +49,7 @@ map. If the map or definition of a robot has been replaced, return the current r
   (setf (global-value (blueprint-name blueprint)) robot))
 
 (defun settle-named-robot (blueprint)
-  "Return the ENSURE-RESIDENT-ROBOT of BLUEPRINT; also set the robot's variable to this robot."
+  "Return the resident robot of BLUEPRINT, made if needed. Set the robot's variable to this robot."
   (loop
     (let ((robot (ensure-resident-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.

@@ -36,7 +36,7 @@ of each number, or NIL for an external object."
 ;;; Defining numbers.
 
 (defun add-external-object (name loader)
-  "Let the next number mean the external object with the name NAME, (kind argument [more])."
+  "Give the next number to the external object with the name NAME, (kind argument [more])."
   (unless (typep name '(cons keyword (cons t (or null (cons t null)))))
     (error "the name of an external object makes no sense"))
   (unless (= (loader-next loader) (length (loader-objects loader)))

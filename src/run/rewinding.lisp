@@ -16,8 +16,8 @@
 
 ;; A clock's thread must not rewind other runs either: it and their clocks might await each other.
 (defun run-paced-by-this-thread (simulation)
-  "If this is the thread of the clock of SIMULATION, return SIMULATION. If it is the thread of the
-clock of the current simulation, return that. Otherwise return NIL."
+  "If this is the thread of the clock of SIMULATION, return SIMULATION. If this is the thread of the
+clock of the current simulation, return the current simulation. Otherwise return NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
 
@@ -67,7 +67,7 @@ clock of the current simulation, return that. Otherwise return NIL."
 
 (defun past-until (tick simulation)
   "Return two values: the past of SIMULATION at the end of the tick TICK; and a list, the newest
-first, of requests made, but not performed, before this end."
+first, of requests made but not performed by then."
   (let* ((past (simulation-past simulation))
          (acts (past-acts past)))
     (when (= tick (simulation-tick simulation))
@@ -188,7 +188,7 @@ the replacement."
                      :real (eq :real (simulation-thinking new)))))
 
 (defun replace-run (new old)
-  "Replace OLD by NEW, live if OLD is. Return NEW. If OLD is over, release NEW and signal MISUSE."
+  "Replace OLD by NEW, live if OLD is live. Return NEW. If OLD is over, release NEW; signal MISUSE."
   (let* ((timeline (simulation-timeline old))
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
@@ -238,8 +238,8 @@ to the number of ticks that have passed since SIMULATION began to keep forks; 0 
 and changes since the last tick.
 - Requests and changes after that tick are undone. The journal records the rewind.
 - Commands and plans in progress at that tick continue, but programs do not. When REWIND is
-  called, continuations of commands in progress receive :INTERRUPT. Commands that continue after it
-  never call their continuations. So a program such as ROBOT-GO-TO issues no further commands.
+  called, continuations of commands in progress receive :INTERRUPT. Commands that continue after
+  that never call their continuations. So a program such as ROBOT-GO-TO issues no further commands.
 - A call of RUN-PLAN that waits in another thread returns :STOPPED.
 - Messages are kept, and so are variables that programs have set themselves.
 - RUN-TICKS, RUN-UNTIL and CALL-IN-FORK use the successor of a fork that was rewound. The digest of

@@ -146,7 +146,7 @@ do not refer to each other, so all but the last can be garbage-collected."
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun resident-message-queue ()
-  "Return the message queue of resident runs: *MESSAGE-QUEUE*, in a headless run its global value."
+  "Return the message queue of resident runs: the global *MESSAGE-QUEUE* if this run is headless."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
@@ -215,7 +215,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 
 (addition idle-p)
 (defun settled-p (simulation)
-  "True if nothing is in progress or waiting in SIMULATION but kickers and tracks, which never end."
+  "True if SIMULATION has nothing in progress or waiting. Endless kickers and tracks do not count."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))
@@ -251,7 +251,7 @@ rate :FREE, kickers wait for a request, too: else millions of ticks would pass b
 
 (addition set-thinking)
 (defun set-thinking (mode &optional (simulation (current-simulation)))
-  "Set the cost of thinking in SIMULATION, also of thinking in progress, to MODE (manual 1.2).
+  "Set the cost of thinking in SIMULATION to MODE, also for thinking in progress (manual 1.2).
 Return MODE. The modes and their costs:
   :FREE                      no ticks: plans react after each tick, for as long as they need
   :CHARGED                   the ticks that THINK and WITH-CHARGE say

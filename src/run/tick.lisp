@@ -75,7 +75,7 @@ change is recorded at the same point of the new journal."
              (some #'unsettled-hand-p (robot-hands robot))))))
 
 (defun settle (world)
-  "Update in WORLD which parts are inside of things, and the tracks and grips."
+  "Update the records of parts inside things in WORLD, and the tracks and grips."
   (enforce-containment world)
   (update-tracks world)
   (check-grips world)

@@ -39,7 +39,7 @@
         when (eq key (attribute-name attribute)) return attribute))
 
 (defun declared-name-like (name)
-  "Return the declared name that NAME, an undeclared name, is probably a misspelling of; or NIL."
+  "NAME is not declared. Return the declared name that it probably misspells, or NIL."
   (let ((key (attribute-key name)))
     (unless (or (declared-attribute key) (eq key :draw-function))
       (find-if (lambda (other) (misspelling-p key other))
@@ -87,7 +87,7 @@ discrete or numeric."
 ;;; cached. Names of undeclared attributes that a thing has are compared, too.
 
 (define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
-  "A table from undeclared names to the names that they are probably misspellings of, or NIL.")
+  "A table from undeclared names to the names that they probably misspell, or to NIL.")
 
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
@@ -186,7 +186,7 @@ below 0. Numbers are from -1e15 to 1e15."
   (and (number-pair-p value) (<= (first value) (second value))))
 
 (defun value-limits (value)
-  "Return the least and the greatest number of VALUE, a number or a list of two; else NIL."
+  "Return the least and greatest number in VALUE, a number or a list of two; NIL for other values."
   (cond ((realp value) (values value value))
         ((number-pair-p value) (values (first value) (second value)))))
 

@@ -16,8 +16,8 @@
                  collect `(list ',key (lambda () ,form)))))
 
 (defun code-value (name source form)
-  "Return the value of FORM, which is made from SOURCE, code for the thing named NAME, or for a
-prototype if NAME is NIL. Use the compiled code if there is any."
+  "Return the value of FORM, by compiled code if there is any. FORM is made from SOURCE, code for
+the thing named NAME or, if NAME is NIL, for a prototype."
   (let ((compiled (second (find (list name source) *compiled-code* :key #'first :test #'equal))))
     (if compiled (funcall compiled) (eval form))))
 
@@ -112,7 +112,8 @@ MALFORMED-DEFINITION for invalid contents."
 ;;; about when a file is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP again. If all place types worked, cache MAP in the file PATH, unless NIL."
+  "Find the places of MAP again. If all place types worked, and PATH is not NIL, cache MAP in the
+file PATH."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))

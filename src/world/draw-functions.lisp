@@ -46,7 +46,7 @@
 
 (defun resolve-draw-function (value)
   "Return the function that VALUE of :draw-function stands for now, or NIL. If VALUE is a name
-without a function, a second value, a text, says why, and what to do."
+without a function, the second value is a text with the reason and the remedy."
   (cond ((null value) nil)
         ((functionp value) value)
         ((not (get value 'from-code-p))

@@ -38,8 +38,8 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function of an attachment and a copied thing that copies the attachment for this thing,
-and puts the copy into the copied group."
+  "Return a function with two arguments, an attachment and a copied thing. It copies the attachment
+for this thing, and puts the copy into the copied group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)
@@ -59,8 +59,8 @@ and puts the copy into the copied group."
           copy)))))
 
 (defun put-other-members (group copy copier)
-  "Put into COPY, the copy of GROUP, copies of the members that were removed from their things and
-are still in the row of GROUP."
+  "Copy the members that were removed from their things and are still in the row of GROUP. Put these
+copies into COPY, the copy of GROUP."
   (when (group-dead group)
     (let ((row (group-row copy)))
       (loop for place from 0 below (* 3 (group-count group)) by 3

@@ -131,8 +131,8 @@ NIL"))
   "The number of members from which a group needs more memory than a processor caches.")
 
 (defun read-group-ahead (group end dice)
-  "Read into the cache the memory of the things whose trials succeed next, before the index END in
-GROUP. Return the index of the first success for which nothing was read."
+  "Read the memory of the things in GROUP whose trials succeed next, before the index END, into the
+cache. Return the index of the first success for which nothing was read."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
@@ -236,7 +236,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
 
 (declaim (inline run-kickers))
 (defun run-kickers (world)
-  "Run for one tick the kickers of all things in WORLD: first those that RUN-KICKER has requested,
+  "Run the kickers of all things in WORLD for one tick: first those that RUN-KICKER has requested,
 then those whose trials succeed. Errors in a kicker are queued as error messages. Return nothing."
   (when (or (world-kicker-groups world) (world-due-kickers world)) (run-all-kickers world))
   (values))

@@ -172,7 +172,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
 
 (public set-kicker)
 (defun set-kicker (thing kicker-name)
-  "Attach to THING the kicker KICKER-NAME, a symbol or a kicker (manual 5.3.1). Signals
+  "Attach the kicker KICKER-NAME, a symbol or a kicker, to THING (manual 5.3.1). Signals
 WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. See reading 171."
   (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
@@ -250,7 +250,7 @@ once in the file of WORLD's map, or the kicker is from another file."
                          (kicker-name kicker))))))
 
 (defun warn-of-untrue-test (kicker world)
-  "Warn if KICKER is on a thing of WORLD, and its test, never true, reads an unknown attribute."
+  "Warn if KICKER is on a thing of WORLD, and its never true test reads an unknown attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker-p (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)

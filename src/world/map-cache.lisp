@@ -26,7 +26,7 @@
                                          (place-type-rules type)))))))
 
 (defun words-checksum (words)
-  "Return a check sum of WORDS but the first word and the check sum itself, the header's last word."
+  "Return the check sum of all WORDS except the first and the header's last, the check sum itself."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
@@ -72,7 +72,8 @@
 ;;; Reading.
 
 (defun read-words (path most)
-  "Return a vector of the words of the file PATH, empty if more than MOST; NIL if there is no file."
+  "Return the words in the file PATH, a vector, empty if there are over MOST; NIL if there is no
+file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
       (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)

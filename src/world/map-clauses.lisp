@@ -53,7 +53,7 @@ MAP; NIL if there is no such form."
 ;;; Expansion. The parts of a map are walls, rects and circles, and recipes of things.
 
 (defun wrong-derivation-text (kind condition)
-  "Return a text on what is expected instead of a clause of KIND whose expansion CONDITION rejects."
+  "CONDITION rejects the expansion of a clause of KIND. Return a text on what to write instead."
   (let ((*print-pretty* nil))
     (format nil "~A; the clause expands to ~(~S~), where there should be ~
                  ~A" (clause-kind-usage kind)

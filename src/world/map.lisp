@@ -237,12 +237,12 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
 
 (declaim (inline cell-number border-spacing distance-to-border walk-grid))
 (defun cell-number (coordinate)
-  "Return the column or row of a grid that COORDINATE, in metres, is in."
+  "Return the column or row of a grid that contains COORDINATE, in metres."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
 
 (defun border-spacing (component)
   "Return the distance, along a line, between neighbouring cell borders of one axis. COMPONENT is
-that of the line's direction on this axis."
+the component of the line's direction on this axis."
   (declare (type double-float component))
   (if (zerop component) +endless+ (abs (/ component))))
 

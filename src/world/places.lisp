@@ -133,7 +133,7 @@ mistakes in the definition of TYPE."
       (call-place-type-code #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
-  "Make a place of TYPE, which has NUMBER, of each cell of MAP that fits and is no place yet."
+  "Make each cell of MAP that fits and is no place yet a place of TYPE, which has NUMBER."
   (cond ((place-type-checker type) (classify-by-checker map type number))
         ((place-type-table type) (classify-by-table map type number codes))
         (t (classify-by-forms map type number))))
