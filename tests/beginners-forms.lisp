@@ -31,7 +31,7 @@
                (mapc #'funcall more)))))
     (dolist (ticks '(0 5))
       (is-true (has-words-p (told ticks) "robot-turn did nothing"
-                            "asked for inside of another with-simulation")))
+                            "made inside another with-simulation")))
     (is (string= "" (told 1 (lambda () (run:run-ticks 30)))))
     (is-true (has-words-p (told 1 (lambda () (run:run-ticks 30))
                                 (lambda () (command:robot-turn rover 1)))

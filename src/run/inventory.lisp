@@ -34,7 +34,7 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
 (defun method-at (position name)
   (check-type position unsigned-byte)
   (or (nth position (manipulation-methods (find-manipulation name)))
-      (error "~(~A~) has fewer methods than that" name)))
+      (error "the manipulation ~(~A~) has too few methods for the file" name)))
 
 (defun external-object (kind argument &optional more)
   "Return the object with the external name (KIND ARGUMENT [MORE]), or signal an error."

@@ -16,8 +16,8 @@
 (defun wrong-simulation-remedy (simulation)
   "Return a remedy for requests to SIMULATION made in another run since its last tick, or NIL."
   (and (requested-elsewhere-p (simulation-world simulation))
-       (one-line "That was asked for inside of another with-simulation, and only ticks of that one
-passed. Use there the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
+       (one-line "The request was made inside another with-simulation, and only its ticks passed.
+There, use the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
 
 (defun requests-too-late-text (simulation)
   "Return a text, with a remedy, about requests that the program has made to SIMULATION since its

@@ -50,9 +50,9 @@ clock of the current simulation, return the current simulation. Otherwise return
 (defun check-keeps-forks (simulation)
   "Signal MISUSE if SIMULATION has no past to go back to."
   (unless (earliest-tick simulation)
-    (reject-use "rewind: ~A keeps no forks to go back to. Keep forks from its beginning, ~
-                 (with-simulation (ROBOT :keep t) ...) or (simulator ROBOT :keep t), or from now ~
-                 on by (keep-forks)."
+    (reject-use "rewind: ~A keeps no forks to go back to. Keep forks from now on by ~
+                 (keep-forks), or from the beginning of the run by (with-simulation (ROBOT ~
+                 :keep t) ...) or (simulator ROBOT :keep t)."
                 (simulation-name simulation))))
 
 (defun check-rewind-distance (ticks simulation)

@@ -127,7 +127,7 @@ discrete or numeric."
                        ;; Numeric attributes may have symbols as values, for which :success is.
                        (and (not (given-p :base)) (given-p :success) :success))))
       (when strange
-        (warn-of-style "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base ~
+        (warn-of-style "~A: ~(~S~) is for ~:[readings that are right or wrong; without :base, ~
                         numbers are read exactly~;numbers; the option for values in a list is ~
                         :success~]."
                        definition strange (consp domain))))))

@@ -250,7 +250,7 @@ once in the file of WORLD's map, or the kicker is from another file."
                          (kicker-name kicker))))))
 
 (defun warn-of-untrue-test (kicker world)
-  "Warn if KICKER is on a thing of WORLD, and its never true test reads an unknown attribute."
+  "Warn if the test of KICKER, on a thing of WORLD, was never true and reads an unknown attribute."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker-p (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)

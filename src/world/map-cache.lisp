@@ -72,8 +72,7 @@
 ;;; Reading.
 
 (defun read-words (path most)
-  "Return the words in the file PATH, a vector, empty if there are over MOST; NIL if there is no
-file."
+  "Return a vector of the words of the file PATH: empty if over MOST words; NIL without a file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
       (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)

@@ -64,7 +64,7 @@ MAP; NIL if there is no such form."
   "Return the parts that CLAUSE of MAP, a clause of KIND, expands to. Mistakes in the parts are
 reported as mistakes of CLAUSE."
   (when (< 50 depth)
-    (reject-clause (map-title map) clause "a clause whose expansion ends"))
+    (reject-clause (map-title map) clause "a clause whose expansion ends within 50 steps"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
   (handler-case (call-for-value
                  (lambda ()

@@ -276,7 +276,7 @@ and true if no type was left out (reading 70)."
            types))
 
 (defun covering-types (rules types)
-  "Return those of TYPES that classify cells that fit RULES, if they classify all; else NIL."
+  "If TYPES classify all cells that fit RULES, return those TYPES that classify some; else NIL."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))

@@ -22,8 +22,8 @@
       0))
 
 (defun read-ahead (batch count world)
-  "Read into the cache the memory for moves of the first COUNT elements of BATCH, things or NIL, and
-overwrite these elements. Return a meaningless number, so that the compiler keeps the reads."
+  "Read the memory for moves of the first COUNT elements of BATCH, things or NIL, into the cache.
+Overwrite these elements. Return a meaningless number, so that the compiler keeps the reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -63,7 +63,7 @@ p), or 0 if p is 1."
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
   "Gaps between successes, drawn ahead: the first COUNT elements of GAPS. Dice whose state is STATE
-would draw the gap with the index NEXT."
+would next draw the gap with the index NEXT."
   (gaps (make-array +batch-size+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
@@ -74,7 +74,7 @@ would draw the gap with the index NEXT."
 ;; Inline, so that SCALE is not boxed.
 (declaim (inline draw-gaps-ahead))
 (defun draw-gaps-ahead (outlook index end scale dice)
-  "Store in OUTLOOK the next gaps of SCALE and DICE for trials before END, if the next success is at
+  "Store the next gaps of SCALE and DICE, for trials before END, in OUTLOOK. The next success is at
 INDEX. Return the index of the first success after these gaps."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))
@@ -92,7 +92,7 @@ INDEX. Return the index of the first success after these gaps."
 
 (declaim (inline draw-gap-from-outlook))
 (defun draw-gap-from-outlook (outlook scale dice)
-  "Return the value of DRAW-GAP for SCALE and DICE, from OUTLOOK, unless NIL, if drawn ahead."
+  "Return the value of DRAW-GAP for SCALE and DICE, taken from OUTLOOK (or NIL) if drawn ahead."
   (let ((next (if outlook (outlook-next outlook) 0)))
     (cond ((and outlook
                 (< next (outlook-count outlook))

@@ -66,8 +66,8 @@ WRONG-ARGUMENT."
          (not (string-equal (without-digits name) (without-digits other))))))
 
 (defun similar-thing-name (name world)
-  "Return the name of a thing in WORLD that NAME is probably a misspelling of, or NIL. A name that a
-thing of the map had at first is no misspelling."
+  "Return the name of a thing in WORLD that NAME probably misspells, or NIL. A name that a thing of
+the map had at first is no misspelling."
   (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
                        (map-things (world-map world)))
     (do-things (thing world)

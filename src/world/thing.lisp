@@ -120,7 +120,7 @@ name" :addition)
 ;;; Attributes.
 
 (defun value-like (value domain)
-  "Return the symbol in DOMAIN that VALUE is probably a misspelling of, or NIL."
+  "Return the symbol in DOMAIN that VALUE probably misspells, or NIL."
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
 
@@ -149,7 +149,7 @@ name" :addition)
 
 (defun warn-of-unknown-substance (value)
   "Warn if VALUE, the value of a :substance attribute, names an unknown substance. Warn about the
-current definition, or else by a message."
+current definition or, without one, by a message."
   (let ((type (substance-value-type value)))
     (when (and type (null (find-substance type nil)))
       (let ((text (format nil "No substance is called ~(~A~): its parameter counts as 0; see ~

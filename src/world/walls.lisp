@@ -49,7 +49,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
     (draw-wall map last corner type p3 p0)))
 
 (defun build-circle (map center radius type parameter)
-  "Draw the outline of a circle by the midpoint algorithm, outside MAP at its edges (reading 22)."
+  "Draw a circle by the midpoint algorithm. Points outside MAP move to its edge (reading 22)."
   (let ((cx (floor (first center))) (cy (floor (second center))))
     (if (encloses-map-p map cx cy radius)
         (draw-rect map '(0 0) (list (map-width map) (map-height map)) type parameter)

@@ -196,7 +196,7 @@ the journal records. Inside ticks, nothing is consed."
     (and (member key (world-noted-names world) :test #'equal) t)))
 
 (defun first-time-p (key world)
-  "True if no warning about KEY has been given in the run of WORLD. Record that KEY has one now."
+  "True if no warning about KEY has been given in the run of WORLD. Record that one is given now."
   (with-lock (*noted-names-lock*)
     (unless (member key (world-noted-names world) :test #'equal)
       (push key (world-noted-names world))
