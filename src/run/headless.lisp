@@ -199,9 +199,9 @@ live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
                                             (thinking :free) (errors :report))
                                     &body body &environment environment)
   "Run BODY with ROBOTS bound to fresh robots in a fresh world, headless: ticks pass only when BODY
-calls RUN-TICKS or RUN-UNTIL. Return the values of BODY. ROBOTS is the name of a robot or a list of
-names, of any package, or an expression that returns a name or a list of names, such as (list 'a 'b)
-or a variable that is not the name of a robot. Options:
+calls RUN-TICKS or RUN-UNTIL. Return the values of BODY. ROBOTS is the name of a robot, of any
+package, or a list of names. It may be an expression that returns either, such as (list 'a 'b) or a
+variable that is not the name of a robot. Options:
 - SEED, an integer, determines all randomness.
 - PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
 - CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so that it removes noise set by
@@ -212,16 +212,16 @@ or a variable that is not the name of a robot. Options:
 - ERRORS says how errors in user code and failures of plans are reported: :REPORT, :SIGNAL or
   :COLLECT, see below.
 Only the thread of BODY sees the bindings of robots and parameters. In another thread, a robot's
-name means the robot at top level, so pass the robot itself to the thread; a command to a robot at
-top level that is in no run queues a warning. Messages go to the message queue of the run. When BODY
+name means the robot at top level, so pass the robot itself to the thread. A command to a top-level
+robot that is in no run queues a warning. Messages go to the message queue of the run. When BODY
 ends, the run is over: commands in progress are interrupted, and the robots take no more commands.
 
 After an error in user code or a failure of a plan, the run continues. ERRORS says how it is
 reported:
-- :REPORT queues a message. Messages that are unread at the end of BODY are written to the error
-  output. So are unread warnings that are given once in a run, for example about degrees for radians
-  or about commands issued after the last tick, and other unread errors, except errors of commands
-  with a continuation.
+- :REPORT queues a message. At the end of BODY, unread messages of this kind are written to the
+  error output. So are other unread errors, except those of commands with a continuation, and unread
+  warnings that are given once in a run, for example about degrees for radians or about commands
+  issued after the last tick.
 - :SIGNAL signals the first error or failure as a USER-CODE-ERROR. RUN-TICKS signals it at the end
   of the tick, or WITH-SIMULATION at its own end.
 - :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.

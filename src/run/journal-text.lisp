@@ -146,7 +146,7 @@
                  (short-text (plain-name (second entry)))))))
 
 (defun checked-entries (data)
-  "Return the entries DATA with operators as symbols. Signals an error that names the wrong entry."
+  "Return DATA, entries, with symbols as operators. Signals an error that names the wrong entry."
   (loop with tick = 0
         for entry in data
         for number from 1

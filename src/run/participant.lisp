@@ -60,7 +60,7 @@ needs no copy. By default, participants defined by DEFINE-KIND are copied. See C
   nil)
 
 (define-participant-function check-forkable (participant)
-  "Signal MISUSE if code of PARTICIPANT has made this call, so that its run cannot be forked now."
+  "Signal MISUSE if code of PARTICIPANT calls this, so that its run cannot be forked now."
   (values))
 
 (define-participant-function participant-at-rest (participant function)
@@ -87,7 +87,7 @@ work cannot be saved to a file."
   '())
 
 (define-participant-function participant-around-p (participant)
-  "True if code of PARTICIPANT has made this call, for example a step of a plan."
+  "True if this function is called by code of PARTICIPANT, for example by a step of a plan."
   nil)
 
 (define-participant-function participant-cut-off (participant)

@@ -41,7 +41,7 @@ time, too. If ACT has an operator, an error is recorded as a divergence."
 ;;; Requests.
 
 (defun same-request-p (request act)
-  "True if REQUEST is the same request as that of ACT. If REQUEST is not an event, only the first
+  "True if REQUEST and the request of ACT are the same. If REQUEST is not an event, only the first
 arguments are compared: which of its commands a plan withdraws is known only on withdrawal."
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
@@ -70,7 +70,7 @@ arguments are compared: which of its commands a plan withdraws is known only on 
       (pop (repetition-acts repetition)))))
 
 (defun redo-in-tick (repetition)
-  "Repeat acts of this tick after the change of the world, up to the current moment (COUNT-MOMENT)."
+  "Repeat acts done in this tick after the world changed, up to the current moment (COUNT-MOMENT)."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))

@@ -35,11 +35,11 @@
   (parameters (make-double-vector 0) doubles
               "the substance parameters of the cells by index, 0 where empty" :writable :export)
   (substances (make-array 0 :element-type '(unsigned-byte 16)) indices
-              "the cells' substances by index, indices in MAP-SUBSTANCE-TYPES" :writable :export)
+              "the cells' substances by index, as indices in MAP-SUBSTANCE-TYPES" :writable :export)
   (substance-types #(nil) simple-vector
                    "a vector of substance names; element 0 is NIL, for no wall" :writable :export)
   (places (make-octets 0) octets
-          "the cells' place types by index, indices in MAP-PLACE-TYPES" :writable :export)
+          "the cells' place types by index, as indices in MAP-PLACE-TYPES" :writable :export)
   (directions (make-double-vector 0) doubles
               "the basic canonical directions of cells by index, in radians" :writable :export)
   (place-types #(nil) simple-vector

@@ -63,8 +63,8 @@ is a place that faces DIRECTION."
     (values mask value)))
 
 (defun rules-table (rules)
-  "Return a table by neighbourhood code: the number, from 1, of the first of RULES that fits the
-code, or 0. The match forms of RULES are small."
+  "Return a vector. At each neighbourhood code it has the number, from 1, of the first of RULES that
+fits, or 0. The match forms of RULES are small."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
           do (multiple-value-bind (mask value) (match-form-bits (rule-form rule))

@@ -212,9 +212,9 @@ the journal records. Inside ticks, nothing is consed."
 
 (defun warn-once (key world items &key (notable t))
   "Queue a warning made of ITEMS, a list or a string, unless the run of WORLD has had a warning
-about KEY, such as a list of a topic and a name. If no program reads the warning, it is shown like
-an error, provided that NOTABLE is true or is a function that returns true at that time. Return true
-if the warning was queued."
+about KEY. KEY is, for example, a list of a topic and a name. If no program reads the warning, it is
+shown like an error, provided that NOTABLE is true or is a function that returns true at that time.
+Return true if the warning was queued."
   (when (first-time-p key world)
     (queue-items :warning (ensure-list items) :notable-p notable)
     t))
