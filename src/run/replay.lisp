@@ -18,8 +18,7 @@
                      (different-definitions-file condition)
                      (different-definitions-differences condition)
                      (different-definitions-verb condition))))
-  (:documentation "The definitions recorded in a journal or saved run differ from those now
-loaded."))
+  (:documentation "Definitions recorded in a journal or saved run differ from those now loaded."))
 
 (defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
