@@ -73,7 +73,7 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
 (defconstant +most-elements-in-line+ 1000 "The most elements of a list or array in a line.")
 (defconstant +max-nesting+ 50 "The deepest nesting of lists without numbers.")
 (defconstant +characters-per-object+ 300000
-  "The approximate maximum of characters that are written for one object.")
+  "The approximate maximum number of characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
   "Objects of the same SHAPE. If they are structures, FIELDS are their slots."

@@ -146,7 +146,7 @@
                  (short-text (plain-name (second entry)))))))
 
 (defun checked-entries (data)
-  "Return DATA, entries, with symbols as operators. Signals an error that names the wrong entry."
+  "Return the entries in DATA with symbols as operators. Signals an error that names the wrong one."
   (loop with tick = 0
         for entry in data
         for number from 1
@@ -186,7 +186,7 @@
     journal))
 
 (defun read-journal (file &optional (operator 'read-journal))
-  "Return the journal in FILE. Error messages name OPERATOR, which got FILE. Signals
+  "Return the journal in FILE. Error messages name OPERATOR, which was called with FILE. Signals
 DAMAGED-JOURNAL, which names the wrong entry, if FILE does not contain a complete journal;
 WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))

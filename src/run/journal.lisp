@@ -93,8 +93,8 @@ they close over. See RESTORED-ARGUMENTS."
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun record-operation (simulation operator arguments &optional request)
-  "If SIMULATION keeps a journal or a past, record there, at the current tick, a call of OPERATOR, a
-symbol, with the list ARGUMENTS, or else the REQUEST for this call."
+  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for this call, at
+the current tick. It is recorded in the journal and past of SIMULATION, if SIMULATION keeps them."
   (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (requested-inside-tick-p request))))

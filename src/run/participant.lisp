@@ -60,7 +60,7 @@ needs no copy. By default, participants defined by DEFINE-KIND are copied. See C
   nil)
 
 (define-participant-function check-forkable (participant)
-  "Signal MISUSE if code of PARTICIPANT calls this, so that its run cannot be forked now."
+  "Signal MISUSE if code of PARTICIPANT calls this function: then its run cannot be forked now."
   (values))
 
 (define-participant-function participant-at-rest (participant function)

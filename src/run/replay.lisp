@@ -159,7 +159,7 @@ DIFFERENT-DEFINITIONS if definitions have changed since the recording, unless AN
     (funcall function)))
 
 (defmacro replaying ((anyway) &body body)
-  "Run BODY, which replays a journal. True ANYWAY permits definitions changed since the recording."
+  "Run BODY, which replays a journal. If ANYWAY is true, changed definitions are no error."
   `(call-replaying (lambda () ,@body) ,anyway))
 
 (defun resolve-journal (journal operator)

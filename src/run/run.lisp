@@ -146,7 +146,7 @@ do not refer to each other, so all but the last can be garbage-collected."
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun resident-message-queue ()
-  "Return the message queue of resident runs: the global *MESSAGE-QUEUE* if this run is headless."
+  "Return the message queue of resident runs, *MESSAGE-QUEUE*; in a headless run the global value."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
@@ -215,7 +215,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 
 (addition idle-p)
 (defun settled-p (simulation)
-  "True if SIMULATION has nothing in progress or waiting. Endless kickers and tracks do not count."
+  "True if nothing in SIMULATION is in progress or waiting. Kickers and tracks do not count."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
          (null (timeline-inbox timeline))

@@ -41,7 +41,7 @@
 ;;; Writing.
 
 (defun write-checksummed-line (text sum out)
-  "Write TEXT as a line with its check sum to OUT. Return that sum. SUM is the previous sum."
+  "Write TEXT and its check sum to OUT as a line. Return the sum. SUM is the previous line's sum."
   (when (<= (- +longest-line+ 10) (length text))
     (error "one entry takes ~D characters, more than a line can have" (length text)))
   (let ((sum (text-checksum text sum)))
