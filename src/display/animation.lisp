@@ -86,8 +86,8 @@ FUNCTION are signalled after the replay."
                           (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)
-  "Return TITLE, a string or NIL. If JOURNAL is replayed ANYWAY with other definitions, add a remark
-that says so."
+  "Return TITLE, a string or NIL. If ANYWAY is true and definitions have changed since JOURNAL was
+made, add a remark that says so."
   (let ((words (and anyway (typep title '(or null string)) (changed-definitions-sentence journal))))
     (if words
         (format nil "~A~%~A" (or title (title-of-journal journal)) words)
@@ -122,7 +122,7 @@ The name of FILE chooses the kind of film:
   lists what robots grasped, released and stowed; commands that failed; plans and parts of plans
   that failed or were ended; errors in your code; and MOMENTS of your own, each a moment or a list
   of a tick and a string. KINDS chooses the kinds of listed events: see SAVE-RUN-PICTURE. The page
-  fits its window, so a SCALE larger than suits the map has no effect.
+  fits its window, so a SCALE larger than the map needs has no effect.
 - .svg: an animated picture of the world. The file is about ten times as large as an .html file.
 - .svg or .png with SERIES: numbered pictures of DISPLAY. If FILE is run.png, the first picture is
   run-0001.png.
@@ -190,7 +190,7 @@ Signals the errors of REPLAY."
   (check-map-options 'save-animation :title title :layers layers :scale scale))
 
 (defun file-names-text (files)
-  "Return a text with the first and last names of FILES, numbered files in reverse order."
+  "Return a text with the first and last names of FILES, a list of numbered files, the last first."
   (format nil "~A~@[ to ~A~]" (file-name-text (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
 

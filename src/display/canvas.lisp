@@ -148,18 +148,18 @@ polygon instead."))
   (:documentation "Paint STRING, which has no newlines. Its base line begins at X, Y."))
 
 (defgeneric call-with-clipping (function canvas x y width height)
-  (:documentation "Call FUNCTION with its painting clipped to the box X, Y, WIDTH, HEIGHT of
+  (:documentation "Call FUNCTION, and clip what it paints to the box X, Y, WIDTH, HEIGHT of
 CANVAS."))
 
 (defgeneric call-with-origin (function canvas x y)
-  (:documentation "Call FUNCTION with X, Y as the origin of all coordinates on CANVAS."))
+  (:documentation "Call FUNCTION while X, Y is the origin of all coordinates on CANVAS."))
 
 (defmacro with-clipping ((canvas x y width height) &body body)
-  "Run BODY with its drawing on CANVAS clipped to the box X, Y, WIDTH, HEIGHT, in pixels."
+  "Run BODY, and clip what it draws on CANVAS to the box X, Y, WIDTH, HEIGHT, in pixels."
   `(call-with-clipping (lambda () ,@body) ,canvas ,x ,y ,width ,height))
 
 (defmacro with-origin ((canvas x y) &body body)
-  "Run BODY with X, Y, in pixels, as the origin of all coordinates on CANVAS."
+  "Run BODY while X, Y, in pixels, is the origin of all coordinates on CANVAS."
   `(call-with-origin (lambda () ,@body) ,canvas ,x ,y))
 
 ;;; Subjects: what a part of a drawing represents.
@@ -190,5 +190,5 @@ GRAPHICS-SCALE* bound to SCALE."
     (funcall function)))
 
 (defmacro with-canvas ((canvas &rest options) &body body)
-  "Run BODY with DRAW-GCONTEXT*, IN-COLOR* and, given :scale, GRAPHICS-SCALE* bound for CANVAS."
+  "Run BODY with DRAW-GCONTEXT*, IN-COLOR* and GRAPHICS-SCALE* (option :scale) bound for CANVAS."
   `(call-on-canvas (lambda () ,@body) ,canvas ,@options))

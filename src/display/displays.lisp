@@ -12,7 +12,7 @@
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
 (defconstant +object-height+ 12 "The height of things in a display, in pixels.")
 (defconstant +greatest-size-unit+ 8
-  "The greatest width of a thing in a display for each unit of its size, in pixels.")
+  "The greatest width of a thing in a display, in pixels per unit of its size.")
 
 (defun character-count-in-width (width)
   "Return the number of characters that fit into WIDTH pixels, but at least 1."
@@ -52,7 +52,7 @@
 robot, so that their widths are in proportion.")
 
 (defun size-unit (robot)
-  "Return the width in pixels of a thing of size 1 so that the largest thing fits ROBOT's displays."
+  "Return the width in pixels of a thing of size 1 with which the largest thing fits all displays."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
                          :initial-value 0)))
     (if (< (* largest +greatest-size-unit+) +object-width+)
@@ -65,7 +65,7 @@ of the thing, but at least 2."
   (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
-  "Draw a frame in the current colour, with a black outline that shows light colours on white."
+  "Draw a frame in the current colour. Its black outline makes light colours visible on white."
   (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
     (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
     (when (and in-color* (<= 4 width))
@@ -250,8 +250,8 @@ display takes no new view, so that it shows only what the robot knows."
       (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
   :documentation "The displays except the display of the world: lists (name title function [parts]).
-FUNCTION draws the display. With PARTS, a function that returns parts of the robot, FUNCTION draws
-one part.")
+FUNCTION draws the display. PARTS, if given, is a function that returns parts of the robot; FUNCTION
+then draws one part.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))

@@ -213,12 +213,12 @@ font SIZE pixels high, as layouts assume it. The default method returns +CHARACT
   nil)
 
 (defgeneric call-with-opacity (function canvas opacity)
-  (:documentation "Call FUNCTION with what it paints on CANVAS at OPACITY, from 0 to 1. The default
+  (:documentation "Call FUNCTION. What it paints on CANVAS has OPACITY, from 0 to 1. The default
 method ignores OPACITY.")
   (:method (function canvas opacity)
     (declare (ignore canvas opacity))
     (funcall function)))
 
 (defmacro with-opacity ((canvas opacity) &body body)
-  "Run BODY with what it draws on CANVAS at OPACITY, from 0 to 1."
+  "Run BODY. What it draws on CANVAS has OPACITY, from 0 to 1."
   `(call-with-opacity (lambda () ,@body) ,canvas ,opacity))

@@ -38,7 +38,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
     lines))
 
 (defun changes-in (frame before)
-  "Return a list index number ... of the lines of FRAME that differ from the equally long BEFORE."
+  "Return a list index number ... of the lines of FRAME that are not those of BEFORE, equally long."
   (loop for number across frame
         for old across before
         for place from 0
@@ -110,7 +110,7 @@ the differences; other frames are written whole."
 <label>Speed <select id=\"speed\">~{<option value=\"~A\"~A>~A</option>~}</select></label>
 <output id=\"tick\"></output>
 <span id=\"help\"><kbd>space</kbd> plays and stops, arrows step, <kbd>Home</kbd> and
-<kbd>End</kbd> lead to the ends, <kbd>+</kbd> and <kbd>-</kbd> change the speed</span>
+<kbd>End</kbd> go to the first and last frame, <kbd>+</kbd> and <kbd>-</kbd> change the speed</span>
 </div></footer>~%"
           (loop for (value text) in '(("0.25" "a quarter") ("0.5" "half") ("1" "as made")
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
@@ -131,15 +131,15 @@ list items. If SEVERAL-P, name the robots of MOMENTS."
           (string= "" legend) legend))
 
 (defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
-  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of the first frame, whose
-group `movers' the other frames replace. LAST-PICTURE, an SVG document of the last frame, is for
-browsers without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
+  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of the first frame. Other
+frames replace its group `movers'. LAST-PICTURE, an SVG document of the last frame, is for browsers
+without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-text title out)
   (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
   (write-text title out)
-  (format out "</h1>~%<noscript><p>To play this film, a browser needs scripts. Below are ~
+  (format out "</h1>~%<noscript><p>Enable scripts in your browser to play this film. Below are ~
                its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
   (write-moment-list legend moments several-p out)
@@ -175,7 +175,7 @@ browsers without scripts. LEGEND has HTML list items. If SEVERAL-P, name the rob
 
 (defstruct (film-contents (:constructor make-film-contents (opening)) (:copier nil))
   "What a film shows, for its legend. OPENING is its first snapshot. THINGS is a table from things
-to their images. ROBOTS are images of robots, and LINES legend entries of lines, the latest first."
+to their images. ROBOTS are images of robots. LINES are legend entries of lines, the latest first."
   (opening nil :type snapshot :read-only t)
   (robots '() :type list)
   (things (make-hash-table :test #'eq) :type hash-table :read-only t)

@@ -34,8 +34,8 @@ two points, the robot was put elsewhere between them."
   (cdr (assoc name (simulation-trails simulation) :test #'eq)))
 
 (defmacro do-trail ((points &rest variables) &body body)
-  "Run BODY, clauses of LOOP, for each point in POINTS of a trail, the newest first, as far as
-pictures show the trail. VARIABLES are bound to the x, y, tick and placements of the point."
+  "Run BODY, clauses of LOOP, for those POINTS of a trail that pictures show, the newest first.
+VARIABLES are bound to the x, y, tick and placements of the point."
   `(loop for (,@variables) on ,points by #'cddddr
          repeat +trail-length+
          ,@body))
@@ -75,7 +75,7 @@ where ROBOT was put, because ROBOT may have moved away from there by TICK."
         (make-trail points count))))
 
 (defun record-position (simulation robot)
-  "In every tick, add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved."
+  "Add the position of ROBOT to its trail in SIMULATION, if ROBOT has moved. Called in every tick."
   (declare #.*hot* (type robot robot))
   (let* ((name (robot-name robot)) (trail (trail-of-robot-named name simulation)))
     (when (moved-p (and trail (trail-points trail)) (robot-x robot) (robot-y robot))
@@ -167,8 +167,8 @@ rays of the cameras' last views. Return the history."
         history)))
 
 (defun copy-history-after-rewind (old new)
-  "Copy the trails of the simulation OLD, up to the present tick of NEW, to the simulation NEW,
-which replaces OLD after a rewind. If a history of OLD is recorded, record NEW's instead."
+  "NEW is the simulation that replaces the simulation OLD after a rewind. Copy the trails of OLD to
+NEW, up to the present tick of NEW. If a history of OLD is recorded, record that of NEW instead."
   (setf (simulation-trails new)
         (loop for (name . trail) in (simulation-trails old)
               collect (cons name (trail-until (simulation-tick new) trail))))

@@ -27,12 +27,12 @@ pixels wide, with DASHES."
 (define-constant +line-inks+
     '(#x1100FF #xAA3300 #x226655 #x220022 #x9911CC #x550000 #x665588 #x000066)
   :test #'cl:equal
-  :documentation "The colours of robots or ways in one picture, by their position in the list.")
+  :documentation "The colours of robots or ways in one picture, by position of the robot or way.")
 
 (define-constant +line-dashes+ '(nil (9 4) (2 3) (9 3 2 3) (4 2))
   :test #'cl:equal
-  :documentation "The dashes and gaps of robots or ways in one picture, by their position in the
-list. NIL means a solid line.")
+  :documentation "The dashes and gaps of robots or ways in one picture, by position of the robot or
+way. NIL means a solid line.")
 
 (defun nth-cyclic (position sequence)
   "Return the element of SEQUENCE at POSITION, modulo the length of SEQUENCE."
@@ -103,8 +103,8 @@ pixels from X, Y."
 (define-constant +substance-inks+ '(:yellow :cyan :red :blue :grey :green :lightcyan :violet
                                     :lightyellow :lightviolet)
   :test #'cl:equal
-  :documentation "The colours of substances, in order of their definition; after the last colour,
-the first follows.")
+  :documentation "The colours of substances, in the order in which substances were defined. After
+the last colour, they start again.")
 
 (define-constant +tints+ '(:yellow #xC8B060 :cyan #x58B0B8 :red #xC08878 :blue #x7890D0
                            :green #x78A878 :lightcyan #x88C4B0 :violet #xA080C8
@@ -117,8 +117,8 @@ the first follows.")
 (define-constant +wall-textures+ '(:lines :hatching :bricks :falling-hatching :plain :dots :posts
                                    :crosses :net :chequers :arrows)
   :test #'cl:equal
-  :documentation "The textures of substances, in order of their definition; after the last texture,
-the first follows.")
+  :documentation "The textures of substances, in the order in which substances were defined. After
+the last texture, they start again.")
 
 (defun substance-position (name)
   "Return how many substances are defined before the substance NAME, or NIL if NAME is not defined."
@@ -138,7 +138,7 @@ the first follows.")
   "The parameter whose shade is halfway between +SHADE-OF-ZERO+ and +GREATEST-SHADE+.")
 
 (defun wall-shade (parameter)
-  "Return the index in GREY* of the shade of walls with PARAMETER, the same in each map."
+  "Return the index in GREY* of the shade of walls with PARAMETER. It is the same in each map."
   (let ((part (/ parameter (+ (abs parameter) +middle-parameter+))))
     (+ +shade-of-zero+
        (round (* part (if (minusp part)
@@ -167,8 +167,8 @@ that one, the next texture that is free. TAKEN are the textures of the map's oth
         (first all))))
 
 (defun textures-for (names)
-  "Return lists (name texture) for NAMES, the names of the substances of a map, in the order of the
-definitions of these substances."
+  "Return lists (name texture) for NAMES, the names of the substances of a map. The lists are in the
+order in which the substances were defined."
   (let ((taken '()))
     (loop for name in (stable-sort (copy-list names) #'<
                                    :key (lambda (name)

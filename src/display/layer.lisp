@@ -67,7 +67,7 @@ OPTIONS:
 - :draw, a function: draws the value of :shown. See the head of layer.lisp.
 - :note, a function of a robot: returns what snapshots keep for this layer, an image or data that
   can be compared by EQUAL.
-- :ink, by default the colour of each robot, :dashes and :width: the look of the lines of the layer.
+- :ink, :dashes and :width: the look of the layer's lines. The default :ink is each robot's colour.
 - :legend: the text for these lines in the legend. :entries, a function of the snapshot, returns
   further entries of the legend. :last-p t puts the entry of the lines after those of other layers.
 - :boxes, a function of the arguments of :draw except the canvas: returns boxes that names avoid.

@@ -17,7 +17,8 @@ of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a r
         when shown collect (list* layer shown more)))
 
 (defun shown-below-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT below things, lowest first, as a list like SHOWN-AT-DEPTH's."
+  "Return what LAYERS show of SNAPSHOT below things, the lowest layer first, as a list of the same
+form as that of SHOWN-AT-DEPTH."
   (append (shown-at-depth :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
@@ -80,13 +81,12 @@ of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a r
   :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'reading-entries)
 
 (define-layer :tracks "Tracks"
-  "The positions where each robot believes the objects to be that its cameras track."
+  "The believed position of each object that a camera tracks."
   :default-p t :depth :cameras :shown 'camera-image-track :draw 'draw-track :boxes 'track-boxes
   :ink #x8A1010 :dashes '(5 2 1 2) :legend "tracked")
 
 (define-layer :designators "Designators"
-  "The positions where each robot believes its designated objects to be, joined to their real
-positions."
+  "The believed position of each designated object, with a line to its real position."
   :depth :labels :shown 'robot-image-designators :draw 'draw-designators-on-map
   :boxes 'designator-boxes
   :ink #x0C3C78 :dashes '(4) :legend "believed, true"

@@ -44,7 +44,7 @@ MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the samp
             (push (list value object) groups))))))
 
 (defconstant +longest-names+ 32
-  "The largest number of characters of several names beside one sample.")
+  "The largest number of characters that the names beside one sample have together.")
 
 (defun join-names (texts)
   "Return a text that joins as many of TEXTS as +LONGEST-NAMES+ allows, and counts the others."
@@ -142,7 +142,7 @@ number and the range of its parameters. The lists are sorted by number."
     (draw-place-at canvas type (- x 6) (- y 6))))
 
 (defun place-mark-svg (type)
-  "Return an SVG document with the mark of the place type TYPE. It serves to compare marks."
+  "Return an SVG document with the mark of the place type TYPE, to be compared with other marks."
   (let ((color-p in-color*))
     (with-output-to-string (out)
       (with-svg (canvas out :color-p color-p)

@@ -29,7 +29,7 @@ MISUSE if GRAPHICS-SCALE* is not a valid scale."
 (defconstant +least-scale+ 4 "The least scale if no scale is given, in pixels per cell.")
 (defconstant +greatest-scale+ 40 "The greatest scale if no scale is given, in pixels per cell.")
 (defconstant +greatest-unmagnified-scale+ 20
-  "With a scale of more pixels per cell, a picture is magnified as a whole, with its text.")
+  "A larger scale, in pixels per cell, also magnifies text, unless that scale suits the map.")
 
 (defstruct (arrangement (:copier nil))
   "The layout of a picture, in pixels. LEFT, TOP, RIGHT and BOTTOM are the margins of the map. WIDTH
@@ -85,8 +85,8 @@ the scale that suits the map of SNAPSHOT. Signals MISUSE if GRAPHICS-SCALE* is n
 (defun drawn-scale (scale snapshot layers)
   "Return two values for a picture of SNAPSHOT with LAYERS: the scale for drawing, in pixels per
 cell, and the factor by which to magnify the drawn picture with its text and lines. SCALE is the
-wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is larger than suits the map and than
-+GREATEST-UNMAGNIFIED-SCALE+."
+wanted scale: see SUITABLE-SCALE. The factor is 1 unless SCALE is above the scale for the map and
+above +GREATEST-UNMAGNIFIED-SCALE+."
   (let* ((scale (suitable-scale scale snapshot layers))
          (zoom (max 1 (/ (rational scale)
                          (max +greatest-unmagnified-scale+ (fitting-scale snapshot layers))))))

@@ -14,7 +14,7 @@
 
 (addition moment-p)
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
-  "A notable event of a run, described by TEXT: at TICK, of the robot named ROBOT, at X, Y."
+  "A notable event of a run. TEXT says what happened at TICK to the robot named ROBOT at X, Y."
   (tick 0 real "the tick of the event" :addition)
   (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN
 that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;
@@ -43,7 +43,7 @@ the contents of each bin. FAILURE is the last failure of a command."
                     (robot-failure robot)))
 
 (defun initial-observation (new)
-  "NEW is the first observation of a run. Return one with empty hands to compare NEW with."
+  "Return an observation with empty hands, to be compared with NEW, the first one of a run."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
 
 (defun changes-of-hands (old new)

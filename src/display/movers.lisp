@@ -78,7 +78,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
 (defun draw-upright-line (canvas x y)
-  "Draw the small vertical line of things in the manual's figure. A halo makes it visible on walls."
+  "Draw a thing as a small vertical line, like the manual's figure. A halo shows the line on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
     (flet ((upright (more)
@@ -135,7 +135,7 @@ earlier ROBOTS on the same spot."
   (count-if (lambda (other) (same-spot-p image other)) robots))
 
 (defun spot-radius (image robots)
-  "Return the radius in pixels of the widest ring that ROBOTS have on the spot of IMAGE."
+  "Return the radius in pixels of the widest of ROBOTS' rings around the robot of IMAGE."
   (+ (robot-radius) (* +ring-distance+ (1- (count-on-spot image robots)))))
 
 (defun draw-arrowhead (canvas x y radius angle fill-p)
@@ -204,7 +204,7 @@ robot in the list of robots of its world."
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
 (defun unobstructed-camera (camera)
-  "Return CAMERA if it can see the map because it is not inside a container, else NIL."
+  "Return CAMERA, or NIL if it is inside a container and so does not see the map."
   (and (null (camera-image-location camera)) camera))
 
 (defun draw-wedge (canvas camera robot snapshot)

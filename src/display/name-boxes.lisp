@@ -134,7 +134,7 @@ overlaps. BOX must be within MAP."
 (defun box-cost (snapshot layers box anywhere-p)
   "Return a cost for what a name in BOX would hide on the map of SNAPSHOT with LAYERS: 0 for
 nothing, 1 for a trail, 2 for marks of places, 3 for a trail and marks, 4 for a part of a wall.
-Return NIL if the wall is thin and not ANYWHERE-P: the name is then not allowed in BOX."
+Return NIL if BOX is on a thin wall and ANYWHERE-P is false: then no name may be in BOX."
   (let ((map (snapshot-map snapshot)))
     (cond ((not (on-wall-p map box))
            (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)

@@ -34,7 +34,7 @@ already has lower-case letters."
 ;;; Of things in one place the small ones are drawn last. A thing hides those of its own size.
 
 (defun pile-key (image)
-  "Return a list for the image of a thing, EQUALP for two things if one hides the other."
+  "Return a list for the image of a thing. If one thing hides another, their lists are EQUALP."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-spot (image hidden)
@@ -117,7 +117,7 @@ same point and for rings around each other, whose names belong together."
         never (< (spot-distance rival box) (+ own (if robots-p +robot-margin+ +thing-margin+)))))
 
 (defun confusable-spots-near (spot box spots reach)
-  "Return the CONFUSABLE-SPOTS in the index SPOTS that are near enough to BOX to own a name there."
+  "Return the CONFUSABLE-SPOTS in the index SPOTS to which a name in BOX could seem to belong."
   (let ((off (+ 1 +robot-margin+ (max 0 (spot-distance spot box)))))
     (destructuring-bind (left top right bottom) box
       (confusable-spots
@@ -189,7 +189,7 @@ TAKEN except the box of SPOT."
 
 (defun leader-box (snapshot layers spot width taken rivals)
   "Return the box at the end of a line where the name of SPOT, WIDTH pixels wide, hides least, or
-NIL. The line crosses nothing, if possible, and always if SPOT is a thing."
+NIL. The line may cross something only if SPOT is a robot and every line does."
   (let ((boxes (leader-boxes spot width)))
     (flet ((best (own-p)
              (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))
@@ -247,7 +247,7 @@ least. Return NIL if there is no such box."
   (and (find-overlapping-item (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
 
 (defun name-box (snapshot layers spot width taken marks spots robots)
-  "Return two values: the box for the name of SPOT, WIDTH pixels wide, or NIL, and whether a line
+  "Return two values: the box, WIDTH pixels wide, for the name of SPOT, or NIL; and true if a line
 must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS."
   (let ((near (box-beside-spot snapshot layers spot width taken marks spots)))
     (if near

@@ -36,18 +36,17 @@
     (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
   "Return a picture of the present world of ROBOT: an SVG document, as a string. DISPLAY is one of
 :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
-LAYERS lists what the picture shows besides walls, things and robots; without layers it is ().
-*PICTURE-LAYERS* documents the layers. TITLE, a string, replaces the default title, which has
-robots, map and tick, if the layer :TITLE is shown. PART (left top right bottom), in cells, is the
-part of the map to show, by default the whole map. If IN-COLOR is NIL, the picture is black and
-white.
+LAYERS lists what the picture shows besides walls, things and robots; () means nothing else.
+*PICTURE-LAYERS* documents the layers. TITLE, a string, replaces the default title: robots, map and
+tick. It needs the layer :TITLE. PART (left top right bottom), in cells, is the part of the map to
+show, by default the whole map. If IN-COLOR is NIL, the picture is black and white.
 
 SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
-set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. The
-picture without its legend is then at most 900 x 700 pixels large if 4 is small enough. If SCALE
-is larger than the scale that suits the map, and larger than 20, text and lines grow too. In a
-paper, text is readable in a column, 84 mm wide, if the picture is at most 400 pixels wide. On a
-page, 174 mm wide, text is readable if the picture is at most 820 pixels wide.
+set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. With
+it, the picture without its legend is at most 900 x 700 pixels large, unless even 4 is too much. If
+SCALE is larger than the scale that suits the map, and larger than 20, text and lines grow too. In a
+paper, text is readable if the picture is at most 400 pixels wide for a column of 84 mm, and at most
+820 pixels wide for a page of 174 mm.
 
 Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (check-picture 'svg-picture robot display layers scale title)
@@ -92,7 +91,7 @@ OPERATOR if FILE has another type or cannot be written. The message lists ENDING
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (when (wildcard-name-p file)
-      (reject "the name of one file; write \\\\ before each * ? and [ in a string of Lisp"))
+      (reject "the name of one file; in a Lisp string, write \\\\ before each *, ? and ["))
     (let ((missing (missing-directory file)))
       (when missing (reject (format nil "a name in an existing directory; make ~A first" missing))))
     (or (find (pathname-type file) kinds :test #'string-equal)

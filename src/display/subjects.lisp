@@ -20,14 +20,14 @@ most 180. Radians are never reduced (reading 50), so they can be several turns."
             (< (+ pi 0.01d0) (abs angle)))))
 
 (defun attribute-value-text (value)
-  "Return VALUE, of an attribute, as a lower-case text. Numbers are decimals without exponents."
+  "Return VALUE, an attribute's value, as lower-case text. Numbers are decimals without exponents."
   (typecase value
     (float (if (sane-number-p value) (number-text value) (princ-to-string value)))
     (cons (format nil "(~{~A~^ ~})" (mapcar #'attribute-value-text (ensure-list value))))
     (t (format nil "~(~A~)" value))))
 
 (defun denoted-object-text (image)
-  "Return a text that names what the designator of IMAGE denotes, or FALSE if nothing (manual B)."
+  "Return a text that names what the designator of IMAGE denotes: FALSE for nothing (manual B)."
   (let ((denotation (designator-image-denotation image)))
     (cond ((null denotation) "FALSE")
           ((stringp denotation) denotation)
@@ -86,8 +86,8 @@ images. It can be compared by EQUAL.")
           (resolve-draw-function (thing-image-draw-function image)))))
 
 (defmacro define-visible-content (image (&rest slots) &rest parts)
-  "Define the method of CONTENT for the image type IMAGE. It returns the values of SLOTS and the
-contents of PARTS, which are slots with images."
+  "Define the method of VISIBLE-CONTENT for the image type IMAGE. It returns the values of SLOTS and
+the contents of PARTS, which are slots with images."
   (flet ((reader (slot) (symbolicate image '- slot)))
     `(defmethod visible-content ((image ,image))
        (list ,@(loop for slot in slots collect `(,(reader slot) image))

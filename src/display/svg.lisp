@@ -142,7 +142,7 @@
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
 (defun write-ellipse (canvas x y width height pen)
-  "Write the start of an ellipse element that fits into the box with its line of half width PEN."
+  "Write the start of an ellipse element. Its line, 2 PEN wide, touches the box from inside."
   (extend-svg-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
              "\" rx=\"" (max 0 (- (/ width 2) pen)) "\" ry=\"" (max 0 (- (/ height 2) pen)) "\""))

@@ -16,7 +16,7 @@
   "A table of drawing functions that have signalled an error, and of names without functions.")
 
 (defmacro with-broken-graphics-reported (&body body)
-  "Run BODY, which draws a picture for a file. Broken graphics are reported again in BODY."
+  "Run BODY, which draws a picture for a file. BODY reports broken graphics again."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun signal-drawing-timeout ()
@@ -141,7 +141,7 @@ TILE pixels wide; without TILE, leave out the texture."
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
 (defun wall-pixels (from to)
-  "Return the width in pixels of a wall from FROM to TO, columns or rows, at least 1 to be visible."
+  "Return the width in pixels of a wall from column or row FROM to TO: at least 1, to be visible."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)
@@ -198,7 +198,7 @@ TILE pixels wide; without TILE, leave out the texture."
            (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
-  "Return the coordinates from START to END, in metres, to mark on an axis at least PIXELS apart."
+  "Return coordinates from START to END, in metres, for axis marks that are at least PIXELS apart."
   (loop with step = (step-for-distance pixels)
         for metres from (* step (ceiling start step)) to end by step collect metres))
 
@@ -216,7 +216,7 @@ TILE pixels wide; without TILE, leave out the texture."
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels per cell (manual B), and the layers
 in LAYERS that are drawn below and on walls, such as :GRID and :PLACES. Walls are black on canvases
-without colours. Otherwise they have a grey by their parameter, and a tint and a texture by their
+without colours. Otherwise the grey of a wall shows its parameter; its tint and texture show its
 substance. LEFT, TOP, RIGHT and BOTTOM, in cells, are the part to draw, by default the whole MAP."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)

@@ -42,7 +42,7 @@ cover WIDTH x HEIGHT cells. If ROWS is NIL, the number of rows is unlimited."
 
 (defun text-view-of-region (snapshot region columns rows)
   "Return a text view of REGION, a list (left top right bottom) in metres, or NIL for the whole
-SNAPSHOT. The view has at most ROWS lines, or any number if ROWS is NIL, of COLUMNS characters."
+SNAPSHOT. The view has at most COLUMNS characters a line and at most ROWS lines unless ROWS is NIL."
   (let ((map (snapshot-map snapshot)))
     (destructuring-bind (x1 y1 x2 y2) (or region (list 0 0 (map-width map) (map-height map)))
       (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
@@ -160,7 +160,7 @@ the glyph shows the substance by its colour."
 ;;; Places.
 
 (define-constant +place-glyphs+ "=:.;,'~\"|-/\\_" :test #'equal
-  :documentation "The characters of place types, by their rank. All further ranks have the last
+  :documentation "The characters of place types, by their rank. All higher ranks have the last
 character.")
 
 (defun place-glyphs (map indices)

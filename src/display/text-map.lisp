@@ -93,8 +93,8 @@ and those of GLYPHS for which there is no room. The items fit beside the map in 
 ;;; Below it.
 
 (defun lines-with-count (head items columns rows)
-  "Return the legend items HEAD and ITEMS as at most ROWS lines of COLUMNS characters, or as any
-number if ROWS is NIL. The last line counts the items without room, if the count itself fits."
+  "Return the legend items HEAD and ITEMS as lines of COLUMNS characters, at most ROWS lines unless
+ROWS is NIL. If items have no room, the last line says how many, if it has room for that number."
   (flet ((kept (count &rest more)
            (fill-lines (append head (subseq items 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
@@ -171,7 +171,7 @@ ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
   "Return a sheet of REGION for ROBOT that fits into ROWS lines of COLUMNS characters with the fixed
-part of its legend, if possible. A kind of thing keeps its letter while none is on the floor."
+part of its legend, if possible. Kinds without a thing on the floor keep their letters."
   (let* ((world (robot-world robot)) (snapshot (take-snapshot world))
          (letters (letters-of-thing-names world))
          (image (snapshot-robot snapshot (robot-name robot))))

@@ -6,7 +6,7 @@
 ;;; a block and the glyph to show there.
 
 (defun glyph-mark-at (view x y glyph)
-  "Return a list of one pair, the block number of VIEW at X, Y and GLYPH, or NIL if outside VIEW."
+  "Return a list of one pair (number . GLYPH) for VIEW's block at X, Y, or NIL if X, Y is outside."
   (let ((number (block-at view x y)))
     (and number (list (cons number glyph)))))
 

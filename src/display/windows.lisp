@@ -48,9 +48,9 @@ begins at LEFT and is WIDTH pixels wide."
       (draw-text canvas (- right 8 (monospaced-width text)) (min (+ y 4) (- end 2)) text))))
 
 (defun draw-view-margins (canvas map layers left top width height)
-  "Draw coordinates and scale bar, as far as LAYERS have :COORDINATES and :SCALE-BAR, at the edges
-of a view of MAP. The view is WIDTH by HEIGHT pixels large and begins LEFT and TOP pixels from the
-corner of MAP. Call this within WITH-CANVAS, with the origin in the corner of MAP."
+  "Draw coordinates and scale bar at the edges of a view of MAP, if LAYERS contain :COORDINATES and
+:SCALE-BAR. The view is WIDTH by HEIGHT pixels large and begins LEFT and TOP pixels from the corner
+of MAP. Call this within WITH-CANVAS, with the origin in the corner of MAP."
   (destructuring-bind (left-edge top-edge bottom-edge) (view-edges map layers)
     (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
       (when (member :coordinates layers)
@@ -77,8 +77,8 @@ one window. If this window is already open, it comes to the front and shows the 
 can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-magna/clim."
   (check-argument open-display robot (robot-p robot) "a robot")
   (unless *display-opener*
-    (reject-use "No display: windows need McCLIM and the system ars-magna/clim. The line ~
-                 WINDOW at the prompt loads both. See also PICTURE and MAP."))
+    (reject-use "No display: windows need McCLIM and the system ars-magna/clim. At the ~
+                 prompt, WINDOW loads both. PICTURE and MAP need no window."))
   (funcall *display-opener* robot)
   robot)
 
@@ -86,8 +86,8 @@ can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-mag
   "The messages already printed about displays that could not be opened, each printed only once.")
 
 (defun announce-display (robot options)
-  "Open the window of ROBOT, which SIMULATOR has started. If no window can be opened, print once a
-line with the reason and the remedy. Do nothing if the OPTIONS of SIMULATOR have :DISPLAY NIL."
+  "Open the window of ROBOT, which SIMULATOR has started. If this fails, print the reason and the
+remedy, but only the first time. Do nothing if the OPTIONS of SIMULATOR have :DISPLAY NIL."
   (when (getf options :display t)
     (handler-case (open-display robot)
       (error (condition)

@@ -24,7 +24,7 @@ intervals along an axis. COMBINE joins the values of FORM for two axes."
                       (compare (low-y a) (high-y a) (low-y b) (high-y b)))))))))
 
 (define-comparison interval-intersect? and (low-a high-a low-b high-b)
-  "True if the intervals A and B have a common element, if only a bound (manual, Table 3.2)."
+  "True if the intervals A and B have a common element; bounds count (manual, Table 3.2)."
   (and (<= low-a high-b) (<= low-b high-a)))
 
 (define-comparison interval-subset? and (low-a high-a low-b high-b)
@@ -43,8 +43,8 @@ point intervals, this must be true along both axes (manual, Table 3.2)."
 
 ;; As reading 46 says.
 (define-comparison interval-dist max (low-a high-a low-b high-b)
-  "Return the gap between the intervals A and B; 0 only if they intersect. For point intervals,
-return the wider of the gaps along the two axes (manual, Table 3.2)."
+  "Return the gap between the intervals A and B, 0 if and only if they intersect. For point
+intervals, return the wider of the gaps along the two axes (manual, Table 3.2)."
   (max 0d0 (- low-a high-b) (- low-b high-a)))
 
 (public in-interval)
@@ -156,7 +156,7 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 
 (public interval-lift)
 (defun interval-lift (x)
-  "Return the INTERVAL of the number X alone, or PT-INTERVAL of the point X (manual, Table 3.2)."
+  "Return the interval that contains only X, a number or a point (manual, Table 3.2)."
   (dispatch-on-types interval-lift (x) "a number or a PT"
     (((or finite pt)) (lift x))))
 

@@ -45,9 +45,9 @@ EXPECTED says which operands are possible."
                    (if (and (realp value) (not (finite-p value))) +number-text+ expected)))
 
 (defmacro dispatch-on-types (operator operands expected &body clauses)
-  "Evaluate the forms of the first clause in CLAUSES, of the form ((TYPE...) FORM...), whose types
-fit the values of the variables OPERANDS. Signals WRONG-ARGUMENT, with the text EXPECTED, if no
-clause fits or the result is too large."
+  "CLAUSES are lists ((TYPE...) FORM...). Evaluate the forms of the first clause whose types fit the
+values of the variables OPERANDS. Signals WRONG-ARGUMENT, with the text EXPECTED, if no clause fits
+or the result is too large."
   (flet ((test (types)
            `(and ,@(loop for operand in operands
                          for type in types

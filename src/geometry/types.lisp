@@ -201,8 +201,8 @@ SETF function of NAME copies the bounds of an interval into that side."
 
 (public copy-obj)
 (defun copy-obj (object)
-  "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides copied too); a number is
-returned itself (manual 3.2.1; reading 234)."
+  "Return a fresh copy of OBJECT, a PT, INTERVAL or PT-INTERVAL (its sides are copied too), or
+return OBJECT itself if it is a number (manual 3.2.1; reading 234)."
   (typecase object
     (real object)
     (pt (%make-pt (%pt-x object) (%pt-y object)))

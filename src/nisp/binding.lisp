@@ -121,8 +121,8 @@ follow the parameters (manual 3.1)."
                 temporaries)))))
 
 (defun pattern-test (pattern datum temporaries)
-  "Return a form that tests if PATTERN matches the value of the variable DATUM, and TEMPORARIES with
-the temporary variables for the matchvars in PATTERN."
+  "Return two values: a form that tests if PATTERN matches the value of the variable DATUM; and
+TEMPORARIES with new temporary variables for the matchvars in PATTERN."
   (cond ((matchvar-p pattern) (matchvar-test (matchvar-name pattern) datum temporaries))
         ((consp pattern) (cons-test pattern datum temporaries))
         ((null pattern) (values `(null ,datum) temporaries))

@@ -19,7 +19,7 @@
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun loop-keyword (forms)
-    "Return :UNTIL or :WHILE if FORMS, the body of a LOOP, begin with a symbol so named; else NIL."
+    "Return :UNTIL or :WHILE if FORMS, a LOOP's body, begin with a symbol of this name; else NIL."
     (and (symbolp (first forms))
          (find (first forms) '(:until :while) :test #'string=))))
 
@@ -37,7 +37,7 @@ meaning in CL:LOOP (manual, Figure D.3)."
 
 (public !=)
 (defmacro != (place value &rest more)
-  "Set PLACE to VALUE, and each further place in MORE, as SETF does (manual 3.1; reading 14)."
+  "Set PLACE to VALUE, and likewise for each pair in MORE, as SETF does (manual 3.1; reading 14)."
   `(setf ,place ,value ,@more))
 
 (public nop)
@@ -70,8 +70,8 @@ meaning in CL:LOOP (manual, Figure D.3)."
 ;;; is loaded; after that the registry is only read.
 
 (defstruct (nisp-type (:constructor make-nisp-type (name)) (:copier nil))
-  "A registered type of Nisp. CLASS is the Lisp class, if objects of the type have SLOTS, an
-alist from names of slots to names of readers."
+  "A registered type of Nisp. If objects of the type have slots, CLASS is their Lisp class, and
+SLOTS is an alist from names of slots to names of readers."
   (name "" :type string :read-only t)
   (class nil :type symbol)
   (slots '() :type list)
@@ -113,7 +113,7 @@ alist from names of slots to names of readers."
   (member form lambda-list-keywords))
 
 (defun similar-type (type)
-  "Return the name of a known type of which TYPE, an unknown type, may be a misspelling; or NIL."
+  "If TYPE is unknown, return the name of a known type that may be meant; else NIL."
   (and type
        (symbolp type)
        (not (find-nisp-type type))
@@ -142,13 +142,13 @@ alist from names of slots to names of readers."
           and collect element))
 
 (defun untyped-lambda-list (lambda-list &optional (operator "lambda"))
-  "Return LAMBDA-LIST, an ordinary one in which a hyphen and a type may follow each variable, as
-an ordinary lambda list. Error messages name OPERATOR, a string (manual 3.1)."
+  "Return LAMBDA-LIST, in which a hyphen and a type may follow each variable, as an ordinary lambda
+list. Error messages name OPERATOR, a string (manual 3.1)."
   (without-types operator lambda-list "parameters"))
 
 (defun untyped-bindings (bindings &optional (operator "let"))
-  "Return BINDINGS, as CL:LET accepts them, without the hyphen and type that may follow each
-binding. Error messages name OPERATOR, a string (manual 3.1)."
+  "Return BINDINGS without the hyphen and type that may follow each of them, as CL:LET accepts them.
+Error messages name OPERATOR, a string (manual 3.1)."
   (without-types operator bindings "bindings"))
 
 (defun parameter-variables (parameter)
@@ -160,6 +160,6 @@ binding. Error messages name OPERATOR, a string (manual 3.1)."
               (and supplied-p (list supplied))))))
 
 (defun lambda-list-variables (lambda-list)
-  "Return the variables that LAMBDA-LIST, an ordinary one without types, binds."
+  "Return the variables bound by LAMBDA-LIST, an ordinary lambda list without types."
   (mapcan #'parameter-variables
           (remove-if #'lambda-keyword-p lambda-list)))

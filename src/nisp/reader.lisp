@@ -12,7 +12,7 @@
         (and function (not non-terminating)))))
 
 (defun read-escape (char stream token)
-  "Add to TOKEN the characters that CHAR, a backslash or bar just read from STREAM, escapes."
+  "CHAR is a backslash or bar just read from STREAM. Add the characters that it escapes to TOKEN."
   (if (char= char #\\)
       (vector-push-extend (read-char stream t nil t) token)
       (loop for next = (read-char stream t nil t)
@@ -117,7 +117,7 @@ is a slot of the value before it."
 
 (dolist (character '(#\t #\f))
   (note-dispatch-character character
-                           "Say (named-readtables:in-readtable :nisp) first: Nisp has #t and #f."))
+                           "Evaluate (named-readtables:in-readtable :nisp) before you use #t or #f."))
 
 (addition (in-readtable :nisp))
 (ensure-nisp-readtable)
@@ -148,7 +148,7 @@ is a slot of the value before it."
 ;;; compiled in Nisp's syntax, and kept like that.
 
 (defvar *library-readtable* (copy-readtable nil)
-  "The readtable, which may be modified, for loading systems while Nisp's readtable is current.")
+  "A modifiable readtable, in which systems are loaded while Nisp's readtable is current.")
 
 (defmethod asdf:perform :around ((operation asdf:operation) (component asdf:cl-source-file))
   (if (eq (get-macro-character #\! (find-readtable :nisp)) (get-macro-character #\!))

@@ -84,7 +84,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
     (intern (concatenate 'string "!_" (string slot)) :ars-magna.slots))
 
   (defun ensure-slot-accessor (slot)
-    "Return the name of the accessor of the slot named SLOT, which is defined if necessary."
+    "Return the name of the accessor of the slot named SLOT. Define the accessor if necessary."
     (let ((name (slot-accessor-name slot)))
       (unless (fboundp name)
         (ensure-generic-function `(setf ,name) :lambda-list '(value object)
@@ -105,7 +105,7 @@ has the accessor's name."))
           append (nisp-type-slots type)))
 
 (defun users-slot-names (object)
-  "If the class of OBJECT is a user's, return a list of the names, symbols, of its slots; else NIL."
+  "If OBJECT's class is a user's, return the names of its slots, a list of symbols; else NIL."
   (let ((class (class-of object)))
     (when (and (typep class '(or structure-class standard-class))
                (users-symbol-p (class-name class))
@@ -113,7 +113,7 @@ has the accessor's name."))
       (class-slot-names class))))
 
 (defun slot-names (object)
-  "Return a list of the names, strings, of the slots of OBJECT that programs can use."
+  "Return the names of the slots of OBJECT that programs can use, a list of strings."
   (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
                                    (mapcar #'symbol-name (users-slot-names object)))
                            :test #'string=)
@@ -149,7 +149,7 @@ has the accessor's name."))
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
 (defun typed-reader (type slot)
-  "Return the name of the accessor of SLOT for TYPE, or else of that for all types."
+  "Return the name of the accessor of SLOT for TYPE, or if there is none, of SLOT for all types."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
     (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
@@ -157,7 +157,7 @@ has the accessor's name."))
 
 (defmacro define-nisp-slot (type name reader &optional writer)
   "Let programs use the slot NAME of objects of TYPE, a class, and of its subclasses. READER is the
-name of a function of the object. WRITER, if the slot can be set, is (SETF READER) or the name of a
+name of a function of the object. If the slot can be set, WRITER is (SETF READER) or the name of a
 function of the value and the object."
   (let ((accessor (slot-accessor-name name))
         (direct (and (symbolp reader)

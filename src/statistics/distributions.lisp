@@ -38,7 +38,7 @@ for k (Lentz's method as in Thompson and Barnett 1986)."
 
 (defun stirling-error (x)
   "Return the error of Stirling's formula, log gamma(X+1) - ((X+1/2) log X - X + log sqrt(2 pi)),
-for X from 1/2: for X from 16 by DLMF 5.11.1, below by the recurrence of Gudermann (1845)."
+for X from 1/2. From 16 on this is DLMF 5.11.1; below 16, the recurrence of Gudermann (1845)."
   (declare (type double-float x) #.*hot*)
   (let ((rest 0d0))
     (declare (type double-float rest))

@@ -26,9 +26,9 @@ digits are lost near 0. The formula follows from the product of both bounds."
   "Return the bounds, low and high, of the score interval for the probability of success (Wilson
 1927; Newcombe 1998, \"Two-sided confidence intervals for the single proportion\", method 3). On
 average over all probabilities, the interval contains the true probability as often as CONFIDENCE
-says; near 0 and 1 perhaps less often, unlike EXACT-INTERVAL. Without trials the bounds are 0 and 1;
-without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless TRIALS is an
-integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
+says. Near 0 and 1 it may do so less often, unlike EXACT-INTERVAL. Without trials the bounds are 0
+and 1; without successes low is 0; without failures high is 1. Signals WRONG-ARGUMENT unless TRIALS
+is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
   (wilson-bounds successes trials
                  (normal-critical-value (check-unit-share wilson-interval confidence))))
@@ -120,7 +120,7 @@ NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENC
 (defun check-same-length (operator name seconds firsts)
   (unless (= (length firsts) (length seconds))
     (reject-argument operator name seconds
-                     (format nil "a sequence of as many numbers as the first, ~D"
+                     (format nil "a sequence of ~D numbers, as many as the first"
                              (length firsts)))))
 
 (addition mean-difference-interval)
@@ -149,12 +149,12 @@ distribution's median with a probability of at most TAIL; 0 if there is no such 
 
 (addition median-interval)
 (defun median-interval (numbers &key (confidence .95d0))
-  "Return the bounds, low and high, of the interval for the median of a distribution, and the
-interval's coverage, CONFIDENCE or more for any distribution. NUMBERS, a list or vector, are a
-sample of the distribution. The bounds are two of NUMBERS, as far from the least and the greatest as
-CONFIDENCE allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values are NIL if
-there are too few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS are from
--1e15 to 1e15, and CONFIDENCE between 0 and 1."
+  "Return three values: the bounds, low and high, of the interval for the median of a distribution,
+and the interval's coverage, which is at least CONFIDENCE for any distribution. NUMBERS, a list or
+vector, are a sample of the distribution. The bounds are two of NUMBERS, as far from the least and
+the greatest as CONFIDENCE allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values
+are NIL if there are too few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS
+are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   (let* ((confidence (check-unit-share median-interval confidence))
          (sample (sort-sample (sample 'median-interval 'numbers numbers)))
          (size (length sample))

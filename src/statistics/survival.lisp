@@ -123,11 +123,11 @@ variance. Elements of the first group are marked."
 
 (addition log-rank-test)
 (defun log-rank-test (first-times first-events second-times second-events)
-  "Return the p value of the log-rank test that two groups take equally long (Mantel 1966; Peto and
-Peto 1972). Times and events are as for SURVIVAL-CURVE. The other values are chi-square, with one
-degree of freedom; the number of trials of the first group that were done; and the expected number.
-If the groups cannot be compared, for example because one is empty, p is 1 and chi-square is 0.
-Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
+  "Return the p value of the log-rank test of the hypothesis that two groups take equally long
+(Mantel 1966; Peto and Peto 1972). Times and events are as for SURVIVAL-CURVE. The other values are
+chi-square, with one degree of freedom; the number of trials of the first group that were done; and
+the expected number. If the groups cannot be compared, for example because one is empty, p is 1 and
+chi-square is 0. Signals WRONG-ARGUMENT as SURVIVAL-CURVE does."
   (check-survival-arguments 'log-rank-test 'first-times first-times 'first-events first-events)
   (check-survival-arguments 'log-rank-test 'second-times second-times 'second-events second-events)
   (multiple-value-bind (observed expected variance)

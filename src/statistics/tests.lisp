@@ -43,7 +43,7 @@ integers from 0 to 1e9."
         sum (* size (- 1 (* 2 (negative-sign-probability (* size tilt))))) of-type double-float))
 
 (defun find-tilt (sizes sum)
-  "Return the tilt of random signs for which the mean sum of SIZES, the largest of them 1, is SUM."
+  "Return the tilt of random signs for which the mean sum of SIZES is SUM. The largest size is 1."
   (declare (type doubles sizes) (type double-float sum))
   (let ((low 0d0) (high (/ 20 (max 1d-4 (reduce #'min sizes)))))
     (loop repeat 40
@@ -92,10 +92,10 @@ estimated by importance sampling, for small probabilities."
 ;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
 (defparameter *most-exact-sums* (expt 2 18)
-  "The largest product of the numbers of sums and of differences left, for the exact test.")
+  "The exact test is given up if the number of sums times that of differences left is above this.")
 
 (deftype sums ()
-  "A cons of a vector of sums, sorted, and a vector of their probabilities."
+  "A cons of a sorted vector of sums and a vector of their probabilities."
   '(cons doubles doubles))
 
 (defun merge-sums (sums difference grain)
@@ -234,8 +234,8 @@ from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
 (defun rate-verdict (successes trials rate &key (level .05d0))
   "Return :ABOVE or :BELOW if SUCCESSES successes in TRIALS trials show that the probability of
 success is above or below RATE; or NIL if they do not show either yet. You may call this function
-after each trial and stop when the value is not NIL: if the true probability is RATE, you ever stop
-with a probability of at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
+after each trial and stop when the value is not NIL: if the true probability is RATE, the
+probability that you ever stop is at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
   (check-trials rate-verdict successes trials)
   (let ((rate (check-unit-share rate-verdict rate)))
     (when (>= (log-evidence successes trials rate)
