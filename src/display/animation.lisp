@@ -127,8 +127,8 @@ The name of FILE chooses the kind of film:
 - .svg or .png with SERIES: numbered pictures of DISPLAY. If FILE is run.png, the first picture is
   run-0001.png.
 
-With ANYWAY, replay a run even if definitions have changed since. The other arguments are those of
-SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the errors of REPLAY."
+With ANYWAY, replay the run even if definitions have changed since it was recorded. The other
+arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the errors of REPLAY."
   (let* ((kind (if series
                    (picture-kind 'save-animation file)
                    (picture-kind 'save-animation file '(:html :svg)
@@ -170,8 +170,8 @@ SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the errors of REPLAY."
 events are: a robot grasped, released or stowed something; a command failed; a plan or a part of a
 plan failed or was ended; an error occurred in your code. JOURNAL is a journal, the name of a
 journal file, or NIL for the journal of the current simulation. UNTIL is the last tick to replay, by
-default the end of JOURNAL. With ANYWAY, replay a run even if definitions have changed since.
-Signals the errors of REPLAY."
+default the end of JOURNAL. With ANYWAY, replay the run even if definitions have changed since it
+was recorded. Signals the errors of REPLAY."
   (let ((journal (resolve-journal journal 'journal-moments)))
     (checked-end-tick 'journal-moments journal until)
     (multiple-value-bind (watch seen) (make-moments-watcher)

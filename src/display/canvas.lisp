@@ -62,8 +62,8 @@ the scale of the picture.")
 
 (defun call-with-gcontext (function gcontext &key foreground background line-width line-style
                                                 dashes)
-  "Call FUNCTION with GCONTEXT temporarily changed: each keyword argument that is not NIL sets an
-attribute of GCONTEXT."
+  "Call FUNCTION while GCONTEXT is changed: each keyword argument that is not NIL sets an attribute
+of GCONTEXT."
   (check-pen foreground line-width line-style dashes)
   (let ((old (copy-gcontext gcontext)))
     (flet ((set-to (foreground background line-width line-style dashes)
@@ -78,7 +78,7 @@ attribute of GCONTEXT."
                 (gcontext-line-width old) (gcontext-line-style old) (gcontext-dashes old))))))
 
 (defmacro with-gcontext ((gcontext &rest options) &body body)
-  "Run BODY with GCONTEXT temporarily changed. OPTIONS are :foreground, :background, :line-width,
+  "Run BODY while GCONTEXT is changed. OPTIONS are :foreground, :background, :line-width,
 :line-style and :dashes, as in CLX."
   `(call-with-gcontext (lambda () ,@body) ,gcontext ,@options))
 

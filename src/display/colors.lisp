@@ -150,11 +150,11 @@ luminance of GREY, so it is printed in the same grey."
 (:across Y), (:down X), (:rising), (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
 (defun tile-edges (low high tile)
-  "Return the coordinates where tiles of size TILE begin that overlap the range from LOW to HIGH."
+  "Return where the tiles of size TILE begin that overlap the range from LOW to HIGH."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun tile-levels (low high tile part)
-  "Return the coordinates from LOW to HIGH at the fraction PART, 0 to 1, of each tile of size TILE."
+  "Return the coordinates from LOW to HIGH that lie at fraction PART, 0 to 1, of a tile of size TILE."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
@@ -183,7 +183,7 @@ a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
                                       (cut-to top (+ y (* y2 tile)) bottom)))))))
 
 (defun mark-segments (mark left top right bottom tile)
-  "Return the lines x1 y1 x2 y2 ... that MARK, a texture's mark but no box, draws in the rectangle."
+  "Return the lines x1 y1 x2 y2 ... of MARK, any mark of a texture but :BOX, in the rectangle."
   (ecase (first mark)
     (:across (loop for y in (tile-levels top bottom tile (second mark))
                    append (list left y right y)))
@@ -193,7 +193,7 @@ a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
     (:stroke (strokes-in-tiles left top right bottom tile (rest mark)))))
 
 (defun mark-boxes (mark left top right bottom tile)
-  "Return the boxes x y width height ... that MARK, a box of a texture, draws in the rectangle."
+  "Return the boxes x y width height ... of MARK, a :BOX mark of a texture, in the rectangle."
   (destructuring-bind (x y width height) (rest mark)
     (loop for (x1 y1 x2 y2) on (strokes-in-tiles left top right bottom tile
                                                  (list x y (+ x width) (+ y height)))

@@ -267,7 +267,7 @@ cameras, hands and storage bins.")
   (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-detail (canvas display robot width)
-  "Draw DISPLAY of ROBOT, any but the world, WIDTH pixels wide. Return its height in pixels."
+  "Draw DISPLAY, any except the world, of ROBOT, WIDTH pixels wide. Return its height in pixels."
   (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
     (let ((*size-unit* (size-unit robot)))
       (if parts

@@ -110,7 +110,7 @@ relative to the point before."
 ;;; Text.
 
 (defun glyph-text (sequence start end)
-  "Return SEQUENCE, a string or a sequence of characters or codes, from START to END, as a string."
+  "Return SEQUENCE from START to END as a string. Its elements are characters or character codes."
   (check-argument draw-glyphs sequence (typep sequence 'sequence) "a string")
   (map 'string (lambda (glyph)
                  (cond ((integerp glyph) (code-char glyph))
@@ -163,7 +163,7 @@ CLX. Signals WRONG-ARGUMENT."
 
 (define-constant +text-font+ "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
   :test #'equal
-  :documentation "The font family of SVG documents in which DRAW-WORDS writes texts.")
+  :documentation "The font family of SVG documents that have texts of DRAW-WORDS.")
 
 (defparameter *character-widths*
   (let ((widths (make-array 128 :initial-element 1.02d0)))
@@ -197,8 +197,8 @@ right. The default method ignores SIZE, UPWARD-P and BOLD-P, because a canvas ha
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return the width in pixels of a character that DRAW-WORDS draws on CANVAS in a
-font SIZE pixels high, as layouts assume it. The default method returns +CHARACTER-WIDTH+.")
+  (:documentation "Return the width in pixels that layouts assume for a character that DRAW-WORDS
+draws on CANVAS in a font SIZE pixels high. The default method returns +CHARACTER-WIDTH+.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))

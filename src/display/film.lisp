@@ -38,7 +38,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
     lines))
 
 (defun changes-in (frame before)
-  "Return a list index number ... of the lines of FRAME that are not those of BEFORE, equally long."
+  "Return index number ... for the lines in which FRAME differs from BEFORE, which is as long."
   (loop for number across frame
         for old across before
         for place from 0
@@ -158,7 +158,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
 (defun still-svg (snapshot movers layers in-color scale)
-  "Return as SVG the map of SNAPSHOT with LAYERS and, above it, MOVERS in a group called `movers'."
+  "Return SVG for the map of SNAPSHOT with LAYERS, and above it MOVERS in a group `movers'."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)

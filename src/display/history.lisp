@@ -49,8 +49,8 @@ VARIABLES are bound to the x, y, tick and placements of the point."
           +trail-step+)))
 
 (defun add-position-of-placement (robot tick points)
-  "Return POINTS of a trail. If ROBOT has been put elsewhere since the newest point, add the place
-where ROBOT was put, because ROBOT may have moved away from there by TICK."
+  "Return POINTS, those of a trail. If ROBOT has been put elsewhere since the newest point, add the
+place where ROBOT was put, because ROBOT may have moved away from there by TICK."
   (if (and points
            (/= (the fixnum (robot-placements robot)) (the fixnum (fourth points)))
            (moved-p (list (robot-x robot) (robot-y robot)) (robot-put-x robot) (robot-put-y robot)))

@@ -176,7 +176,7 @@ order in which the substances were defined."
           collect (list name (first (push (choose-texture name taken) taken))))))
 
 (defun materials-of (map)
-  "Return a vector of the materials of the substances of MAP, indexed by their numbers."
+  "Return a vector with the material of each substance of MAP. The index is the substance's number."
   (let ((textures (textures-for (remove nil (coerce (map-substance-types map) 'list)))))
     (cl:map 'vector (lambda (name)
                       (make-material (and name (getf +tints+ (substance-ink name)))

@@ -48,7 +48,7 @@
                                      (%layer-sentence layer)))))))
 
 (defun add-layer (layer)
-  "Add LAYER to *LAYERS*, at the end or in place of one of the same name. Return the name of LAYER."
+  "Add LAYER to *LAYERS*, at the end or in place of a layer of this name. Return the name of LAYER."
   (let* ((name (%layer-name layer)) (old (find name *layers* :key #'%layer-name)))
     (cond (old (setf *layers* (substitute layer old *layers*)))
           (t (setf *layers* (append *layers* (list layer)))

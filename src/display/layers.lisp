@@ -8,8 +8,8 @@
 ;;; clockwise from the right, on the map and on the canvas.
 
 (defun shown-at-depth (depth layers image &rest more)
-  "Return lists (layer shown . MORE) for the layers of the list LAYERS at DEPTH that show something
-of IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robot or camera."
+  "Return lists (layer shown . MORE) for those of LAYERS that are at DEPTH and show something of
+IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robot or camera."
   (loop for layer in (layers-at-depth depth layers)
         for shown = (if (%layer-shown layer)
                         (funcall (%layer-shown layer) image)

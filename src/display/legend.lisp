@@ -161,8 +161,8 @@ number and the range of its parameters. The lists are sorted by number."
 ;;; Things: each look once, with the names of all things that look so.
 
 (defun sample-half-width (image)
-  "Return half the width, in pixels, of the sample of the thing of IMAGE. The sample is as wide as
-the thing on the map if a line of the legend has room for such a sample."
+  "Return half the width, in pixels, of the legend's sample of the thing of IMAGE. The sample is as
+wide as the thing on the map if a line of the legend has room for such a sample."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +greatest-thing-width+))))
     (thing-half-width image)))
 

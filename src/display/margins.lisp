@@ -14,8 +14,8 @@
 MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (cond ((eql graphics-scale* +usual-scale+) nil)
         ((argument-of-type-p graphics-scale* 'picture-scale) graphics-scale*)
-        (t (reject-use "graphics-scale* is ~S, but must be ~A. Set it to such a number, or to ~D, ~
-                        so that each picture has the scale that suits its map."
+        (t (reject-use "graphics-scale* is ~S, but must be ~A. Set it to such a number. With ~D, ~
+                        each picture has the scale that suits its map."
                        graphics-scale* (argument-type-text 'picture-scale) +usual-scale+))))
 
 ;;; Without a given scale, the map with title, coordinates and scale bar is at most

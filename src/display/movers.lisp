@@ -272,7 +272,7 @@ to the real position of ROBOT."
       (draw-circle canvas (first target) (second target) (track-radius) nil))))
 
 (defun track-boxes (designator robot snapshot)
-  "Return a list of the box, in pixels, of the ring where DESIGNATOR's object is believed to be."
+  "Return a list with the box, in pixels, of the ring at the believed position of DESIGNATOR."
   (declare (ignore snapshot))
   (destructuring-bind (x y) (pixels-of (believed-place robot designator))
     (list (box-around x y (+ 2 (track-radius))))))

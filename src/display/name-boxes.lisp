@@ -16,7 +16,7 @@ whose box overlaps the square. LARGE lists the entries whose box overlaps very m
   (large '() :type list))
 
 (defun some-square (function box)
-  "Call FUNCTION with the number of each square that BOX overlaps until FUNCTION returns true.
+  "Call FUNCTION with the number of each square that BOX overlaps, until FUNCTION returns true.
 Return the last value of FUNCTION."
   (destructuring-bind (first-column first-row last-column last-row)
       (mapcar (lambda (pixels) (values (floor pixels +square-side+))) box)

@@ -258,8 +258,8 @@ must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where they overlap neither BOXES nor what LAYERS draw. If
-there is no room beside a robot, its name is at the end of a line. So is the name of a thing that
-overlaps or touches another spot, if there is no room beside the thing."
+there is no room beside a robot, its name is at the end of a line. The same holds for a thing that
+overlaps or touches another spot."
   (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (marked-boxes snapshot layers)))

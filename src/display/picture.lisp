@@ -37,9 +37,9 @@
   "Return a picture of the present world of ROBOT: an SVG document, as a string. DISPLAY is one of
 :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
 LAYERS lists what the picture shows besides walls, things and robots; () means nothing else.
-*PICTURE-LAYERS* documents the layers. TITLE, a string, replaces the default title: robots, map and
-tick. It needs the layer :TITLE. PART (left top right bottom), in cells, is the part of the map to
-show, by default the whole map. If IN-COLOR is NIL, the picture is black and white.
+*PICTURE-LAYERS* documents the layers. If the layer :TITLE is shown, TITLE, a string, replaces the
+default title: robots, map and tick. PART (left top right bottom), in cells, is the part of the map
+to show, by default the whole map. If IN-COLOR is NIL, the picture is black and white.
 
 SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
 set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. With

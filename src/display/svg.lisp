@@ -37,7 +37,7 @@
         (unless (zerop hundredths) (write-natural hundredths stream))))))
 
 (defun write-number (number stream)
-  "Write NUMBER, limited to between -10^9 and 10^9, to STREAM with at most two decimals."
+  "Write NUMBER to STREAM with at most two decimals, limited to the range from -10^9 to 10^9."
   (if (typep number '(integer 0 4095))
       (write-natural number stream)
       (write-hundredths (round (* 100 (clamp number -1000000000 1000000000))) stream)))

@@ -10,7 +10,7 @@
 (defconstant +drawing-seconds+ 2
   "The time limit, in seconds, for users' code that draws one thing or cell.")
 (defconstant +drawing-calls+ 100000
-  "The largest number of calls of drawing functions by users' code for one thing or cell.")
+  "The largest number of calls of drawing functions that users' code may make per thing or cell.")
 
 (defvar *broken-graphics* (make-hash-table :test #'eq :weakness :key :synchronized t)
   "A table of drawing functions that have signalled an error, and of names without functions.")
@@ -217,7 +217,7 @@ TILE pixels wide; without TILE, leave out the texture."
   "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels per cell (manual B), and the layers
 in LAYERS that are drawn below and on walls, such as :GRID and :PLACES. Walls are black on canvases
 without colours. Otherwise the grey of a wall shows its parameter; its tint and texture show its
-substance. LEFT, TOP, RIGHT and BOTTOM, in cells, are the part to draw, by default the whole MAP."
+substance. LEFT, TOP, RIGHT and BOTTOM, in cells, limit the part to draw, by default the whole MAP."
   (let ((window (clip-window map left top right bottom)))
     (flet ((draw-at (depth)
              (dolist (layer (layers-at-depth depth layers))

@@ -114,7 +114,7 @@ because ways would overlap there.")
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
 (defun jumps-between (pieces)
-  "Return the jumps between PIECES of a way, lists x y ... in pixels, as lists x y to-x to-y."
+  "Return lists x y to-x to-y for the jumps between PIECES of a way, which are lists x y ...."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
@@ -149,7 +149,7 @@ because ways would overlap there.")
   (draw-way-arrows canvas lines))
 
 (defun draw-way-sample (canvas points color position)
-  "Draw a sample of the way at POSITION of several ways, in COLOR along POINTS, x y ... in pixels."
+  "Draw a sample of way number POSITION along POINTS, x y ... in pixels, in COLOR."
   (draw-way-lines canvas (list (make-way-line position (list points) :color color :lane 0))))
 
 ;;; Visible jumps and ways.

@@ -28,7 +28,7 @@ top and bottom of a view of MAP. The width is 0 if LAYERS do not show the strip.
     (draw-segments canvas draw-gcontext* (list x y end-x end-y))))
 
 (defun draw-x-coordinates (canvas map left top start end)
-  "Draw at LEFT, TOP the strip of x coordinates in metres for the pixels from START to END of MAP."
+  "Draw x coordinates in metres for the pixels from START to END of MAP in a strip at LEFT, TOP."
   (draw-strip-background canvas left top (- end left) +strip-height+)
   (dolist (metres (marks-between (/ (max 0 start) graphics-scale*)
                                  (min (/ end graphics-scale*) (map-width map)) 60))

@@ -40,8 +40,8 @@
 
 (addition make-pt)
 (defun make-pt (x y)
-  "Return the point (X, Y). X and Y are real numbers, in metres, from -1.7e308 to 1.7e308. Written
-(make PT X Y) in Nisp. Signals WRONG-ARGUMENT."
+  "Return the point (X, Y). X and Y are real numbers, in metres, from -1.7e308 to 1.7e308. In Nisp,
+write (make PT X Y). Signals WRONG-ARGUMENT."
   (check-finite make-pt x)
   (check-finite make-pt y)
   (%make-pt (double x) (double y)))
@@ -90,7 +90,7 @@ CHECK, then stores VALUE as a double-float."
 (addition make-interval)
 (defun make-interval (min max)
   "Return the interval from MIN to MAX, real numbers from -1.7e308 to 1.7e308. MIN above MAX is an
-error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
+error. In Nisp, write (make INTERVAL MIN MAX). Signals WRONG-ARGUMENT."
   (check-finite make-interval min)
   (check-finite make-interval max)
   (check-argument make-interval min (<= min max) "a number that is not above the max")
@@ -126,7 +126,7 @@ error. Written (make INTERVAL MIN MAX) in Nisp. Signals WRONG-ARGUMENT."
 (defun make-pt-interval (a b)
   "Return the box whose sides are the intervals A (along x) and B (along y), or whose opposite
 corners are the points A and B, in any order. The intervals are copied. A number stands for the
-interval that contains only this number. Written (make PT-INTERVAL A B) in Nisp. See reading 43."
+interval that contains only this number. In Nisp, write (make PT-INTERVAL A B). See reading 43."
   (cond ((and (pt-p a) (pt-p b))
          (%make-pt-interval (span-between (%pt-x a) (%pt-x b))
                             (span-between (%pt-y a) (%pt-y b))))

@@ -8,7 +8,7 @@
 
 (public let)
 (defmacro let (bindings &body body)
-  "Evaluate BODY with BINDINGS in force, as CL:LET; a hyphen and a type may follow each binding:
+  "Evaluate BODY with BINDINGS, as CL:LET does; a hyphen and a type may follow each binding:
 (let ((v init) - TYPE (w init)) ...) (manual 3.1)."
   `(cl:let ,(untyped-bindings bindings) ,@body))
 

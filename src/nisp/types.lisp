@@ -48,7 +48,7 @@ LAMBDA-LIST bound to the arguments."
                         `(lambda ,lambda-list ,constructor))))
 
 (defun make-object (type &rest arguments)
-  "Return a new object, made from ARGUMENTS, of the type named TYPE. Signals UNKNOWN-NAME for an
+  "Return a new object of the type named TYPE, made from ARGUMENTS. Signals UNKNOWN-NAME for an
 unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
   (let* ((known (find-nisp-type type))
          (maker (and known (nisp-type-maker known))))

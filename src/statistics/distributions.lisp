@@ -222,7 +222,7 @@ X up to about A/(A+B) (Didonato and Morris 1992: a continued fraction with posit
         (t (- 1 (* (exponential (log-beta-prefactor b a y x)) (beta-fraction b a y x))))))
 
 (defun beta-quantile (p a b)
-  "Return the X for which the INCOMPLETE-BETA I_X(A, B) is P, between 0 and 1; and 1 - X."
+  "Return two values: the X for which INCOMPLETE-BETA I_X(A, B) is P, between 0 and 1; and 1 - X."
   (declare (type double-float p a b))
   (if (> p .5d0)
       (multiple-value-bind (y x) (lower-beta-quantile (- 1 p) b a) (values x y))

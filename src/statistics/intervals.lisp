@@ -34,8 +34,8 @@ is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 
                  (normal-critical-value (check-unit-share wilson-interval confidence))))
 
 (defun exact-low (successes trials tail)
-  "Return the rate of success at which SUCCESSES or more successes in TRIALS trials have the
-probability TAIL; and 1 minus this rate."
+  "Return two values: the rate of success at which SUCCESSES or more successes in TRIALS trials have
+the probability TAIL; and 1 minus this rate."
   (if (zerop successes)
       (values 0d0 1d0)
       (beta-quantile tail (double successes) (double (- trials successes -1)))))

@@ -167,7 +167,7 @@ Tritchler 1983). The value is exact for up to 19 numbers, and for more numbers i
 whole. Otherwise p is estimated from RESAMPLES draws of signs and is never below 1/(RESAMPLES + 1).
 SEED, an integer, seeds the draws, so p is the same each time. If RARE-TOO is true, a p of at most
 1/20 is estimated again by importance sampling (Harrison 2012), which can return smaller values; use
-it if the test is one of many.
+RARE-TOO if the test is one of many.
 
 Sums that differ only by rounding count as equal. Without numbers, or if all numbers are 0, p is 1;
 for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to
