@@ -154,7 +154,7 @@ luminance of GREY, so it is printed in the same grey."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun tile-levels (low high tile part)
-  "Return the coordinates from LOW to HIGH that lie at fraction PART, 0 to 1, of a tile of size TILE."
+  "Return the coordinates from LOW to HIGH at fraction PART, 0 to 1, of a tile of size TILE."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))

@@ -117,7 +117,7 @@ is a slot of the value before it."
 
 (dolist (character '(#\t #\f))
   (note-dispatch-character character
-                           "Evaluate (named-readtables:in-readtable :nisp) before you use #t or #f."))
+                           "Before #t and #f, evaluate (named-readtables:in-readtable :nisp)."))
 
 (addition (in-readtable :nisp))
 (ensure-nisp-readtable)
