@@ -178,7 +178,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
 (defvar *damaged-fasls-p* nil "True if compiled files cannot be loaded.")
 
 (defun loading-old-fasl-p ()
-  "True while a compiled file is loaded that is older than this Lisp process."
+  "True while Lisp loads a compiled file that is older than this process."
   (and *load-truename*
        (equal "fasl" (pathname-type *load-truename*))
        (< (file-write-date *load-truename*) *start-time*)))
@@ -213,8 +213,8 @@ and of ASDF's configuration directories. The options have ASDF's format."
     (values count nil)))
 
 (defun quit-after-failure ()
-  "Delete the project's compiled files and exit. The status is 1 if these files were damaged, so
-that compiling again may help, else 2."
+  "Delete the project's compiled files and exit. The status is 1 if these files were damaged and
+compiling again may help, otherwise 2."
   (delete-fasls (project-fasls))
   (uiop:quit (if *damaged-fasls-p* 1 2)))
 
@@ -278,7 +278,7 @@ and try again. If the second try fails, too, exit with status 2."
 ;;; The prompt.
 
 (defun save-prompt (&optional (system "ars-magna/cli"))
-  "Save a core with SYSTEM loaded that runs the prompt, in the file named in ARS_MAGNA_CORE."
+  "Save a core that runs the prompt, with SYSTEM loaded, in the file named in ARS_MAGNA_CORE."
   (load-project system)
   ;; Files in the core must not be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))

@@ -53,7 +53,7 @@
       (cli::show-prompt console "Break> ")
       (cli::report-waiting-break (window::window-session window)
                                  (broken "oh" (base:current-thread)))
-      (is (mentions-p (said-in window) "It waits until the break before it is answered"))
+      (is (mentions-p (said-in window) "It waits until the earlier break is answered"))
       (is (equal "Break> " (cli:unpainted-text (first (window::shown-input-line conversation))))))))
 
 (test awaiting.code-that-draws-in-a-window-is-not-waited-for

@@ -99,7 +99,7 @@
   (is (mentions-p (window::waiting-label 1) "1 line waits"))
   (is (mentions-p (window::waiting-label 2) "2 lines wait;"))
   (is (mentions-p (cli::dropped-text 1) "1 line that waited was dropped"))
-  (is (mentions-p (cli::dropped-text 2) "2 lines that waited were dropped; the arrow up "))
+  (is (mentions-p (cli::dropped-text 2) "2 lines that waited were dropped; the up arrow "))
   (is (equal "" (cli::dropped-text 0))))
 
 (test ahead.an-interrupt-says-what-it-drops

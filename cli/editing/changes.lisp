@@ -26,7 +26,7 @@ of the cursor. The function returns the new text, the new position and the kille
   (or (position #\Newline text :start point) (length text)))
 
 (defun word-start-before (text point &optional (in-word-p #'alphanumericp))
-  "Return the start of the word, of characters that satisfy IN-WORD-P, in TEXT at or before POINT."
+  "Return the start of the word in TEXT at or before POINT. Its characters satisfy IN-WORD-P."
   (let* ((end (position-if in-word-p text :end point :from-end t))
          (gap (and end (position-if-not in-word-p text :end end :from-end t))))
     (if gap (1+ gap) 0)))

@@ -127,7 +127,7 @@ ends the line; other values are ignored.")
   (text-being-typed stream))
 
 (define-key *action-keys* (:control-c) (stream)
-  "Clear the line. If the line is empty, or a program reads it, interrupt that program instead."
+  "Clear the line. If the line is empty, or a program reads it, signal an interrupt instead."
   (if (or (string= "" (text-being-typed stream)) (console-asked-p (edited-console stream)))
       (handle-interrupt)
       (replace-line-text stream "" 0)))
@@ -228,8 +228,8 @@ ends the line; other values are ignored.")
       (ensure-key-mode stream :interrupts t))))
 
 (defun insert-available-text (stream text)
-  "Insert TEXT and all characters available after TEXT, and draw the line once, to keep unmarked
-pasted text fast. If the key after the text ends the line, return the line's text, or :EOF."
+  "Insert TEXT and all characters available after TEXT. Draw the line only once, because unmarked
+pasted text may be long. If the key after the text ends the line, return the line's text, or :EOF."
   (let ((texts (list text)) (next :none))
     (loop while (and (eq next :none) (octets-available-p stream))
           do (let ((key (read-key (make-octet-reader stream))))
@@ -249,7 +249,7 @@ pasted text fast. If the key after the text ends the line, return the line's tex
                 (return end)))
 
 (defun edit-line (stream)
-  "Return a line from the user, with newlines if several were pasted; :EOF at the end of the input."
+  "Return a line from the user, or several pasted lines with newlines; :EOF at the end of input."
   (flet ((edit () (call-with-line-editing (lambda () (handle-keys stream)) stream)))
     (prog1 (if *before-program-reads*
                (call-reading-program-input (edited-console stream) #'edit)

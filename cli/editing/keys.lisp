@@ -118,7 +118,7 @@ string is empty if no terminal has KEY."
 (defparameter *control-c* (code-char 3))
 
 (defstruct (octet-queue (:copier nil) (:constructor make-octet-queue ()))
-  "OCTETS is a list of characters, LAST its last cons, INTERRUPTS its number of Control-C."
+  "OCTETS is a list of characters, LAST its last cons, INTERRUPTS the count of Control-C in it."
   (octets '() :type list)
   (last '() :type list)
   (interrupts 0 :type (integer 0)))

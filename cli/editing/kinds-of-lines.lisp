@@ -147,8 +147,8 @@ prompts, and the lines after the form. A line typed at a prompt does not belong 
       (values (nreverse taken) lines))))
 
 (defun lines-typed-at-prompts (lines)
-  "Return the typed lines among LINES, which were pasted; the first line has a prompt. Lines below
-an incomplete form are taken for the rest of the form."
+  "Return the typed lines among the pasted LINES, the first of which has a prompt. Lines below an
+incomplete form are taken for the rest of the form."
   (loop while lines
         for line = (pop lines)
         for typed = (typed-part line)
@@ -168,7 +168,7 @@ prompts except messages, and lines that complete a form. If no line has a prompt
         lines)))
 
 (defun count-output-lines (text)
-  "Count the lines after the last prompt of TEXT, which was pasted, that are taken for output."
+  "Count the lines after the last prompt of the pasted TEXT that are taken for output."
   (let* ((lines (lines-in text))
          (start (position-if #'text-after-prompt lines :from-end t))
          (last (and start (nthcdr start lines)))

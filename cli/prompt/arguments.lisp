@@ -8,7 +8,7 @@
 ;; As reading 227 says.
 (defgeneric read-argument (type datum robot)
   (:documentation
-   "Return the argument of type TYPE, a keyword, that the typed DATUM stands for. Parts of ROBOT are
+   "Return the argument of TYPE, a keyword, for which the typed DATUM stands. Parts of ROBOT are
 typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE, return DATUM.")
   (:method (type datum robot)
     (cond ((part-type-p type)
@@ -64,7 +64,7 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
 
 (defun refuse-syntax (stream char argument)
   (declare (ignore stream argument))
-  (error "#~C is for programs" char))
+  (error "#~C can be used only in Lisp, not as an argument" char))
 
 (defun read-data-from-string (text start)
   "Return the Lisp datum in TEXT at START and the position of its end. Signal errors for #. and #S."
@@ -119,7 +119,7 @@ not evaluated, so a quote before the datum does not matter."
   '(member :rest :line :form :map-words))
 
 (defun token-value (type token)
-  "Return what TOKEN stands for as an argument of TYPE: a file's name has the home directory for ~."
+  "Return what TOKEN stands for as an argument of TYPE. In the name of a file, ~ is expanded."
   (if (eq type :file) (native-name (path-of-name token)) token))
 
 (defun read-line-parameter (parameter text start line)

@@ -28,7 +28,7 @@
 
 (defun break-text (session break-request)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
-               A number chooses. BACKTRACE, PLAN-TREE tell where it is; (...) is Lisp.~%"
+               Type a number. BACKTRACE, PLAN-TREE show where the program is; (...) is Lisp.~%"
           (break-condition-text (break-request-condition break-request))
           (break-thread-text session break-request)
           (loop for restart in (break-request-restarts break-request)
@@ -48,13 +48,13 @@
 (defun report-waiting-break (session break-request)
   (let ((console (session-console session)))
     (write-fitted console
-                  "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the break before it is answered.~%"
+                  "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the earlier break is answered.~%"
                   (break-condition-text (break-request-condition break-request))
                   (break-thread-text session break-request))
     (restore-prompt console)))
 
 (defun break-summary (session break-request)
-  "Return a line with the condition of BREAK-REQUEST and, if not the thread of SESSION, its thread."
+  "Return a line with the condition of BREAK-REQUEST, and its thread unless that is SESSION's."
   (let ((words (break-condition-text (break-request-condition break-request))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
             (break-thread-text session break-request))))
@@ -160,7 +160,7 @@ for each line, or, without a terminal or window, reads from the original input."
   "Ask a prompt's user for a program's input line. Return the line, or NIL if the user has gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
-      :report "Give it the text that follows, or is typed next."
+      :report "Give the program the text that follows, or the line typed next."
       :interactive (lambda () (list (string-left-trim " " (read-line *query-io* nil ""))))
       line)))
 

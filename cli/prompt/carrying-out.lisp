@@ -128,7 +128,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 (defun check-parenthesis (text position)
   (let ((start (skip-blanks text position)))
     (when (char= #\) (char text start))
-      (reject-line "There is a parenthesis too many: ~A~:[~;  What is before it has been done.~]"
+      (reject-line "There is one parenthesis too many: ~A~:[~;  Forms before it were evaluated.~]"
                    (one-line (subseq text start)) (plusp position)))))
 
 (defun parameter-error ()
@@ -193,7 +193,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 ;;; Lines of both kinds.
 
 (defun expand-alias (text &optional known)
-  "Return TEXT with an alias at its beginning expanded, repeatedly, but each alias only once."
+  "Return TEXT with leading aliases expanded, one after another, but each alias only once."
   (multiple-value-bind (name rest) (split-line text)
     (let ((alias (assoc name *aliases* :test #'string-equal)))
       (if (and alias (not (member alias known)))
@@ -201,7 +201,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
           text))))
 
 (defun unbuffered-p (line)
-  "True if the output of LINE is shown at once."
+  "True if the output of LINE is shown while LINE runs, not only at its end."
   (or (line-full-name line)
       (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
               :test #'string=)))
@@ -255,7 +255,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 
 (defun report-printing-error (session trouble)
   "Report in SESSION that an error cannot be printed. TROUBLE is the error in printing; at a
-terminal, signal TROUBLE, because the prompt could not print either."
+terminal, signal TROUBLE, because the prompt could not be printed, either."
   (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
   (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
@@ -314,7 +314,7 @@ loads; NIL if CALLS records neither."
                                  (and line (account-file account)) line text))))
 
 (defun dropped-text (count)
-  (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the arrow up brings ~
+  (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the up arrow brings ~
                ~:*~[~;it~:;them~] back.~]"
           count))
 

@@ -43,7 +43,7 @@ SBCL.")
           (and system (asdf:system-source-directory system))))
 
 (defun leading-numbers (version)
-  "Return the numbers at the beginning of VERSION, a string: of 2.5.2.debian, return 2.5.2."
+  "Return the numbers at the beginning of VERSION, a string: for 2.5.2.debian, return 2.5.2."
   (let ((end (position-if-not (lambda (char) (find char "0123456789.")) version)))
     (string-right-trim "." (subseq version 0 end))))
 

@@ -152,7 +152,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun meaningful-symbols ()
-  "Return the symbols of the current package, except its own that name no variable or function."
+  "Return the symbols of the current package. Omit its own that name no variable or function."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
       (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))
@@ -207,7 +207,7 @@ unit, or if the unit is still being typed."
     (if (and end (< end (length text))) end position)))
 
 (defun argument-end (parameter text start)
-  "Return the end of the argument for PARAMETER in TEXT at START; NIL if the end may be missing."
+  "Return the end of PARAMETER's argument in TEXT at START; NIL if the argument may be incomplete."
   (let ((end (typecase (line-parameter-type parameter)
                (rest-type nil)
                (keyword (token-end text start))
@@ -240,7 +240,7 @@ where the first argument begins."
 
 (defun argument-completion-values (start texts quoted-p)
   "Return the values of COMPLETIONS-IN for an argument that begins at START and has the completions
-TEXTS. Quote the completions if QUOTED-P, the argument begins with a double quote, or if one of
+TEXTS. Quote the completions if QUOTED-P is true (the argument begins with a double quote) or one of
 TEXTS has a blank."
   (if (or quoted-p (some (lambda (text) (some #'blank-p text)) texts))
       (values start (mapcar (lambda (text) (uiop:strcat "\"" text)) texts) "\" ")

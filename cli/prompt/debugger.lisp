@@ -105,7 +105,7 @@ other threads wait until FUNCTION returns."
         (show-break session (first (session-breaks session)))))))
 
 (defun answer-earlier-breaks (session break-request)
-  "BREAK-REQUEST is a break in this thread. Read the lines that answer earlier breaks in others."
+  "BREAK-REQUEST is this thread's break. Read lines that answer earlier breaks in other threads."
   (let ((breaks (copy-list (session-breaks session))))
     (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)
@@ -116,7 +116,7 @@ other threads wait until FUNCTION returns."
                 session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session break-request)
-  "Report in SESSION BREAK-REQUEST of another thread, and its restarts if the user can answer now."
+  "Report BREAK-REQUEST, of another thread, in SESSION; its restarts, too, if the user can answer."
   (if (or (break-state-own (session-break-state session))
           (not (eq break-request (first (session-breaks session)))))
       (report-waiting-break session break-request)
@@ -276,8 +276,8 @@ and Lisp runs other programs, too."
 
 ;; The rest of the program recognises by this name that there is no debugger.
 (defun debugger-disabled-hook (condition hook)
-  "Report CONDITION. Continue if CONDITION is no error; otherwise abort the work of this thread.
-Lisp calls this hook, not its debugger, without a terminal or window, or while a break is answered."
+  "Report CONDITION. If it is an error, abort this thread's work, else continue. Lisp calls this
+hook, not its debugger, if there is no terminal or window, or a break is being answered."
   (declare (ignore hook))
   (cond (*session*
          (report-session-error *session* (format nil "Break: ~A" (condition-text condition))))
@@ -312,7 +312,7 @@ restart, and report the restart."
     (post-call-to-thread session break-request
                          (lambda ()
                            (warning-set
-                            (format nil "The prompt that asked about ~A has gone; ~A was chosen"
+                            (format nil "The prompt that asked about ~A was closed; ~A was chosen"
                                     (break-summary session break-request)
                                     (plain-name (restart-name restart))))
                            (invoke-restart restart)))))

@@ -185,8 +185,8 @@ variable or ends in an asterisk."
 ;;; A second command in a line.
 
 (defun command-in-comment (text)
-  "TEXT is a line that is not Lisp. Return its comment if that looks like a second command of the
-prompt, as in turn 1; go 3. Otherwise return NIL."
+  "TEXT is a line that is not Lisp. Return its comment if the comment looks like a second command,
+as in turn 1; go 3. Otherwise return NIL."
   (let ((start (position #\; text)))
     (when (and start
                (plusp start)

@@ -68,7 +68,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
 headless simulation, return NIL after *WAIT-LIMIT* ticks."
   (cond ((simulation-over *simulation*) (funcall test))
         ((simulation-gate *simulation*)
-         (reject-line "In a trial time passes between lines only. STEP and RESUME let time pass."))
+         (reject-line "In a trial, time passes between lines only. STEP and RESUME let time pass."))
         ((live-p *simulation*) (await-test-live test *simulation*))
         (t (run-until test :limit *wait-limit* :simulation *simulation*))))
 
@@ -161,7 +161,7 @@ commands before it reads the next line."
        (paused-without-steps-p *simulation*)))
 
 (defun outcome-of-jobs (jobs lisp-p)
-  "Return :OK or :FAILED if JOBS are done and, if LISP-P, the requests of Lisp too; else NIL."
+  "Return :OK or :FAILED if JOBS and, if LISP-P is true, the requests of Lisp are done; else NIL."
   (cond ((notevery #'job-over-p jobs) nil)
         ((and lisp-p (not (no-command-pending-p))) nil)
         ((some #'job-failed-p jobs) :failed)

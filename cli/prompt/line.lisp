@@ -12,7 +12,7 @@
                            (:copier nil))
   "A parameter of a line command. TYPE is an argument type of the command layer, or a keyword.
 :REST, :LINE (another line) and :FORM (of Lisp) stand for the rest of the line. :TOKEN and other
-keywords, such as :FILE, stand for the text up to the next blank. The keyword determines CHOICES."
+keywords, such as :FILE, stand for the text up to the next blank. CHOICES depends on the keyword."
   (name "" :type string :read-only t)
   (type nil :type symbol :read-only t)
   (text "" :type string :read-only t)
@@ -206,5 +206,5 @@ before PARAMETER, or NIL."
 (define-line "HAND-GRASP" (session (hand hand "the hand that is to grasp")
                                    (cam camera "the camera that tracks the thing"))
     (:hand)
-    "Grasp with the hand HAND the thing that the camera CAM tracks, in the same location."
+    "Make the hand HAND grasp the thing that the camera CAM, in the same location, tracks."
   (issue-named-command session 'hand-grasp-desig hand cam (tracked-designator cam)))

@@ -47,8 +47,8 @@ that runs by itself and signals the error, or NIL."
          (count (if tally (tally-count tally) 0))
          (item (item-at-fault message)))
     (when (<= 3 count)
-      (format nil "This error has come up ~D times; it is shown again after ~D.~@[ ~A~] PAUSE ~
-                   stops time.~%"
+      (format nil "This error has come up ~D times; it is shown again at ~D times.~@[ ~A~] ~
+                   PAUSE stops time.~%"
               count
               (loop for next = 10 then (* 10 next) when (< count next) return next)
               (and item (recurring-remedy item))))))
@@ -135,7 +135,7 @@ between, a message says how to hide such messages.")
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
 (defun left-to-program-p (message)
-  "True if MESSAGE reports the end of a command that a program gave a continuation for errors."
+  "True if MESSAGE reports the end of a command, and a program's continuation got that report."
   (and (message-robot message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))

@@ -20,7 +20,7 @@
   (with-lock (*sessions-lock*) (copy-list *sessions*)))
 
 (defun shows-run-p (session simulation)
-  "True if SESSION shows messages of SIMULATION, or of the run that it replaced by a rewind."
+  "True if SESSION shows messages of SIMULATION, or of a run linked to SIMULATION by rewinds."
   (let ((run (session-simulation session)))
     (and run (eq (latest-successor run) (latest-successor simulation)))))
 
@@ -36,8 +36,8 @@
            (with-lock (*sessions-lock*) *sessions*)))
 
 (defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
-  "An item of a message that says how a plan has ended. SESSION, or NIL, has started the plan. The
-item prints as TEXT. SESSION shows the message even if SESSION is in another run."
+  "An item of a message that says how a plan has ended. SESSION is the session that started the
+plan, or NIL. The item prints as TEXT. SESSION shows the message even if SESSION is in another run."
   (text "" :type string :read-only t)
   (session nil :type (or null session) :read-only t))
 
@@ -76,8 +76,8 @@ in MESSAGE and the sessions in the run of MESSAGE; if there are none, SESSION."
 (defvar *showing-lock* (make-lock "showing messages"))
 
 (defun show-messages (session)
-  "Show all queued messages, in SESSION or in the sessions of their runs, and the prompts again. Do
-nothing if SESSION has lost its user."
+  "Show all queued messages, in SESSION or in the sessions of their runs. Then show the prompts
+again. Do nothing if SESSION has lost its user."
   (unless *showing-messages-p*
     (with-lock (*showing-lock*)
       (unless (session-abandoned-p session)
@@ -87,10 +87,10 @@ nothing if SESSION has lost its user."
 ;;; Messages about a world's file, while it is loaded, come before there is a run.
 
 (defvar *definition-messages* '()
-  "The messages about definitions in the program that the prompt has shown before the first run.")
+  "The messages about the program's definitions that the prompt showed before the first run.")
 
 (defun show-definition-messages (session)
-  "Show the earlier messages about definitions in SESSION, the session of a new window."
+  "Make SESSION, the session of a new window, show the earlier messages about definitions."
   (when *definition-messages* (print-messages session *definition-messages*)))
 
 ;;; Listening to a simulation.
@@ -109,7 +109,7 @@ nothing if SESSION has lost its user."
            (unless (simulation-ticking-p simulation) (show-if-pending session)))))
 
 (defun show-if-pending (session)
-  "Show the messages that SESSION has not shown when a tick ends."
+  "At the end of a tick, show the messages that SESSION has not shown yet."
   (when (or (session-news-p session) (prompt-overwritten-p (session-console session)))
     (show-messages session)))
 
@@ -123,7 +123,7 @@ SESSION has a newer observer. So no thread waits for the end of a tick, which ma
                          (remove-observer observer simulation))))))
 
 (defun set-listener (session simulation)
-  "Notify SESSION, or no session if that is NIL, when SIMULATION has messages."
+  "Notify SESSION when SIMULATION has messages; if SESSION is NIL, notify no session."
   (setf (message-queue-listener (simulation-messages simulation))
         (and session (lambda () (handle-message session simulation)))))
 
@@ -211,7 +211,7 @@ A run may be NIL. A headless run stands still during the calls.")
 ;;; a line say so at once, and show messages from there; each switches before it runs the next line.
 
 (defvar *replaced-runs* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from each run that the line WORLD replaced to a list: the new run and its robot's name.")
+  "A table of the runs that the line WORLD replaced. Values: lists (new-run robot-name).")
 
 (defun live-run-of-robot (name)
   "Return the live run that the robot named NAME is in now, or NIL."
@@ -244,7 +244,7 @@ name of the robot to command there. Return NIL if there is no such run."
 
 (defun announce-run (session simulation robot-name)
   "Tell the user of SESSION that the prompt continues with the robot ROBOT-NAME of SIMULATION, and
-show messages of SIMULATION. Do nothing if SESSION already shows these messages. For any thread."
+show messages of SIMULATION. Do nothing if SESSION already does. Any thread may call this function."
   (unless (eq simulation (session-simulation session))
     (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
                                           (run-description simulation)))
@@ -259,7 +259,7 @@ show messages of SIMULATION. Do nothing if SESSION already shows these messages.
         *world* (simulation-world simulation)))
 
 (defun continue-in-next-run (session)
-  "If the run of SESSION is over, continue in any run that follows. Only for the thread of SESSION."
+  "Only in SESSION's thread: if SESSION's run is over, continue in any run that follows."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
       (when simulation

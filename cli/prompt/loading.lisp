@@ -31,7 +31,7 @@ NIL if it contains Lisp or lines of the prompt."
                  form (native-name path))))
 
 (defun start-of-form (text start)
-  "Return the start of the next form in TEXT from START on; the length of TEXT without such a form."
+  "Return the start of the next form in TEXT from START on; the length of TEXT if there is none."
   (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
         for end = (and (< position (length text)) (skip-comment text position))
         while end
@@ -66,7 +66,7 @@ NIL if it contains Lisp or lines of the prompt."
 ;;;; Loading
 
 (defun call-recording-location (place function)
-  "Call FUNCTION, while error reports get the file and line being loaded from the function PLACE."
+  "Call FUNCTION. Error reports get the file and line being loaded from the function PLACE."
   (let ((calls *user-calls*))
     (if calls
         (let ((outer (shiftf (user-calls-place calls) place)))

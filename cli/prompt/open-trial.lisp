@@ -62,7 +62,7 @@
         (t "paused")))
 
 (defun trial-pace (trial)
-  "Return how time passes in TRIAL: :RUNNING, :PAUSED or :ENDED; and at what rate, or NIL."
+  "Return how time passes in TRIAL, :RUNNING, :PAUSED or :ENDED; and the rate of time, or NIL."
   (cond ((open-trial-result trial) :ended)
         ((plusp (open-trial-steps trial)) :running)
         ((open-trial-running-p trial) (values :running (open-trial-rate trial)))

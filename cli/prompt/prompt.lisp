@@ -40,7 +40,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     rest))
 
 (defun read-next-line (session)
-  "Return SESSION's next line; NIL at the end; for too long a line, an outline and LINE-TOO-LONG."
+  "Return SESSION's next line; NIL at the end; for an overlong line, an outline and LINE-TOO-LONG."
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
@@ -140,7 +140,7 @@ pending messages of SESSION."
 (defun prompt (&rest options &key input (output *standard-output*) batch patient echo lines color)
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT, or
-headless, each command completes before the next line is read. BATCH is PATIENT without a prompt.
+headless, each command completes before the next line is read. BATCH means PATIENT and no prompt.
 With ECHO, lines are shown as they are read. The lines in the list LINES run first. COLOR is :AUTO
 (on a terminal, unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A,
 E)."
@@ -178,15 +178,15 @@ whose user is lost: users of other sessions are asked when the session is over."
     (handle-interrupt)))
 
 (defun interrupt-session (session)
-  "Act as Control-C in SESSION, from another thread: clear the typed line or end the running one."
+  "From another thread, press Control-C in SESSION: clear the typed line or end the running one."
   (cond ((reading-line-p (session-input session)) (send-key (session-input session) :control-c))
         ((session-thread session)
          (interrupt-thread (session-thread session) #'interrupt-own-line)))
   (values))
 
 (defun abandon-session (session)
-  "Record that SESSION ends because its user is lost, for example with a window, and not by QUIT.
-Other sessions then get the questions of SESSION and the messages of its run. Return nothing."
+  "Record that SESSION ends because its user is lost (for example, a window was closed), not by
+QUIT. Other sessions then get the questions of SESSION and the messages of its run. Return nothing."
   (setf (session-abandoned-p session) t)
   (stop-listening session)
   (values))

@@ -52,7 +52,7 @@
 ;;; A unit joined to the number is read by Lisp as a symbol: 90DEG, PI/2, -3PI/4, 5M.
 
 (defun parse-plain-number (text)
-  "Return the number that TEXT, of digits, signs, points and slashes, stands for, or NIL."
+  "TEXT consists of digits, signs, points and slashes. Return the number that it denotes, or NIL."
   (let ((*read-eval* nil))
     (let ((value (ignore-errors (read-from-string text))))
       (and (realp value) value))))
@@ -80,8 +80,8 @@ digits, the number is 1, or -1 after a minus sign."
       (values 1 text)))
 
 (defun joined-quantity (name)
-  "Return the number and the unit, a list or NIL, in NAME, the name of a symbol such as 90DEG.
-Return NIL if NAME is no quantity."
+  "NAME is the name of a symbol such as 90DEG. Return its number and its unit, a list or NIL. Return
+NIL if NAME is no quantity."
   (multiple-value-bind (number end) (leading-number name)
     (when (and number (< end (length name)))
       (multiple-value-bind (factor rest)
@@ -93,7 +93,7 @@ Return NIL if NAME is no quantity."
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, after POSITION and blanks in TEXT, and its end; NIL if no unit follows."
+  "Return the unit, a list, that follows POSITION and blanks in TEXT, and its end; or else NIL."
   (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))

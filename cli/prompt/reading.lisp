@@ -28,8 +28,8 @@
   (and (breaks-for-session session) (not (answers-any-break-p line))))
 
 (defun read-typed-line (session before)
-  "Return the next line typed in SESSION, or NIL at the end. Put the line into the history, joined
-to BEFORE, the text that the line continues, or NIL."
+  "Return the next line typed in SESSION, or NIL at the end. Put the line into the history. If
+BEFORE, a text or NIL, is a text, join the line to it."
   (let* ((line (progn
                  ;; Forms that span lines are kept whole.
                  (unless before (save-history (session-input session)))
@@ -77,7 +77,7 @@ Show PROMPT, except in a batch. First await earlier commands if SESSION waits fo
         do (when (char= #\\ next) (read-char stream))))
 
 (defun skip-to-comment-end (stream)
-  "Read STREAM past the end of the comment, between #| and |#, that it is in."
+  "STREAM is inside a comment between #| and |#. Read past the end of that comment."
   (loop with depth = 1
         for last = #\Space then char
         for char = (read-char stream)
@@ -112,7 +112,7 @@ long, return an outline and the condition LINE-TOO-LONG."
              (#\) (setf depth (max 0 (1- depth)))))))
 
 (defun skip-rest (session text start)
-  "Read lines in SESSION until all forms end that begin at START in TEXT, the text read so far."
+  "TEXT was read so far. Read lines in SESSION until all forms in TEXT from START on are complete."
   (flet ((next-outline (text)
            (or (values (read-outline session text))
                (error 'end-of-file :stream (session-input session)))))
@@ -153,7 +153,7 @@ long, return an outline and the condition LINE-TOO-LONG."
               (grown-text stream)))))
 
 (defun only-skipped-form-p (text start)
-  "True if from START on TEXT has only a form that Lisp skips, as after #-sbcl."
+  "True if TEXT contains, from START on, only a form that Lisp skips, as after #-sbcl."
   (let ((start (position-if-not #'blank-p text :start start)))
     (and start
          (< (1+ start) (length text))
@@ -185,7 +185,7 @@ return the form (VALUES). Skip an unreadable form to its end."
          (string= "#|" text :start2 position :end2 end))))
 
 (defun block-comment-end (text start depth)
-  "Return the position in TEXT at which DEPTH nested comments end, which are open at START. If
+  "DEPTH nested comments are open in TEXT at START. Return the position of their common end. If
 comments are still open at the end of TEXT, return NIL and their depth."
   (loop with i = start
         for end = (+ 2 i)
@@ -252,7 +252,7 @@ SESSION until the comment ends. Signals LINE-TOO-LONG if a line is too long even
 
 (defun skip-comments (session text position)
   "Skip blanks and comments from POSITION in TEXT, a text of forms. Read lines in SESSION until the
-comments end. Return TEXT, or its part after the comments, and the position at which it continues."
+comments end. Return TEXT, or its part after the comments, and the position of its next form."
   (loop
     (let ((start (or (position-if-not #'blank-p text :start position) (length text))))
       (unless (block-comment-at-p text start)

@@ -51,7 +51,7 @@ or NIL if the number is not known."
   (and account (account-text account) (last-line-number account)))
 
 (defun faulty-line-number (account)
-  "Return the number of the invalid line in what is running; NIL without ACCOUNT or running line."
+  "Return the number of the faulty line in the running line or form; NIL if there is none."
   (let ((line (running-line-number account)))
     (and line (or (account-trouble-line account) line))))
 
@@ -121,14 +121,14 @@ and then :OK or :FAILED. Otherwise END is NIL."
 ;;; counted line has its own asker text: equal to others, but another object.
 
 (define-constant +prompt-asker+ "the prompt" :test #'string=
-  :documentation "The text by which messages name lines of the prompt as the asker of a request.")
+  :documentation "The text in messages that names a line of the prompt as the asker of a request.")
 
 ;; Equal to that, but another object: an error of the line's requests is the line's.
 (defparameter *line-asker* (copy-seq +prompt-asker+)
   "The asker of requests that lines other than Lisp make, in sessions that do not count lines.")
 
 (defvar *lines-of-askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table from the asker of each counted line to a list: account, line number, true if not Lisp.")
+  "A table of the askers of counted lines. Values: lists (account line-number not-lisp-p).")
 
 (defun asker-for (account &key typed-p (text +prompt-asker+))
   "Return the asker, a string equal to TEXT, for requests of the running line of ACCOUNT, which may

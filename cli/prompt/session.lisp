@@ -144,7 +144,7 @@ and writes to OUTPUT. With BATCH, the session shows no prompt. If PATIENT, by de
 each command completes before the next line is read. With ECHO, lines are shown as they are read.
 ACCOUNT, if any, records the running line. With STOP, the session ends at the first error in a line.
 PLACE, if any, is a function to call before each line. Lines are read in PACKAGE, by default
-ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO: on a terminal, unless the environment has NO_COLOR."
+ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO (on a terminal, unless the environment has NO_COLOR)."
   (let ((console (make-console output)))
     (setf (console-colored-p console) (color-wanted-p color (console-stream console)))
     (%make-session :console console :terminal-p (typed-by-hand-p input)
@@ -197,5 +197,5 @@ that Lisp at the prompt runs may have no such robot."
        (typep (source-stream (session-input session)) '(or descriptor-stream queued-octets))))
 
 (defun display-wanted-p (session)
-  "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY reports it."
+  "True if a robot that starts for SESSION gets a window. If windows fail, only DISPLAY says so."
   (and (session-terminal-p session) *display-opener* t))

@@ -83,9 +83,9 @@ otherwise. Signals BAD-LINE if the file is not Lisp."
       (remove-if-not (lambda (object) (member object blueprints)) (reverse defined)))))
 
 (defun load-world (path)
-  "Load the Lisp file at PATH. Return its robots' names in order. Signals BAD-LINE without robots."
+  "Load the Lisp file at PATH. Return its robots' names in order. Signals BAD-LINE if it has none."
   (or (mapcar #'blueprint-name (blueprints-defined-by (lambda () (load-lisp path))))
-      (reject-line "~A defines no robot; a world's file has a DEFROBOT."
+      (reject-line "~A defines no robot; a world's file needs a DEFROBOT."
                    (native-name path))))
 
 (defun robot-names ()

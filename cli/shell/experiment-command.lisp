@@ -150,7 +150,7 @@ UNDER-WAY is a text about a trial that took long, or NIL."
         (t (run-in-this-process experiment options))))
 
 (defun experiment-from-words (words)
-  "Return the experiment named by WORDS: a file or an experiment, and possibly one in the file."
+  "Return the experiment named by WORDS: its name, or a file and perhaps a name in the file."
   (prog1 (apply #'experiment-named words)
     ;; A shell has no prompt to show warnings about definitions.
     (dolist (message (take-messages))
@@ -161,8 +161,8 @@ UNDER-WAY is a text about a trial that took long, or NIL."
          (words (option-values :other options)))
     (check-option-combination options)
     (unless (<= 1 (length words) 2)
-      (reject-usage "experiment takes a file or the name of an experiment, and one more name at ~
-                     most~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
+      (reject-usage "experiment takes the name of an experiment, or a file and at most one name ~
+                     in it~@[, not ~{~A~^ ~}~].~@[ Known: ~{~A~^, ~}.~]"
                     words (experiment-name-strings (all-experiments))))
     (when (option-value :save-executable options) (end-on-interrupt))
     (call-reporting-interruption
@@ -206,7 +206,7 @@ UNDER-WAY is a text about a trial that took long, or NIL."
         (t word)))
 
 (defun results-from-words (words options)
-  "Return the results named by WORDS: those in a directory, or of an experiment, which is run."
+  "Return the results for WORDS: a directory with results, or an experiment, which is then run."
   (if (and (null (rest words))
            (uiop:directory-exists-p (native-path-of-directory (first words)))
            (directories-with-rows (first words)))

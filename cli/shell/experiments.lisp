@@ -24,7 +24,7 @@ EXPERIMENTS, which files loaded by FILE define."
     (unwind-protect (call-refusing-exits (lambda () (load-lisp path)))
       (finish-output *error-output*))
     (or (experiments-in-file path (set-difference (all-experiments) before))
-        (reject-line "~A defines no experiment; a file of experiments has a DEFEXPERIMENT."
+        (reject-line "~A defines no experiment; a file of experiments needs a DEFEXPERIMENT."
                      (native-name path)))))
 
 (defun reject-experiment (name known)

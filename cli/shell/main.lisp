@@ -147,7 +147,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
     (when (and (or (option-value :batch options) (option-value :script options)
                    (option-value :json options))
                (null (option-value :rate options)))
-      (reject-usage "--window shows a live run. A batch or script has one only with --rate."))
+      (reject-usage "--window shows a live run. A batch or script is live only with --rate."))
     (handler-case (ensure-window-system)
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 

@@ -21,7 +21,7 @@
   (make-console (make-instance 'object-stream :stream (console-stream *standard-output*))))
 
 (defun report-session-end (session status)
-  "Report as an object that SESSION ends with STATUS. Return STATUS, at least 1 if output failed."
+  "Report SESSION's end with STATUS as a JSON object. Return STATUS, at least 1 if output failed."
   (let ((status (if (console-trouble (session-console session)) (max 1 status) status)))
     (report-object (session-account session) "end" :status status
                                                    :errors (session-errors session))

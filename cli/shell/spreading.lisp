@@ -95,7 +95,7 @@ experiment. Signals BAD-LINE if the program cannot be saved."
       (when there
         (let ((old (native-path (format nil "~A~~" (native-name path)))))
           (replace-file old path)
-          (print-notice "~A was there with another text; that file is ~A now." (native-name path)
+          (print-notice "~A existed with another text, and was renamed to ~A." (native-name path)
                         (native-name old))))
       (overwrite-file (lambda (out) (write-string text out)) path "the script"
                        :remedy "remove it, or give another directory"))

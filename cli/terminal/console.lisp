@@ -159,7 +159,7 @@ shown.")
       (finish-output stream))))
 
 (defun begin-typed-line (console)
-  "Begin a line to type after the last output, unless a line is being typed already."
+  "After the last output, begin a line for typing, unless a line is being typed already."
   (with-console (stream console)
     (unless (console-line console)
       (when (/= (console-column console) (length (console-rest console)))
@@ -213,7 +213,7 @@ shown.")
 ;;; Writing.
 
 (defun write-below-now (string console stream start end)
-  "Write STRING from START to END to STREAM, of CONSOLE, whose line being typed has been erased."
+  "Write STRING from START to END to STREAM, after CONSOLE's line being typed has been erased."
   ;; The cursor is there already.
   (when (and (shiftf (console-wrapped-p console) nil) (char= #\Newline (char string start)))
     (reset-row console)

@@ -24,7 +24,7 @@ last" :writable))
 ;;; Rows.
 
 (defun displayed-chars (label text)
-  "Return a list with the text to show for each character of LABEL, unchanged, and of TEXT."
+  "Return a list of the texts to show for the characters of LABEL (unchanged) and then of TEXT."
   (append (map 'list #'string label)
           (map 'list
                (lambda (char) (escape-controls (substitute #\Space #\Tab (string char))))

@@ -28,7 +28,7 @@
   (or (uiop:split-string text :separator '(#\Newline)) (list "")))
 
 (defun paint (text ink)
-  "Return TEXT with codes that show each line in INK, a colour's name, or TEXT if INK is unknown."
+  "Return TEXT with codes that show each line in the colour named INK; TEXT if INK is unknown."
   (let ((code (and ink (string/= text "") (ink-code ink))))
     (flet ((paint-line (line)
              (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))

@@ -57,8 +57,8 @@ happens.")
   "The stream for this thread's error output. Once the process is ending, that stream discards it.")
 
 (defun begin-ending (condition)
-  "Record that CONDITION, an interrupt, ends this process. Discard error output until the final
-message, such as the compiler's report that it was aborted."
+  "Record that CONDITION, an interrupt, ends this process. Until the final message, discard error
+output, such as the compiler's report that it was aborted."
   (declare (ignore condition))
   (setf *interrupts-while-ending* 0
         *ending-error-output* (make-broadcast-stream)))
@@ -78,7 +78,7 @@ call THEN, which is not interrupted, and return the values of THEN."
 
 (defvar *before-ending-at-once* nil
   "A function of no arguments to call before Control-C ends this process at once; NIL at a terminal
-or window, where the user may press it any number of times.")
+or window, where the user may press Control-C at will.")
 
 (defvar *interrupt-times* '() "When Control-C was pressed, in seconds, newest first.")
 
@@ -86,8 +86,8 @@ or window, where the user may press it any number of times.")
   "The number of seconds within which further presses of Control-C end this process at once.")
 
 (defun exit-at-once-p (now times)
-  "True if Control-C, pressed at NOW and before at TIMES, should end this process at once. The third
-press ends it. The second press ends it, too, if the first had no effect and was over 1/3 s before."
+  "True if Control-C, pressed at NOW and earlier at TIMES, should end this process at once. The
+third press does. The second press does, too, if the first had no effect and was over 1/3 s before."
   (and times
        (or (rest times)
            (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
@@ -130,7 +130,7 @@ press ends it. The second press ends it, too, if the first had no effect and was
 
 (defun enter-key-mode (&key interrupts)
   "Make the terminal pass on each key at once, without echo. If INTERRUPTS, Control-C and similar
-keys are signals instead, which keep pending output. ENTER-KEY-MODE works only in CALL-IN-KEY-MODE."
+keys are signals instead; pending output is kept. ENTER-KEY-MODE works only in CALL-IN-KEY-MODE."
   (setf *keys-interrupt-p* interrupts)
   (let ((terminal-mode (terminal-mode))
         (line-flags (logior sb-posix:icanon sb-posix:echo sb-posix:iexten sb-posix:isig)))
