@@ -76,7 +76,7 @@
                         (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
-  "Print, on one line, the libraries from the environment variable LIBRARIES that ASDF cannot find."
+  "Print those libraries in the environment variable LIBRARIES that ASDF cannot find, on one line."
   (call-or-quit
    (lambda ()
      (format t "~&missing: ~{~A ~}~%"
@@ -129,7 +129,7 @@
           (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
 
 (defun library-file-endings ()
-  "Return the endings of the paths of files that determine which libraries ASDF finds."
+  "Return the path endings of the files through which ASDF finds libraries."
   (remove-duplicates
    (cons "/source-registry.conf"
          (loop for system in (loaded-libraries)
@@ -148,7 +148,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
             (list (tree (merge-pathnames "quicklisp/local-projects/" (user-homedir-pathname)))))))
 
 (defun write-library-list (out)
-  "Write to OUT the files and directories of libraries that this Lisp depends on, for setup.sh."
+  "Write a list for setup.sh to OUT: the library files and directories that this Lisp depends on."
   (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
     (dolist (path (library-files)) (note "file" path))
     (format out "~{name ~A~%~}" (library-file-endings))
@@ -303,7 +303,7 @@ and try again. If the second try fails, too, exit with status 2."
 ;;; The tests.
 
 (defun run-tests (suites &optional seed)
-  "Run SUITES, or all suites, shuffled if there is a SEED. Exit with status 1 if a check fails."
+  "Run SUITES, or all suites; shuffle them if there is a SEED. Exit with status 1 if a check fails."
   (load-tests)
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
 

@@ -158,7 +158,7 @@ ends the line; other values are ignored.")
 ;;; The history.
 
 (defun show-history-entry (stream from to)
-  "Show the first entry in slot FROM of STREAM, and push the text shown before onto slot TO."
+  "Show the first entry in slot FROM of STREAM, and push the previous text onto slot TO."
   (let ((entry (first (slot-value stream from))))
     (when entry
       (pop (slot-value stream from))

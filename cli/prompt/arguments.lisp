@@ -100,7 +100,7 @@ not evaluated, so a quote before the datum does not matter."
       value))
 
 (defun coerce-for-type (value type)
-  "Return the typed VALUE, converted to an integer if only the integer is of the argument TYPE."
+  "Return the typed VALUE, or the equal integer if only that integer is of the argument TYPE."
   (if (argument-of-type-p value type)
       value
       (let ((whole (integer-if-whole value)))

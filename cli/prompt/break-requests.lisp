@@ -107,7 +107,7 @@ end of a sentence that says so; otherwise NIL."
         (t *hook-before-prompts*)))
 
 (defclass prompts () ()
-  (:documentation "The running prompts, as a front end that asks users how to continue from
+  (:documentation "The front end of the running prompts: it asks users how to continue after
 breaks."))
 
 (setf *front-end* (make-instance 'prompts))

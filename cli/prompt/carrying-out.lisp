@@ -56,8 +56,8 @@ evaluated."))
            (malformed-definition-place condition))))
 
 (defun report-from-compiler (tell condition)
-  "Report CONDITION, signalled in COMPILE-FILE, with file and line, by calling TELL: ERROR-SET or
-WARNING-SET. Do nothing outside of COMPILE-FILE."
+  "Report CONDITION of COMPILE-FILE, with file and line, by calling TELL: ERROR-SET or WARNING-SET.
+Do nothing outside of COMPILE-FILE."
   (let ((text (one-line (condition-text condition))))
     (multiple-value-bind (file line) (if (typep condition 'reader-error)
                                          (reading-location condition)

@@ -34,7 +34,7 @@ single completion.")
                                                          append (list column text)))))))
 
 (defun list-choices (stream texts)
-  "Show as many of TEXTS above the typed line as the window has room for."
+  "Show TEXTS above the typed line, as many as fit into the window."
   (multiple-value-bind (width height) (funcall (console-window (edited-console stream)))
     (let* ((lines (in-columns (mapcar #'name-without-directory texts) (1- width)))
            (room (max 1 (- height 4))))
@@ -90,7 +90,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (t (princ-to-string choice))))
 
 (defun matching-texts (typed choices)
-  "Return the texts of those CHOICES that begin with TYPED, ignoring case, sorted."
+  "Return the sorted texts of the CHOICES that begin with TYPED, ignoring case."
   (flet ((begins-p (text) (starts-with-subseq typed text :test #'char-equal)))
     (remove-duplicates (stable-sort (remove-if-not #'begins-p (mapcar #'text-of-choice choices))
                                     #'string<)

@@ -263,7 +263,7 @@ and Lisp runs other programs, too."
 (defvar *reported-lock* (make-lock "reported thread errors"))
 
 (defun report-thread-error (condition)
-  "Write a message on CONDITION, if new, to the error output, up to +MOST-THREAD-ERRORS+ times."
+  "Write a new message on CONDITION to the error output, but at most +MOST-THREAD-ERRORS+ messages."
   (let* ((text (thread-error-text condition))
          (count (with-lock (*reported-lock*)
                   (unless (or (member text *reported-thread-errors* :test #'string=)

@@ -44,8 +44,8 @@ ALIAS.")
     (line-name line)))
 
 (defmacro define-line (name (session &rest parameters) (family &rest details) sentence &body body)
-  "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]),
-the last ones optional. BODY runs with the variables bound to the arguments, NIL for arguments left
+  "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]);
+optional ones come last. BODY runs with the variables bound to the arguments, NIL for arguments left
 out, and SESSION bound to the session. FAMILY, a keyword, says where HELP lists the line command.
 SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
   `(register-line

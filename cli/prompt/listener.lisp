@@ -57,7 +57,7 @@ that runs by itself and signals the error, or NIL."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
 (defun merge-counts (counts others)
-  "Copy into the table COUNTS those counts of the table OTHERS that are higher."
+  "Copy counts from the table OTHERS into the table COUNTS where they are higher."
   (maphash (lambda (text tally)
              (let ((own (gethash text counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
@@ -77,7 +77,7 @@ between, a message says how to hide such messages.")
 ;;; are shown together, when the tick is over.
 
 (defstruct (listener (:copier nil))
-  "Shows, on a console, the messages of a session's lines and of a simulation."
+  "A listener shows the messages of a session's lines and of a simulation on a console."
   (console (make-console *standard-output*) :type console :read-only t)
   ;; A user can type and answer.
   (terminal-p nil :type boolean :read-only t)

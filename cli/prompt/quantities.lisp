@@ -25,7 +25,7 @@
     (:time   "a time"               (1 "tick" "ticks"))
     (:clock  "a time of the clock"  (nil "s" "sec" "second" "seconds" "min" "minute" "minutes"))
     (:pace   "a speed by the clock" (nil "m/s" "km/h" "cells/s" "rad/s" "deg/s")))
-  "Lists (dimension words (factor name...)...): each unit's value in the simulator's units.")
+  "Lists (dimension words (factor name...)...): FACTOR is a unit's value in simulator units.")
 
 (defparameter *dimension-advice*
   '((:time   :length "GO 5 m drives 5 metres.")

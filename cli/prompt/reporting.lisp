@@ -161,7 +161,7 @@ be NIL. TYPED-P is true for a line that is not Lisp."
   (when account (push (cons (asker-note plan) (last-line-number account)) (account-plans account))))
 
 (defun line-of-message (account message)
-  "Return the number of the line that caused MESSAGE, else the running line; NIL if ACCOUNT is NIL."
+  "Return the number of the line that caused MESSAGE, or of the running line; NIL without ACCOUNT."
   (when account
     (let* ((asker (message-asker message))
            (plan (assoc asker (account-plans account) :test #'equal)))

@@ -85,7 +85,7 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   (ended-p nil :type boolean))
 
 (defvar *prompt-robot* nil
-  "The name of the robot that the prompt commands: the one last given to SIMULATOR, or chosen.")
+  "The name of the robot that the prompt commands: the robot last given to SIMULATOR or chosen.")
 
 (add-listener *simulator-hooks* note-robot)
 

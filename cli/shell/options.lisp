@@ -42,7 +42,7 @@
     ("--time-limit" :time-limit parse-seconds)
     ("--color" :color parse-color) ("--list" :list nil))
   "Lists (option key parser [:optional]). PARSER is NIL for an option without a value. If the value
-is optional, an empty value counts as left out.")
+is optional, an empty value counts as none.")
 
 ;;; Taking them apart.
 
@@ -82,7 +82,7 @@ is optional, an empty value counts as left out.")
           (values (list key (if parser (funcall parser text) t)) left))))))
 
 (defun parse-options (arguments &key (table *options*) others)
-  "Return a list of (key value) for ARGUMENTS, a list of strings, with the options of TABLE. If
+  "Parse ARGUMENTS, a list of strings, by the options of TABLE. Return a list of (key value). If
 OTHERS is true, an argument that is not an option becomes (:other argument). Signals USAGE-ERROR."
   (loop while arguments
         collect (let ((argument (pop arguments)))

@@ -250,7 +250,7 @@ shown.")
   string)
 
 (defun write-fresh (text console)
-  "Write TEXT to CONSOLE, at the beginning of a line and without output of other threads between."
+  "Write TEXT to CONSOLE at the beginning of a line, without output of other threads in between."
   (with-console (stream console) (write-on-new-line text console stream)))
 
 (defun write-after-prompt (text console)

@@ -10,7 +10,7 @@
 
 ;; What follows so many bytes of one line may be misread.
 (defconstant +longest-outline+ 50000000
-  "The number of bytes of a line that are searched for parentheses, quotes and comments.")
+  "How many bytes of a line are searched for parentheses, quotes and comments.")
 
 (define-condition line-too-long (bad-line)
   ((beginning :initarg :beginning :reader line-beginning)

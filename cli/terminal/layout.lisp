@@ -62,7 +62,7 @@
   (format nil "~,1F" number))
 
 (defun value-text (value number-text)
-  "Return VALUE, of an attribute, as text for STATUS and THINGS. NUMBER-TEXT formats numbers."
+  "Return an attribute's VALUE as text for STATUS and THINGS. NUMBER-TEXT formats numbers."
   (cond ((eq value t) "Yes")
         ((null value) "No")
         ((symbolp value) (string-capitalize value))

@@ -34,7 +34,7 @@ happens.")
   "The number of times Control-C was pressed while this process was ending; NIL before it ends.")
 
 (defconstant +interrupts-before-exit+ 3
-  "The number of times Control-C must be pressed, while this process is ending, to end it at once.")
+  "How many presses of Control-C, while this process is ending, end it at once.")
 
 (defun exit-after-interrupts ()
   (say-on-error-output "stopped.")
@@ -54,7 +54,7 @@ happens.")
         (t (exit-after-interrupts))))
 
 (defvar *ending-error-output* nil
-  "The stream for this thread's error output. Once the process is ending, that stream discards it.")
+  "The stream for this thread's error output. It discards output once the process is ending.")
 
 (defun begin-ending (condition)
   "Record that CONDITION, an interrupt, ends this process. Until the final message, discard error
