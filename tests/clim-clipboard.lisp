@@ -41,7 +41,7 @@
     (hold-for window (make-string (1+ window::+longest-paste+) :initial-element #\x))
     (inside (window)
       (window::with-guarded-command (window "Pasting") (window::paste-text window :clipboard)))
-    (is (mentions-p (said-in window) "The text is too long to be pasted. Save it in a file"))
+    (is (mentions-p (said-in window) "The text is too long to be pasted. Save the text in a file"))
     (hold-for window "status")
     (is (equal "status" (held-in window)))))
 

@@ -72,7 +72,7 @@
            (x (1+ (first box))) (y (1+ (second box))))
       (window::handle-press pane :left x y)
       (window::handle-drag pane (+ x 40) y)
-      (is (mentions-p (window::window-hint window) "Only prompt lines let go of PEN#2"))
+      (is (mentions-p (window::window-hint window) "To let go of PEN#2, use a prompt line"))
       (is (mentions-p (window::window-hint window) "hand-ungrasp 0"))
       (window::handle-drop pane (+ x 40) y)
       (is (null (window::window-selection window)) "it was no click")

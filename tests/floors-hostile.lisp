@@ -57,7 +57,7 @@
            (concatenate 'string "resolutoin: 3" (string #\Newline)
                         (remove-line "resolution: 0.05" (floor-text))))
     (check "line 7: negate is on line 4 already" (format nil "~Anegate: 1~%" (floor-text)))
-    (check "line 1: \"  negate: 0\" is not a key at the left edge"
+    (check "line 1: \"  negate: 0\" must be a key at the left edge"
            (format nil "  negate: 0~%~A" (floor-text)))
     (check "line 2: \"floor\" is not a key at" (format nil "# x~%floor~%"))
     (check "line 1: an item of a list has no key above it" (format nil "- 1~%~A" (floor-text)))
@@ -71,7 +71,7 @@
 (test description.that-the-system-does-not-let-be-read-is-refused-in-plain-words
   (handler-case (progn (ars:import-map "/proc/self/mem") (fail))
     (ars:unusable-floor (condition)
-      (is (search "mem: the system does not allow reading the file."
+      (is (search "mem: the system forbids reading it; give another file."
                   (princ-to-string condition))))))
 
 (test image.given-where-a-run-is-read-is-told-from-its-description

@@ -21,7 +21,7 @@
   "The least width, in pixels, of a window that shows plans in a separate column.")
 
 (defconstant +low-window-height+ 700
-  "In windows less high than this many pixels, sections continue beside the transcript.")
+  "The window height, in pixels, below which sections continue beside the transcript.")
 (defconstant +section-top-margin+ 6
   "The distance from the top of a section to its first line, in pixels.")
 
@@ -96,8 +96,8 @@ the rest. Otherwise each gets a fair share."
         (t (share-with-plan needs height))))
 
 (defun share-with-plan (needs height)
-  "Divide HEIGHT, which is less than NEEDS. A plan gets what it needs, up to half of HEIGHT, or
-more if others leave more, because a tree of few lines is useless. The others get fair shares."
+  "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, but at most
+half of HEIGHT or what the others leave. The others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)
@@ -107,7 +107,7 @@ more if others leave more, because a tree of few lines is useless. The others ge
         (share-fairly needs height))))
 
 (defun height-of-whole-lines (height)
-  "Return the largest height, up to HEIGHT pixels, that cuts no line of text; at least one line."
+  "Return the height of the whole lines that fit in HEIGHT pixels, or of one line if none fits."
   (+ +section-top-margin+
      (* +line-height+ (max 1 (floor (- height +section-top-margin+) +line-height+)))))
 
@@ -195,16 +195,16 @@ the transcript ends at BOTTOM."
           (place-section 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun prompt-height (rows transcript)
-  "Return the height in pixels of an input line of ROWS. Additional rows take their height from the
-transcript, TRANSCRIPT pixels high, but the transcript keeps at least 40 pixels."
+  "Return the height in pixels of an input line with ROWS rows. Additional rows take their height
+from the transcript, TRANSCRIPT pixels high, but the transcript keeps at least 40 pixels."
   (clamp (+ +prompt-height+ (* +line-height+ (- rows +prompt-rows+)))
          +prompt-height+
          (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
 
 (defun arrange (preferences needs width height &optional (rows +prompt-rows+))
   "Return the places of all parts of a window of WIDTH x HEIGHT pixels with the layout PREFERENCES.
-NEEDS is a function from a section to the height that it needs, in pixels. The input line has ROWS;
-additional rows take room from the transcript."
+NEEDS is a function from a section to the height that it needs, in pixels. The input line has ROWS
+rows; additional rows take room from the transcript."
   (let* ((top (+ +menus-height+ +bar-height+))
          (strip (- height +strip-height+))
          (transcript (transcript-height preferences height))

@@ -25,7 +25,7 @@
 ;;; Fetching.
 
 (defun reject-paste (reason)
-  (reject-use "~A. Save it in a file, and type (load \"FILE\")." reason))
+  (reject-use "~A. Save the text in a file, and type (load \"FILE\")." reason))
 
 (defun octets-in (mailbox)
   "Return the contents of the X window MAILBOX, as a string of octets."
@@ -50,8 +50,8 @@ them. The type is NIL if MAILBOX is empty, and :INCR if a text will come in piec
       (when type (xlib:delete-property mailbox :mcclim)))))
 
 (defun await-answer (display)
-  "Wait for the answer of the program that was asked on DISPLAY for its selection. Return T if the
-program has sent it, :NONE if the program cannot, and NIL if the program does not answer in time."
+  "Wait until the program that owns the selection answers on DISPLAY. Return T if the program has
+sent the selection, :NONE if it cannot, and NIL if it does not answer in time."
   (xlib:event-case (display :timeout +transfer-timeout+ :discard-p t :force-output-p t)
     (:selection-notify (property) (if property t :none))))
 

@@ -9,7 +9,7 @@
 ;;; the window looks at the effects of each line before the next is read.
 
 (defun follows-prompt-p (window old)
-  "True if WINDOW follows this thread's prompt, which has left the run OLD, to another run."
+  "True if WINDOW must follow this thread's prompt, which has left the run OLD for another run."
   (let ((thread (conversation-thread (window-conversation window))))
     (if thread
         (eq thread (current-thread))

@@ -10,7 +10,7 @@
   (focus-and-repaint (pane-named window 'interactor)))
 
 (defun focus-clicked-pane (pane)
-  "From now on direct keys to PANE, which was clicked, or to the prompt if PANE is the transcript."
+  "Direct keys to PANE, which was clicked, from now on; or to the prompt if PANE is the transcript."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -162,7 +162,7 @@ dead key and a space. PAIRS is a string of pairs: a letter and its result with t
 
 (defun update-dead-key (name character)
   "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
-Return two elements of *DEAD-KEYS*, or NILs: for the key that was waiting, and for the key NAME."
+Return the elements of *DEAD-KEYS*, or NIL, for two keys: the one that was waiting, and NAME."
   (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)

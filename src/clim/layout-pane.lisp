@@ -93,7 +93,7 @@ section has needed so far, or its present need if the layout has room only for p
           most))))
 
 (defun places-of-parts (layout)
-  "Return the places of all parts of LAYOUT by the user's preferences and the sections' needs."
+  "Return the places of all parts of LAYOUT for the user's preferences and the sections' needs."
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -109,7 +109,7 @@ section has needed so far, or its present need if the layout has room only for p
           when pane do (apply #'place-pane pane place))))
 
 (defun arrange-panes (layout)
-  "Arrange all parts of LAYOUT by what they need now, without regard to what they needed before."
+  "Arrange all parts of LAYOUT by the heights that they need now. Earlier needs are ignored."
   (setf (pane-needed layout) '())
   (place-parts layout (places-of-parts layout)))
 

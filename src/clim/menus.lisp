@@ -38,8 +38,8 @@
 ;;; Menus.
 
 (defstruct (menu (:constructor make-menu (title items)) (:copier nil))
-  "A menu with TITLE. ITEMS is a list, or a function that returns a list, of (title command), menus,
-and NIL for a gap."
+  "A menu with TITLE. ITEMS is a list, or a function that returns a list. Its elements are lists
+(title command), menus, and NIL for a gap."
   (title "" :type string :read-only t)
   (items '() :type (or list function) :read-only t))
 

@@ -230,7 +230,7 @@ for the numbers of hand and bin."
                 collect (apply #'offer-row window offer))))
 
 (defun rows-for-other-subjects (window subjects x y)
-  "Return menu rows for SUBJECTS but the first. Each opens its subject's menu at X, Y of WINDOW."
+  "Return rows for all SUBJECTS but the first. Each row opens its subject's menu at X, Y of WINDOW."
   (loop for rest on (rest subjects)
         collect (let ((turned (append rest (ldiff subjects rest))))
                   (make-row (format nil "Also here: ~A" (subject-heading (first turned)))

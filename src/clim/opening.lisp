@@ -45,7 +45,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give WINDOW, which is new, the settings of the window closed last, and the state of the last
+  "Give the new WINDOW the settings of the window that was closed last, and the state of the last
 window of its robot."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
@@ -93,8 +93,8 @@ window of its robot."
   (conversation-session (window-conversation window)))
 
 (defun clear-lost-prompt (window)
-  "End the running line, the waiting lines and a break at the prompt of WINDOW, which has been lost.
-Return a text about what was ended, to append to a sentence."
+  "The prompt of WINDOW has been lost. End its running line, its waiting lines and its break. Return
+a text about what was ended, to append to a sentence."
   (let* ((session (window-session window))
          (line (running-line (window-conversation window)))
          (place (and (ars-magna.cli:in-trial-or-fork-p session)
@@ -111,8 +111,8 @@ Return a text about what was ended, to append to a sentence."
             (ars-magna.cli:answerable-by-others-p session))))
 
 (defun run-to-notify (window)
-  "Return the run whose message queue reports that WINDOW has closed. It is the run that WINDOW
-shows, or, if that is a trial or fork, the run outside."
+  "Return the run whose message queue reports that WINDOW has closed. If WINDOW shows a trial or
+fork, it is the run outside, otherwise the run that WINDOW shows."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
         (or (ars-magna.cli:live-run-of-robot (shown-robot window))
@@ -171,11 +171,11 @@ robot of the same run. Return NIL if there is no such robot."
                 simulation)))))
 
 (defun report-run-over (window reason)
-  "Report once in WINDOW that the run it shows is over because of REASON."
+  "Report once in WINDOW that its run is over because of REASON."
   (let ((over (window-simulation window)))
     (unless (eq over (shiftf (window-known-over window) over))
-      (write-in-window window "The run of ~A is over: ~A. This window shows its end until another ~
-                               run starts, by the line WORLD, or by SIMULATOR in Lisp.~%"
+      (write-in-window window "The run of ~A is over: ~A. This window shows its end. Start another ~
+                               run with the line WORLD, or with SIMULATOR in Lisp.~%"
                        (shown-robot window) reason))))
 
 (defun leave-finished-run (window reason)
@@ -298,15 +298,15 @@ comes first. Other windows are left out while their prompts are in a trial or fo
         (find-if #'run-over-p windows))))
 
 (defun switch-to-robot (window robot)
-  "Show ROBOT in WINDOW. The prompt of WINDOW reports the change, unless this thread is its own."
+  "Show ROBOT in WINDOW. The prompt of WINDOW reports the change, unless it runs in this thread."
   (let ((simulation (robot-simulation robot)) (name (robot-name robot)))
     (show-robot-called window name simulation)
     (unless (eq window (window-of-this-thread))
       (ars-magna.cli:announce-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window and raise it: the window of ROBOT, a window of its trial or fork, a window
-whose run is over, or else a new window. Return it. Signals MISUSE if there is no X server."
+  "Show ROBOT in a window; raise and return the window. It is the first of: the window of ROBOT, one
+of its trial or fork, one whose run is over, a new window. Signals MISUSE if there is no X server."
   (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))

@@ -145,7 +145,7 @@ would be cut off. Record in PANE what was painted where."
 PANE."))
 
 (defgeneric handle-drag (pane x y)
-  (:documentation "Handle a movement of the mouse to X, Y of PANE while it drags (PANE-DRAG PANE).")
+  (:documentation "Handle a mouse movement to X, Y of PANE during the drag (PANE-DRAG PANE).")
   (:method (pane x y) (declare (ignore pane x y))))
 
 (defgeneric handle-drop (pane x y)
@@ -297,7 +297,7 @@ Return NIL if SUBJECT cannot be selected.")
                        :test #'same-subject-p :from-end t)))
 
 (defun selected-first (window subjects)
-  "Return SUBJECTS, rotated so that the selected subject of WINDOW comes first, if SUBJECTS has it."
+  "Return SUBJECTS, rotated so that the selected subject of WINDOW comes first if it is there."
   (let* ((key (window-selection window))
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))
     (append picked (ldiff subjects picked))))

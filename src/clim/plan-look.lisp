@@ -16,7 +16,7 @@
 (defstruct (plan-look (:constructor make-plan-look ()) (:copier nil))
   "What a window shows of the plans of SIMULATION, and when to look again. VIEW is the display,
 :TREE or :TIMELINE. SHOWN-P is a function that returns true while the display is visible. FOLDED
-lists the numbers of the tasks whose parts are folded. MARK is the value of PLANS-STATE-MARK at the
+lists the numbers of the tasks with hidden subtasks. MARK is the value of PLANS-STATE-MARK at the
 last look. DUE is the time of the next look, in seconds. TREE is an image of the tasks, or NIL. PAGE
 is a timeline, :UNTRACED, :TOO-LONG or NIL. ENDED is a text on how the last plan ended, or NIL."
   (simulation nil)
@@ -101,8 +101,8 @@ NIL if the plans are busy."
         (t (update-plan-tree look interface))))
 
 (defun update-look (look interface mark)
-  "Store in LOOK what it shows of the plans of INTERFACE, and MARK, their value of PLANS-STATE-MARK.
-Return NIL if the plans are busy, else true."
+  "Store in LOOK an image of the plans of INTERFACE, and MARK, the value of PLANS-STATE-MARK for
+them. Return NIL if the plans are busy, else true."
   (let ((began (seconds-now)))
     (when (update-plan-image look interface)
       (setf (plan-look-mark look) mark

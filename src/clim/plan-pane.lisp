@@ -121,7 +121,7 @@
       ((nil) (draw-no-plan-text canvas pane))
       (:untraced (draw-plan-lines canvas
                                   (draw-plan-text canvas pane +plan-buttons-height+
-                                                  "These plans have no trace, so no timeline.")
+                                                  "There is no timeline without a trace.")
                                   (line-button pane "Keep a trace from now on" "trace-plans on"
                                                "Start to keep a trace of what plans do")))
       (:too-long (draw-plan-text canvas pane +plan-buttons-height+

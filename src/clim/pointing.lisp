@@ -202,11 +202,11 @@ popup. OPENER is the command or menu that had opened the popup.")
 (defun why-not-draggable-text (image window)
   "Return a text that says why the thing of IMAGE cannot be dragged out of a display of WINDOW."
   (let ((hand (hand-image-holding image window)) (name (subject-title image)))
-    (cond (hand (format nil "Only prompt lines let go of ~A, such as hand-ungrasp ~D. The right ~
-                             button offers these lines."
+    (cond (hand (format nil "To let go of ~A, use a prompt line, such as hand-ungrasp ~D. The ~
+                             right button offers such lines."
                         name (hand-image-index hand)))
           ((thing-image-location image)
-           (format nil "~A is ~A. Only prompt lines take a thing ~
+           (format nil "~A is ~A. Use prompt lines to take a thing ~
                         out." name (thing-image-location image)))
           (t (format nil "To move ~A, drag it in the display of the world." name)))))
 

@@ -149,7 +149,7 @@ opens the popup, a symbol, or the menu that is shown, or T."
 
 (defparameter *mouse-help*
   '("" "Mouse" "  hover               the strip at the bottom describes what is there"
-    "  click               select a thing; the commands describe it"
+    "  click               select a thing and describe it among the commands"
     "  right button        open a menu of actions"
     "  drag the map        move the view; the mouse wheel zooms"
     "  drag a thing        move the thing, while time stands still"

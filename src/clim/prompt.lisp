@@ -59,7 +59,7 @@ line."))
 ;;; A prompt at work.
 
 (defstruct (conversation (:constructor make-conversation (session console over)) (:copier nil))
-  "The prompt of a window. OVER is a function called with no arguments when the user has left it."
+  "The prompt of a window. The function OVER, of no arguments, is called when the user leaves."
   (session nil :read-only t)
   (console nil :type window-console :read-only t)
   (over nil :type function :read-only t)

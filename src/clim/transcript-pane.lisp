@@ -66,8 +66,8 @@ transcript is shorter than a page."
             when (<= rows above) return number))))
 
 (defun possible-last-line (pane last)
-  "Return the number, close to LAST, of the line to show at the bottom of PANE. The page is full
-then, and its lines are still kept. Return NIL for the newest line."
+  "Return the number of the line to show at the bottom of PANE: LAST, or the first number above it
+with which the page is full. Return NIL for the newest line."
   (let ((oldest (last-line-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))
@@ -124,7 +124,7 @@ are dark, because the transcript is white.")
       (and (= (first place) (first other)) (< (second place) (second other)))))
 
 (defun selection-bounds (pane)
-  "Return start and end of the selection in PANE, lists (number column), or NIL without selection."
+  "Return start and end of the selection in PANE, lists (number column), or NIL if there is none."
   (let ((mark (pane-mark pane)) (point (pane-point pane)))
     (cond ((or (null mark) (null point) (equal mark point)) nil)
           ((position-before-p mark point) (values mark point))

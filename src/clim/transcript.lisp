@@ -69,7 +69,7 @@ arguments, after each change."
            (when more (begin-transcript-line transcript))))
 
 (defun drop-old-lines (transcript)
-  "Drop the oldest lines of TRANSCRIPT if there are too many, with a first line that says so."
+  "Drop the oldest lines of TRANSCRIPT if there are too many. A new first line says so."
   (when (> (transcript-count transcript) (* 2 +transcript-length+))
     (setf (transcript-lines transcript)
           (append (subseq (transcript-lines transcript) 0 (1- +transcript-length+))

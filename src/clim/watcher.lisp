@@ -12,8 +12,8 @@ the measured rate in ticks per second, or NIL if it is unknown."
   (reached nil :type (or null real) :read-only t))
 
 (defstruct (sample (:copier nil))
-  "What was observed at the last look at a run. LAST-TICK is its tick and CALLS its number of calls
-of user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
+  "What the last look at a run found. LAST-TICK is the tick, and CALLS the number of calls of user
+code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
   (last-tick 0 :type fixnum)
   (calls nil :type (or null fixnum))
   (tick 0 :type fixnum)
@@ -168,7 +168,7 @@ quick. The function GONE is called with the reason when the watched run has been
     (if journal (journal-length journal) 0)))
 
 (defun publish-snapshot (watcher simulation)
-  "Make a snapshot of SIMULATION, whose ticks must not pass meanwhile, and report it to the window."
+  "Make a snapshot of SIMULATION and report it to the window. No ticks may pass meanwhile."
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
         (watcher-traces watcher) (count-of-changes simulation)

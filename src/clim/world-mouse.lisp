@@ -57,8 +57,8 @@ the window shows comes first."
                  :key (lambda (image) (shown-robot-p (window-of pane) image)))))
 
 (defun draggable-at (pane x y)
-  "Return the thing or robot that a drag from X, Y of PANE moves, or NIL. It is the selected one if
-it is at X, Y; else a robot with its middle there; else the smallest one there."
+  "Return the thing or robot that a drag from X, Y of PANE moves, or NIL. Of several objects at X,
+Y, return the selected one, else a robot with its middle there, else the smallest."
   (let ((subjects (remove-if-not (lambda (subject) (typep subject '(or thing-image robot-image)))
                                  (subjects-under pane x y)))
         (key (window-selection (window-of pane))))
@@ -100,7 +100,7 @@ it is at X, Y; else a robot with its middle there; else the smallest one there."
                                            :line-thickness 2)))))
 
 (defgeneric line-that-moves (subject x y window)
-  (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, two texts.")
+  (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, which are texts.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
     (format nil "(move-thing ~A ~A ~A)" (find-thing-form image) x y))

@@ -27,7 +27,7 @@
 (defun view-map (pane) (window-map (window-of pane)))
 
 (defun pane-edges (pane)
-  "Return the pixels that coordinates and scale bar take at PANE's left, top and bottom, as a list."
+  "Return the left, top and bottom margins of PANE, with coordinates and scale bar, as pixels."
   (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)

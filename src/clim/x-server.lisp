@@ -10,15 +10,15 @@
 ;;; Settings that users make for all programs on a screen, such as its resolution.
 
 (defun resolution-in-resources (resources)
-  "Return the number of Xft.dpi in RESOURCES, the X resources of a screen as a string, or NIL."
+  "Return the value of Xft.dpi in RESOURCES, the X resources of a screen as a string, or NIL."
   (loop for line in (uiop:split-string resources :separator '(#\Newline))
         for (name value) = (uiop:split-string line :separator '(#\:))
         when (string= name "Xft.dpi")
           return (parse-integer value :junk-allowed t)))
 
 (defgeneric screen-resolution (port)
-  (:documentation "Return the resolution in dots per inch that the X resources of PORT's screen set,
-or NIL.")
+  (:documentation "Return the resolution in the X resources of PORT's screen, in dots per inch, or
+NIL if there is none.")
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
@@ -143,8 +143,8 @@ which keys are down: this answer has 40 bytes."
   (typecase condition
     (program-fault (library-fault-message condition (clx-fails-p)))
     (xlib:connection-failure
-     (format nil "No display: the X server ~A, which DISPLAY names, refuses the connection (~A)."
-             (environment-value "DISPLAY") (one-line-text condition)))
+     (format nil "No display: the X server ~A (DISPLAY) refuses the connection (~A). Allow it with ~
+                  xauth or xhost." (environment-value "DISPLAY") (one-line-text condition)))
     (t (format nil "No display: the X server ~A, which DISPLAY names, does not answer (~A). Start ~
                     it, or set DISPLAY to another X server."
                (environment-value "DISPLAY") (one-line-text condition)))))
@@ -167,11 +167,11 @@ which keys are down: this answer has 40 bytes."
 ;;; once more when no other thread reads.
 
 (defvar *input-arrived-p* (constantly nil)
-  "A function that is true if the input that this thread awaits from the X server has arrived.")
+  "A function that returns true if this thread's awaited input from the X server has arrived.")
 
 (defun read-x-server-input (read display timeout force-output-p come-p &rest arguments)
-  "Call READ, CLX's function, with the other arguments. COME-P is a function that returns true of
-ARGUMENTS when the awaited input has arrived."
+  "Call READ, CLX's function, with the other arguments. The function COME-P of ARGUMENTS returns
+true when the awaited input has arrived."
   (let* ((*input-arrived-p* (lambda () (apply come-p arguments)))
          (end (apply read display timeout force-output-p come-p arguments)))
     (if (eq end :come) nil end)))

@@ -9,10 +9,10 @@
 (defconstant +most-description-octets+ 65536 "The largest size of a floor's description, in bytes.")
 
 (defstruct (description (:copier nil))
-  "The description of a floor: its IMAGE, a pathname; RESOLUTION, the metres of a pixel; ORIGIN, the
-lower left corner in metres and the counterclockwise rotation in radians; NEGATED-P, true if white
-is occupied; the probabilities above which a pixel is OCCUPIED and below which it is FREE; and the
-MODE."
+  "The description of a floor: its IMAGE, a pathname; RESOLUTION, the width of a pixel in metres;
+ORIGIN, the lower left corner in metres and the counterclockwise rotation in radians; NEGATED-P,
+true if white is occupied; the probabilities above which a pixel is OCCUPIED and below which it is
+FREE; and the MODE."
   (file nil :type pathname :read-only t)
   (image nil :type pathname :read-only t)
   (resolution 1 :type rational :read-only t)
@@ -49,7 +49,7 @@ MODE."
     number))
 
 (defun resolution-in (file entry)
-  "Return the metres of a pixel that ENTRY gives, within the limits of a map's frame."
+  "Return the width of a pixel in metres, from ENTRY. Signals UNUSABLE-FLOOR outside 1e-9 to 1e9."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
          (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))
@@ -80,7 +80,7 @@ MODE."
         (t (reject-entry file entry "trinary, scale or raw"))))
 
 (defun image-path (file entry)
-  "Return the pathname of the image, perhaps missing, that ENTRY of FILE names, relative to FILE."
+  "Return the pathname of the image that ENTRY of FILE names relative to FILE. It may be missing."
   (let ((name (entry-value entry)))
     (unless (and (stringp name) (string/= "" name))
       (reject-entry file entry "the name of the image, such as floor.pgm"))
@@ -149,7 +149,7 @@ MODE."
     (illegible-file (condition)
       (reject-floor file (illegible-file-line condition)
                     "the file has bytes that are not UTF-8. Save the file in UTF-8"))
-    (stream-error () (reject-floor file nil "the system does not allow reading the file"))
+    (stream-error () (reject-floor file nil "the system forbids reading it; give another file"))
     (error (condition) (reject-floor file nil "~A" (one-line-text condition)))))
 
 (defun read-description (name)

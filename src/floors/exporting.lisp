@@ -9,7 +9,7 @@
   :documentation "The brightness, from 0 to 255, of pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+.")
 
 (defun number-of-substance (map substance)
-  "Return the number of SUBSTANCE in MAP, or NIL if no wall has SUBSTANCE. Signals UNKNOWN-NAME."
+  "Return the index of SUBSTANCE in MAP, or NIL if no wall has SUBSTANCE. Signals UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
         (unless (find-substance substance nil)
@@ -17,8 +17,8 @@
                        (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
-  "Return a function of a substance's number and a parameter that is true if EXPORT-MAP with UNKNOWN
-writes such walls of MAP as unknown. Signals UNKNOWN-NAME."
+  "Return a predicate of the substance index and parameter of walls of MAP. It is true of walls that
+EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)

@@ -150,8 +150,8 @@ neighbouring lines."
   (reduce #'logior states :key (lambda (state) (ash 1 state))))
 
 (defun find-runs (grid allowed along)
-  "Return the runs of GRID along its rows or columns, as ALONG is :ROWS or :COLUMNS. The cells of
-runs are in a state of the list ALLOWED."
+  "Return the runs of GRID along its :ROWS or :COLUMNS, as ALONG says. All cells of a run are in
+states of the list ALLOWED."
   (let* ((width (grid-width grid)) (height (grid-height grid)) (rows (eq along :rows))
          (runs (make-runs (if rows 1 width) (grid-cells grid)
                           (make-number-vector (* width height)))))
@@ -160,8 +160,8 @@ runs are in a state of the list ALLOWED."
     (measure-runs runs)))
 
 (defun run-ends (runs run width)
-  "Return a list of the first and the last cell of the run with the number RUN, as lists (x y), in a
-grid that is WIDTH cells wide."
+  "Return a list of the first and the last cell, lists (x y), of the run with the number RUN. The
+grid is WIDTH cells wide."
   (flet ((place (index) (nreverse (multiple-value-list (floor index width)))))
     (let ((start (aref (runs-starts runs) run)))
       (list (place start)
@@ -170,19 +170,18 @@ grid that is WIDTH cells wide."
 ;;;; As few lines as possible
 
 ;;; Each cell that has to be a wall must be in a wall along its row or along its column. Whole runs
-;;; are never worse than parts of them. So the cells are the edges (here: ties) of a bipartite graph
-;;; of runs, and we want a minimum vertex cover. By Koenig's theorem it follows from a maximum
-;;; matching: pairs of runs that share a cell, each run in one pair at most. Hopcroft and Karp find
-;;; it in rounds: from rows without a mate, layer by layer, along alternating paths (here: ways) of
-;;; ties and pairs.
+;;; are never worse than parts of them. So the cells are the edges of a bipartite graph of runs, and
+;;; we want a minimum vertex cover. By Koenig's theorem it follows from a maximum matching: pairs of
+;;; runs (mates) that share a cell, each run in one pair at most. Hopcroft and Karp find a matching
+;;; in rounds: from rows without a mate, layer by layer, along alternating paths of edges and pairs.
 
 (defstruct (cover (:constructor %make-cover
                       (rows columns needed row-mate column-mate layer reached))
                   (:copier nil))
   "The current matching of the runs ROWS and COLUMNS: the ROW-MATE of each row is a column or -1,
-the COLUMN-MATE of each column a row or -1. Cells whose state has its bit set in NEEDED are ties. In
-a round of the algorithm, LAYER has for each row the number of pairs on the way to a row without a
-mate, or -1 if there is no way; REACHED has for each row the number of its cells tried."
+the COLUMN-MATE of each column a row or -1. Cells whose state has its bit set in NEEDED are edges.
+In a round, LAYER has for each row the number of pairs on the path to a row without a mate, or -1
+without a path. REACHED has for each row how many of its cells were tried."
   (rows nil :type runs :read-only t)
   (columns nil :type runs :read-only t)
   (needed 0 :type (unsigned-byte 8) :read-only t)
@@ -198,7 +197,7 @@ mate, or -1 if there is no way; REACHED has for each row the number of its cells
 
 (declaim (inline tie-at))
 (defun tie-at (cover row place)
-  "Return the column to which the cell at PLACE of ROW ties ROW, or -1 if the cell is not needed."
+  "Return the column that shares the cell at PLACE of ROW, or -1 if the cell is not needed."
   (declare (type fixnum row place))
   (let* ((rows (cover-rows cover))
          (index (+ (aref (runs-starts rows) row) place)))
@@ -208,14 +207,14 @@ mate, or -1 if there is no way; REACHED has for each row the number of its cells
         -1)))
 
 (defmacro do-ties ((column cover row) &body body)
-  "Run BODY with COLUMN bound to each column to which a needed cell ties ROW."
+  "Run BODY with COLUMN bound to each column that shares a needed cell with ROW."
   (with-gensyms (place)
     `(dotimes (,place (aref (runs-lengths (cover-rows ,cover)) ,row))
        (let ((,column (tie-at ,cover ,row ,place)))
          (unless (minusp ,column) ,@body)))))
 
 (defun find-layers (cover)
-  "Compute the layers of all rows of COVER. Return true if a way leads to a column without a mate."
+  "Compute the layers of all rows of COVER. Return true if a path leads to a column without a mate."
   (declare #.*hot*)
   (let* ((count (runs-count (cover-rows cover))) (layer (cover-layer cover))
          (queue (make-number-vector count)) (end 0) (found nil))
@@ -254,8 +253,8 @@ mate in the next layer. Return NIL if there is no such column."
                      (return column))))))))
 
 (defun find-mate (cover row)
-  "Find a mate for ROW, a row without a mate, by a way through the layers of this round, if there is
-a way. Pair each row of the way with its column on the way, so that some rows change their mates."
+  "Find a mate for ROW, which has none, on a path through the layers of this round, if there is one.
+Pair each row of the path with its column on the path, so that some rows change their mates."
   (let ((way (list (cons row nil))) (column-mate (cover-column-mate cover)) (done nil))
     (loop until (or done (null way))
           do (let ((column (next-tie cover (car (first way)))))
@@ -269,7 +268,7 @@ a way. Pair each row of the way with its column on the way, so that some rows ch
                    (aref column-mate column) row))))
 
 (defun match-runs (cover)
-  "Find a maximum matching for COVER. COVER keeps the layers of the last round, which found no way."
+  "Find a maximum matching for COVER. Keep the layers of the last round, which found no path."
   (loop while (find-layers cover)
         do (dotimes (row (runs-count (cover-rows cover)))
              (when (minusp (aref (cover-row-mate cover) row))
@@ -277,7 +276,7 @@ a way. Pair each row of the way with its column on the way, so that some rows ch
   cover)
 
 (defun covering-columns (cover)
-  "Return a bit vector, 1 for columns of COVER to which a row reached in the last round is tied."
+  "Return a bit vector, 1 for columns that share a needed cell with a row that has a layer."
   (let ((taken (make-array (runs-count (cover-columns cover))
                            :element-type 'bit :initial-element 0)))
     (dotimes (row (runs-count (cover-rows cover)) taken)
@@ -286,8 +285,8 @@ a way. Pair each row of the way with its column on the way, so that some rows ch
           (setf (sbit taken column) 1))))))
 
 (defun fewest-lines (grid needed allowed)
-  "Return a list of as few straight lines as possible that cover all cells of GRID in a state of the
-list NEEDED, and only cells in a state of the list ALLOWED. Each line is a list of two ends (x y).
+  "Return a list of as few straight lines as possible. They cover all cells of GRID with a state in
+the list NEEDED, and no cell with a state outside the list ALLOWED. A line is two ends (x y).
 Lines along rows come first, from the top, then lines along columns."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (match-runs (make-cover rows columns (states-mask needed))))

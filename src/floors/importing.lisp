@@ -12,9 +12,9 @@
 
 (addition map-to-frame)
 (defun map-to-frame (map x y &optional (direction 0))
-  "Convert the point (X, Y) of MAP, a map or its name, and DIRECTION, radians clockwise, to the
-frame of MAP (see MAP-FRAME). Return x and y in metres and the angle in radians counterclockwise:
-three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Convert the point (X, Y) and DIRECTION, in radians clockwise, from MAP to its frame (see
+MAP-FRAME). MAP is a map or its name. Return x and y in metres and the angle in radians
+counterclockwise: three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-pose 'map-to-frame x y direction)
   (let ((map (find-map-argument 'map-to-frame map)))
     (destructuring-bind (size left low yaw) (mapcar #'double (map-frame map))
@@ -25,9 +25,9 @@ three double-floats. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 
 (addition frame-to-map)
 (defun frame-to-map (map x y &optional (yaw 0))
-  "Convert the point (X, Y), in metres, and YAW, radians counterclockwise, from the frame of MAP, a
-map or its name (see MAP-FRAME). Return x and y in MAP and the direction, radians clockwise: three
-double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Convert the point (X, Y), in metres, and YAW, in radians counterclockwise, from the frame of MAP
+(see MAP-FRAME). MAP is a map or its name. Return x, y and the direction in MAP, radians clockwise:
+three double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-pose 'frame-to-map x y yaw)
   (let ((map (find-map-argument 'frame-to-map map)))
     (destructuring-bind (size left low turn) (mapcar #'double (map-frame map))
@@ -85,11 +85,11 @@ package made of the letters and digits of the name of FILE, with dashes for othe
     (or name (intern own))))
 
 (defun cell-side-in-pixels (description pixels cell)
-  "Return the width of a cell in pixels: PIXELS, or CELL metres in pixels; 1 if both are NIL."
+  "Return the width of a cell in pixels: PIXELS, or CELL metres in pixels, or 1 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
                 "the width of a cell in pixels, an integer from 1 to 32767")
   (check-option :cell (or (null cell) (and (sane-number-p cell) (plusp cell) (null pixels))) cell
-                "the width of a cell in metres, and not :pixels as well")
+                "the width of a cell in metres, above 0; leave :pixels out")
   (if (null cell)
       (or pixels 1)
       (let* ((resolution (description-resolution description))
@@ -143,8 +143,8 @@ unknown cells. WALLS and UNKNOWN are lists (substance parameter)."
 (addition imported-map-form)
 (defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
                                  (unknown :walls) clauses cache (limit +most-pixels+))
-  "Return the DEFMAP form that IMPORT-MAP would evaluate with the same arguments, and its report.
-Define nothing. Signals the same errors as IMPORT-MAP."
+  "Return, for arguments of IMPORT-MAP, the DEFMAP form that IMPORT-MAP would evaluate and the plist
+that it would return. Define nothing. Signals the same errors as IMPORT-MAP."
   (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")
@@ -176,7 +176,7 @@ pathname, is the YAML file that names the image: PGM or PNG (not interlaced), by
 a string ~/ is the home directory, and * ? [ and \\ stand for themselves. NAME is the map's name, by
 default the file's name as a symbol of the current package. OPTIONS:
   :pixels -- width of a cell in pixels, by default 1; or :cell -- its width in metres
-  :share -- least share of occupied pixels that makes a cell a wall; by default 0: one pixel does
+  :share -- least share of occupied pixels that makes a cell a wall; by default 0: one is enough
   :substance -- the substance of the walls, by default bricks, or a list such as (bricks 20)
   :unknown -- what unknown cells become: :walls, the default, NIL for nothing, a substance, or a
 list such as (glass 5)

@@ -58,7 +58,7 @@ octet STEP to the left of OVER."
                 (setf (aref ,row ,index) (logand 255 (+ (aref ,row ,index) ,expected)))))))
 
 (defun undo-filter (filter row above step)
-  "Undo FILTER in ROW, after that of the row ABOVE has been undone. NIL if there is no such filter."
+  "Undo FILTER in ROW; the row ABOVE is already unfiltered. Return NIL if FILTER does not exist."
   (declare (type octets row above) (type (integer 1 8) step) #.*hot*)
   (case filter
     (0)
@@ -159,7 +159,7 @@ PNG-PIXEL-OCTETS filler octets, then the octets of the row's pixels. Signals UNU
 ;;; One channel: a table has the sample for each of its values.
 
 (defun palette-sample (png place rule)
-  "Return the sample for the colour at the index PLACE of the palette of PNG."
+  "Return the sample for the colour with the index PLACE in the palette of PNG."
   (let ((palette (png-palette png)) (alphas (png-transparency png)) (start (* 3 place)))
     (if (< start (length palette))
         (colour-sample (aref palette start) (aref palette (+ 1 start)) (aref palette (+ 2 start))
@@ -185,7 +185,7 @@ PNG-PIXEL-OCTETS filler octets, then the octets of the row's pixels. Signals UNU
 
 (declaim (inline value-in-row))
 (defun value-in-row (row start x depth)
-  "Return the value, of DEPTH bits, of the pixel X in the octets of ROW from START on."
+  "Return the value of the pixel X of ROW. The pixels have DEPTH bits each and begin at START."
   (declare (type octets row) (type (unsigned-byte 30) start x) (type (integer 1 16) depth))
   (case depth
     (8 (aref row (+ start x)))
@@ -211,7 +211,7 @@ which begin after STEP octets."
 ;;; Several channels. Of two octets the high one is the first.
 
 (defun fill-samples-by-sums (row channels octets step samples start width rule)
-  "Set WIDTH elements of SAMPLES, from START on, by the pixels in ROW, which begin after STEP
+  "Set WIDTH elements of SAMPLES, beginning at START, from the pixels in ROW, which begin after STEP
 octets. A pixel has CHANNELS channels of OCTETS octets each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
            (type (integer 1 8) step) (type (integer 2 4) channels) (type (integer 1 2) octets)
@@ -229,7 +229,7 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
 ;;; The image.
 
 (defun row-sampler (png samples rule)
-  "Return a function of a number and a row of PNG that sets SAMPLES. RULE says how alpha counts."
+  "Return a function of a row's number and octets that sets SAMPLES. RULE says how alpha counts."
   (let ((width (png-width png)) (depth (png-depth png)) (step (png-pixel-octets png))
         (channels (png-channels png)))
     (if (= 1 channels)

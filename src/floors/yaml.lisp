@@ -13,7 +13,7 @@
                      (file-name-text (unusable-floor-file condition))
                      (unusable-floor-line condition)
                      (unusable-floor-reason condition))))
-  (:documentation "A file that IMPORT-MAP was to read, or EXPORT-MAP to write, cannot be used."))
+  (:documentation "IMPORT-MAP cannot read a file, or EXPORT-MAP cannot write a file."))
 
 (setf (documentation 'unusable-floor-file 'function)
       "Return the file that an UNUSABLE-FLOOR error is about, a pathname or string."
@@ -52,7 +52,7 @@ of the file"))
       (length text)))
 
 (defun sign-at (text start)
-  "Return the sign at START in TEXT, 1 or -1, and its end; 1 and START if there is no sign."
+  "Return the sign at START in TEXT, 1 or -1, and its end. Without a sign, return 1 and START."
   (case (and (< start (length text)) (char text start))
     (#\+ (values 1 (1+ start)))
     (#\- (values -1 (1+ start)))
@@ -90,7 +90,7 @@ of the file"))
         (and number (* sign number))))))
 
 (defun decimal-notation (number)
-  "Return the shortest text that READ-DECIMAL reads as NUMBER, rounded to a double-float."
+  "Return the shortest text from which READ-DECIMAL reads the double-float nearest to NUMBER."
   (let ((*read-default-float-format* 'double-float)
         (value (double number)))
     (if (and (= value (ftruncate value)) (< (abs value) 1d15))
@@ -190,7 +190,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
   "Return the entry in TEXT, LINE of FILE. Signals UNUSABLE-FLOOR if ENTRIES have its key already."
   (let* ((end (key-end text)) (key (subseq text 0 end)) (other (find-entry key entries)))
     (unless end
-      (reject-floor file line "~S is not a key at the left edge, a colon, a blank and a value, as ~
+      (reject-floor file line "~S must be a key at the left edge, a colon, a blank and a value, as ~
                                in resolution: 0.05"
                     (cut text 60)))
     (when other

@@ -14,7 +14,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if that does not exist."
+  "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if it has none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
                            "a number above 0 on a logarithmic axis; leave :log-x out, or give the
@@ -65,7 +65,7 @@ pixels from the ends of this axis. INSET is reduced to a sixth of the axis if it
   (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
 
 (defun marks-fit-p (axis least)
-  "True if the texts of the marks of AXIS, each at least LEAST pixels wide, do not overlap."
+  "True if the mark texts of AXIS do not overlap. Each counts as at least LEAST pixels wide."
   (loop for (mark next) on (axis-marks axis)
         while next
         always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))
@@ -89,7 +89,7 @@ of a list are at least LEAST-MARK-STEP apart, and at most 10 of them are between
         collect (step-marks step start end percent)))
 
 (defun decade-marks (low high factors every)
-  "Return marks from LOW to HIGH, logarithms: at FACTORS times each 10^n for which EVERY divides n."
+  "Return marks at FACTORS times each 10^n for which EVERY divides n. LOW, HIGH are logarithms."
   (loop for power from (floor low) to (ceiling high)
         when (zerop (mod power every))
           append (loop for factor in factors
@@ -108,8 +108,8 @@ logarithms. The longest list comes first."
             collect (decade-marks low high factors every))))
 
 (defun numeric-x-axis (values from to log-p &key percent (least 0) (inset 16))
-  "Return an axis for VALUES, logarithmic if LOG-P, from the pixel FROM to TO, with as many marks as
-fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels from the ends."
+  "Return an axis for VALUES from the pixel FROM to TO, logarithmic if LOG-P. It has as many marks
+as fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels from the ends."
   (let ((least-mark-step (if log-p 0 (least-mark-step values percent)))
         (spots (if log-p
                    (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))

@@ -34,7 +34,7 @@ text; Y, LOW and HIGH may be NIL."
         all))
 
 (defun checked-series (all)
-  "Return a list of series for ALL, lists (name point...); and true if the X of points are words."
+  "Return two values: a list of series for ALL, lists (name point...); and true if the X are words."
   (check-argument chart all (and (listp all) (every #'consp all))
                   "a list of series, each a list (name (x y low high) ...)")
   (let ((any-x-word-p (any-x-word-p all)))
@@ -58,7 +58,7 @@ text; Y, LOW and HIGH may be NIL."
 ;;; Series are drawn side by side, so that their intervals do not hide each other.
 
 (defun least-gap (places)
-  "Return the least distance between two of PLACES, in pixels; or 60 for fewer than two."
+  "Return the least distance between two of PLACES, in pixels, or 60 if there are not two."
   (let ((sorted (sort (copy-list places) #'<)))
     (loop for (place next) on sorted
           while next
@@ -164,7 +164,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
       (each (lambda (series shift) (draw-markers canvas series plot shift words percent))))))
 
 (defun lay-out-line-chart (all words values log-x upward options)
-  "Return the plane for the series ALL. VALUES are their X; if there are WORDS, positions in WORDS."
+  "Return the PLOT for the series ALL. VALUES are their X; with WORDS, they are positions in WORDS."
   (apply #'lay-out-plot
          (lambda (from to)
            (if words

@@ -158,7 +158,7 @@ between words. A word longer than a line is broken after a dash or the like, els
 (defun write-lines (canvas x y lines &key (anchor :start) (color +text-color+)
                                        (size +text-size+) bold-p
                                        (step +chart-line-height+))
-  "Write LINES of text from the base line Y down. Return the base line for a further line."
+  "Write LINES of text from the base line Y down. Return the base line for the next line."
   (with-ink (color)
     (dolist (line lines y)
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)

@@ -7,7 +7,7 @@
 
 (defstruct (legend (:copier nil))
   "The legend beside a chart. TITLE is a list of lines of text, ENTRIES a list of lists (index
-line...). If CONNECT is true, the samples of series have lines."
+line...). If CONNECT is true, the samples of series show lines."
   (title '() :type list)
   (entries '() :type list)
   (connect t)
@@ -20,7 +20,7 @@ line...). If CONNECT is true, the samples of series have lines."
 
 (defun lay-out-legend (names title most connect)
   "Return the legend for series with NAMES, below TITLE, a string or NIL, and at most MOST pixels
-wide. If all names are empty, the legend is empty. If CONNECT, the samples of series have lines."
+wide. If all names are empty, the legend is empty. If CONNECT, the samples show lines."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
       (let* ((room (- most +sample-width+ 24))
@@ -70,7 +70,7 @@ horizontal axis that some charts use."
                      &key title subtitle x-label y-label legend-title (width 720) (height 440)
                        (connect t) (extra 0) (least-left 0)
                      &allow-other-keys)
-  "Return a plane for series with NAMES. UPWARD is the vertical axis. The function MAKE-ACROSS is
+  "Return a PLOT for series with NAMES. UPWARD is the vertical axis. The function MAKE-ACROSS is
 called with the left and right pixel of the area for the data, and returns the horizontal axis.
 EXTRA is the height to leave free at the bottom, LEAST-LEFT the least width at the left. The page
 grows beyond WIDTH and HEIGHT if necessary."

@@ -5,7 +5,7 @@
 (export '(difference-chart measure-chart))
 
 (defstruct (row (:constructor make-row (label words height)) (:copier nil))
-  "A row of a chart, between the lines of text LABEL and WORDS. TOP and HEIGHT are pixels."
+  "A row of a chart, with the lines of text LABEL and WORDS beside it. TOP, HEIGHT are pixels."
   (label '() :type list :read-only t)
   (words '() :type list :read-only t)
   (height 0 :read-only t)
