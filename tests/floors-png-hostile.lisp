@@ -94,7 +94,7 @@
                  ("its pixels cannot be decompressed; convert" ,(png-of-data (damaged-at 0 data)))
                  ("its pixels cannot be decompressed" ,(png-of-data (octets-as-string '(#x78 1 7))))
                  ("the pixels end before the last row" ,(png-of-data (octets-as-string '(#x78 1))))
-                 ("0 bytes of compressed data are too few for so many" ,(png-of-data ""))
+                 ("0 bytes of compressed data are too few" ,(png-of-data ""))
                  ("0 bytes of compressed data are too few"
                   ,(png-of-chunks (png-head-chunk 3 1 8 0)))
                  ("row 2 has the filter 5, but filters are 0 to 4"

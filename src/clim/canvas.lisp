@@ -71,7 +71,7 @@
                            :line-dashes (clim-line-dashes canvas gcontext))))
 
 (defun arc-points (x y width height start extent)
-  "Return points along an arc, x y ..., close enough together for the arc to look round."
+  "Return points x y ... along an arc, so close together that the arc looks round."
   (let* ((across (/ width 2)) (down (/ height 2))
          (count (max 4 (ceiling (* (abs extent) (sqrt (max 1 across down)))))))
     (loop for index from 0 to count

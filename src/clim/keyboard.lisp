@@ -27,8 +27,8 @@
 (defconstant +arrow-step+ 60 "The number of pixels that an arrow key moves the view.")
 
 (defun arrow-key-offset (key-name)
-  "Return the pixels to the right and down that the key KEY-NAME moves the view, as two values.
-Return NIL for other keys than arrows."
+  "Return two values: by how many pixels the key KEY-NAME moves the view to the right, and down.
+Return NIL if it is no arrow key."
   (case key-name
     (:left (values (- +arrow-step+) 0))
     (:right (values +arrow-step+ 0))

@@ -59,7 +59,7 @@ them.")
                           (needed-section-height (pane-named window section) section column)))))
 
 (defun need-function (needs)
-  "Return a function from a section to its height in NEEDS, lists (section pixels), or to 0."
+  "Return a function of a section: its height in NEEDS, lists (section pixels), or 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
 (defun arrange-layout (layout needs)
@@ -74,7 +74,7 @@ them.")
         +prompt-rows+)))
 
 (defun needs-met-p (places needs)
-  "True if PLACES give each section of NEEDS, lists (section pixels), at least that height. The
+  "True if PLACES give each section at least its height in NEEDS, lists (section pixels). The
 section of plans is ignored, because it takes any height."
   (loop for (section pixels) in needs
         always (or (eq section 'plan)
@@ -114,7 +114,7 @@ section has needed so far, or its present need if the layout has room only for p
   (place-parts layout (places-of-parts layout)))
 
 (defun child-holding (layout pane)
-  "Return the child of LAYOUT that is or contains PANE, since CLIM may put borders around panes."
+  "Return the child of LAYOUT that is or contains PANE, because CLIM may put borders around PANE."
   (loop for sheet = pane then (clim:sheet-parent sheet)
         while sheet
         when (eq layout (clim:sheet-parent sheet)) return sheet))

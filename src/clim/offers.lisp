@@ -46,7 +46,7 @@ format string for the camera's number, and LINE is one for the number and ARGUME
           collect (designator-image-number designator)))
 
 (defun appearance-text (image)
-  "Return a specification of the looks of the thing of IMAGE, as a text for the prompt."
+  "Return the looks of the thing of IMAGE as a specification that the prompt can read."
   (let ((color (assoc :color (thing-image-attributes image))))
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 

@@ -7,7 +7,7 @@
 
 (defvar *last-settings-lock* (make-lock "settings"))
 (defvar *last-settings* '()
-  "The settings of the window closed last, a list (layers colored-p preferences), or NIL.")
+  "The settings of the last closed window, a list (layers colored-p preferences), or NIL.")
 
 (defstruct (window-state (:copier nil))
   "The state of a closed window for the next window of its robot. LINES are the lines of the

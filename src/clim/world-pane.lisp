@@ -56,7 +56,7 @@
   "The text in the strip if the robot is to be followed but the view shows the whole map.")
 
 (defun stop-fitting-map (pane)
-  "Record that the user has changed the view of PANE, so that it no longer fits the map by itself."
+  "Record that the user has changed the view of PANE, so that it is no longer fitted to the map."
   (setf (pane-fitting-p pane) nil)
   (when (equal *whole-map-hint* (window-hint (window-of pane)))
     (setf (window-hint (window-of pane)) "")

@@ -89,7 +89,7 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
                      "a name of printable characters only, because the .yaml file contains it")))
 
 (defun resolve-link (path)
-  "Return the truename of the file PATH, which may be a link; PATH if there is no such file."
+  "Return the truename of the file PATH, which may be a link, or PATH if there is no such file."
   (or (ignore-errors (existing-path path)) path))
 
 (defun image-named-in (file)

@@ -72,7 +72,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
 ;;; Chunks.
 
 (defun chunk-name (octets start)
-  "Return the name of a chunk, the four characters at START of OCTETS, NIL unless all are letters."
+  "Return the chunk name at START of OCTETS, four letters, or NIL if a character is no letter."
   (let ((name (map 'string #'code-char (subseq octets start (+ start 4)))))
     (and (every (lambda (char) (or (char<= #\A char #\Z) (char<= #\a char #\z))) name)
          name)))
@@ -95,14 +95,14 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
 (define-constant +png-colours+ '((0 1 1 2 4 8 16) (2 3 8 16) (3 1 1 2 4 8) (4 2 8 16) (6 4 8 16))
   :test 'equal
   :documentation "A list (type channels depth...) for each colour type of PNG. The types 0 and 4 are
-grey, 2 and 6 red, green and blue, 3 a palette; the last channel of 4 and 6 is alpha.")
+grey; 2 and 6 are red, green and blue; 3 is a palette. The last channel of 4 and 6 is alpha.")
 
 (defun check-encoding (input compression filter interlace)
   "Signal UNUSABLE-FLOOR if INPUT has an unsupported COMPRESSION, FILTER or INTERLACE."
   (when (= 1 interlace)
     (reject-png input "the image is interlaced (Adam7), which is not supported"))
   (unless (= 0 compression filter interlace)
-    (reject-damaged input "compression, filter and interlace, ~D, ~D and ~D, do not exist in PNG"
+    (reject-damaged input "PNG has no compression ~D, filter ~D and interlace ~D"
                     compression filter interlace)))
 
 (defun png-from-header (input octets limit)

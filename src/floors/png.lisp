@@ -75,8 +75,8 @@ octet STEP to the left of OVER."
   "Signal UNUSABLE-FLOOR if the compressed data of PNG are too few for NEEDED octets."
   ;; From one octet zlib makes 1032 at most.
   (when (< (* 1032 (length (png-pixels png))) needed)
-    (reject-damaged (png-input png) "the pixels take ~D bytes, and ~D bytes of compressed data are ~
-                                     too few for so many" needed (length (png-pixels png)))))
+    (reject-damaged (png-input png) "the pixels take ~D bytes, for which ~D bytes of compressed ~
+                                     data are too few" needed (length (png-pixels png)))))
 
 (defun fill-with-rows (png inflater buffer size)
   "Fill BUFFER with the next SIZE octets that INFLATER decompresses from PNG."

@@ -6,7 +6,7 @@
 
 (defstruct (curve (:constructor make-curve (name index steps censored times)) (:copier nil))
   "A survival curve. STEPS are lists (time survival low high), sorted by time; each is valid from
-its time on. CENSORED are the times of censored trials, TIMES those of the ends of all trials."
+its time on. CENSORED are the times of censored trials, TIMES the times at which all trials ended."
   (name "" :read-only t)
   (index 0 :read-only t)
   (steps '() :type list :read-only t)
