@@ -306,12 +306,12 @@
 
 (test figures.of-choosing-are-rates-and-pairs
   (is (string= "96 % (94 to 97)" (ars-worlds::rate-text 479 500)))
-  (is (equal '("Seed by seed, rollouts were in time 20 times where the short way was not,"
-               "1 time the other way round: p < .001.")
+  (is (equal '("In 20 pairs of trials with the same seed, only the rollouts were in time;"
+               "in 1 pair only the short way was in time: p < .001.")
              (ars-worlds::paired-comparison-lines
               (append (make-list 20 :initial-element "failure") '("success" "success" "limit"))
               (append (make-list 20 :initial-element "success") '("failure" "success" "failure")))))
-  (is (equal "0 times the other way round: p = 0.250."
+  (is (equal "in 0 pairs only the short way was in time: p = 0.250."
              (second (ars-worlds::paired-comparison-lines '("limit" "limit" "limit")
                                                           '("success" "success" "success"))))))
 

@@ -27,7 +27,7 @@ world's seed decide where. People move the trolley among PLACES at times. Return
 ;;; The plan chooses ways by WHICH: :FIRST, :SECOND, :ANY (at random) or :BEST (by rollouts).
 
 (defvar forecasts* '()
-  "A list of the share of rollouts that succeeded for each choice of an errand, the latest first.")
+  "A list with the share of successful rollouts for each choice of an errand, the latest first.")
 
 (defun note-forecast (projections best)
   (push (projection-probability (nth best projections)) forecasts*))
@@ -77,7 +77,7 @@ DEADLINE-MISSED or :CANNOT-GET-THERE."
 (defexperiment choosing-by-rollouts
   "How much does it help to try ways in rollouts before driving? And how good are the forecasts?
 
-A robot that takes always the short way, always the long way, or either at random does not know what
+A robot that always takes the short way or the long way, or either at random, does not know what
 blocks a way. It is in time at both places in about half of all trials. Five rollouts for each way
 at each choice show what blocks a way. The measures:
 - FORECAST: the forecast probability of success. For :BEST the forecast is the share of successful

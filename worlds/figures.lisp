@@ -138,9 +138,9 @@ the map to draw; NIL is the whole map.")
                                      (and (in-time-p first) (not (in-time-p best))))
                              firsts bests)))
          (p (mcnemar-test more less)))
-    (list (format nil "Seed by seed, rollouts were in time ~D time~:P where the short way was not,"
+    (list (format nil "In ~D pair~:P of trials with the same seed, only the rollouts were in time;"
                   more)
-          (format nil "~D time~:P the other way round: p ~:[= ~,3F~;< .001~]."
+          (format nil "in ~D pair~:P only the short way was in time: p ~:[= ~,3F~;< .001~]."
                   less (< p 1/1000) p))))
 
 (defun choosing-lines (results)

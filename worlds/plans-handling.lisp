@@ -17,8 +17,8 @@
 
 (def-interp-macro (insistently (?error ?command) . ?clauses)
   "Repeat COMMAND, a form that returns an error code or NIL, until it returns NIL or CLAUSES accept
-the code. CLAUSES are as in CASE, with ERROR bound to the code; a true value accepts it. Fails with
-:WILL-NOT-DO after twelve attempts."
+the code. CLAUSES are as in CASE, with ERROR bound to the code; a true value accepts the code. Fails
+with :WILL-NOT-DO after twelve attempts."
   `(let ((left 12) (done nil))
      (loop UNTIL done
        (if (zerop left) (fail :class :will-not-do :command ',command))

@@ -20,7 +20,7 @@ TYPE is :LOCAL or :NON-LOCAL."
            (vref camera-moved* camera) (vref camera-movement-error* camera)))
 
 (def-interp-proc scan-for-thing (camera description &key (type :non-local) (rounds 2))
-  "Turn CAMERA until a designator fits DESCRIPTION, at most ROUNDS times round. Return that or NIL."
+  "Turn CAMERA, at most ROUNDS times round, until a designator fits DESCRIPTION. Return it or NIL."
   (let ((found nil)
         (views (* rounds (ceiling 2pi (rpl-camera-field-of-view camera)))))
     (n-times views UNTIL found

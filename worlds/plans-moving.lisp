@@ -85,8 +85,8 @@ stopped the robot, else NIL."
   (fluent-value (vref camera-tracking-error* camera)))
 
 (def-interp-proc go-to-designated (camera designator &optional patience)
-  "Drive the robot to DESIGNATOR, guided by CAMERA, for at most PATIENCE ticks if that is given.
-Return an error code, or NIL when the robot is there."
+  "Drive the robot to DESIGNATOR, guided by CAMERA, for at most PATIENCE ticks, if given. Return an
+error code, or NIL when the robot is there."
   (rpl-robot-set-speed driving-speed*)
   (or (begin-track camera designator)
       (seq (rpl-robot-goto-designator camera)

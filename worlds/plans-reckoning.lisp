@@ -19,7 +19,7 @@
   (trouble 0 :type fixnum))
 
 (defun here (robot)
-  "Return the true position and heading of ROBOT, a list (x y heading). Plans start from that list."
+  "Return the true position and heading of ROBOT: a list (x y heading), the START of many plans."
   (append (multiple-value-list (robot-position robot)) (list (robot-angle robot))))
 
 ;;; Nothing marks the end of a reckoning. So a new reckoning takes the oldest of eight odometers.
@@ -36,7 +36,7 @@
 
 (defun begin-reckoning (start &optional (robot (rpl-robot)))
   "Return a reckoning of ROBOT (default: the plan's robot) that begins at START, a list (x y
-heading). The last eight reckonings of a robot are valid side by side; older reckonings are not."
+heading). The last eight reckonings of a robot are valid together; older reckonings are not."
   (destructuring-bind (x y heading) start
     (make-reckoning (make-chart (ars-magna.world:world-map (robot-world robot)))
                     (ars-magna.robot:make-odometer robot (next-odometer-name robot))

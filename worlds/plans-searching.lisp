@@ -51,7 +51,7 @@ metres; NIL if there is no way."
       (first (look-for-things camera :non-local description))))
 
 (def-interp-proc look-round (camera description)
-  "Turn CAMERA until a designator fits DESCRIPTION, at most once round. Return that or NIL."
+  "Turn CAMERA, at most once round, until a designator fits DESCRIPTION. Return it or NIL."
   (let ((seen nil))
     (n-times (ceiling 2pi (rpl-camera-field-of-view camera)) UNTIL seen
       (setf seen (look-near-and-far camera description))
@@ -93,7 +93,7 @@ DESCRIPTION. Return true if such a thing was found."
 (def-interp-proc travel-watching (me place camera description)
   "Drive the robot of the reckoning ME to PLACE, guided by another camera, while CAMERA looks ahead
 for something that fits DESCRIPTION. Stop as soon as CAMERA sees such a thing, and return its
-designator. Return NIL at PLACE. Fails with :ONLY-ONE-CAMERA if there is no other camera."
+designator; on arrival, return NIL. Fails with :ONLY-ONE-CAMERA if there is no other camera."
   (let ((seen nil)
         (guide (or (other-camera camera) (fail :class :only-one-camera))))
     (outcome (rpl-camera-align-robot camera)
@@ -152,5 +152,5 @@ this round. A round visits all PLACES; there are ROUNDS rounds."
 (def-interp-proc search-watchfully (description places
                                     &key (rounds 10) start (camera (widest-camera)))
   "Search as SEARCH-NEAREST does, but also look with CAMERA while driving, and drive to what it sees
-at once. Another camera guides the robot through doorways. Without it, fails with :ONLY-ONE-CAMERA."
+at once. Fails with :ONLY-ONE-CAMERA without another camera to guide the robot through doorways."
   (search-places description places #'nearest-place 'look-on-the-way rounds start camera))

@@ -23,8 +23,8 @@
                                          (things-at *world* (+ x dx) (+ y dy)))))))
 
 (defun point-in-the-open (dice)
-  "Return the middle of a random cell in the open of the current world, a list (x y). DICE choose
-the cell; all such cells are equally likely."
+  "Return the middle, a list (x y), of a random cell of the current world without walls or obstacles
+around. DICE choose the cell; all such cells are equally likely."
   (let ((map (ars-magna.world:world-map *world*)))
     (loop repeat 10000
           for x = (+ .5 (roll-index (map-width map) dice))
@@ -36,7 +36,7 @@ the cell; all such cells are equally likely."
 
 (defun hide-thing (name descriptor)
   "Put a new thing NAME with the attributes of DESCRIPTOR on the floor of the current world,
-anywhere in the open, and return it. NAME and the world's seed decide where the thing is."
+away from walls and obstacles, and return it. NAME and the world's seed decide where the thing is."
   (make-new-thing name (cons *world* (point-in-the-open (dice-for name))) descriptor))
 
 (defun make-restless (thing probability)

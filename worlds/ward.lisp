@@ -13,7 +13,7 @@
 
 (defparameter *ward-doors*
   '((20 38 29 39) (60 38 69 39) (100 38 109 39) (30 60 39 61) (90 60 99 61))
-  "The doorways: x0 y0 x1 y1.")
+  "Lists (x0 y0 x1 y1): the doorways.")
 
 (defparameter *ward-furniture*
   '((12 14 13 15) (24 14 25 15) (12 26 13 27) (24 26 25 27) (56 11 78 12) (104 12 105 13)
@@ -64,7 +64,7 @@
                                             ,@(if (eq pixel 'unknown) '(glass 5) '(plaster 60)))))))
 
 (defun save-ward-picture (yaml file ends scale &rest options)
-  "Import YAML with OPTIONS, and save in FILE a picture of the map with a way between the two ENDS."
+  "Import YAML with OPTIONS. Save a picture of the map, with a way between the two ENDS, in FILE."
   (apply #'import-map yaml :name 'pictured-ward :unknown 'glass options)
   (save-way-picture 'pictured-ward (list (apply #'find-way 'pictured-ward ends)) file
                     :title "ward" :scale scale)

@@ -52,7 +52,7 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
                    (write-help (find-line-for-help name))))))))
 
 (defun find-line-for-help (name)
-  "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE without such a line."
+  "Return the line of the prompt whose name begins with NAME. Signals BAD-LINE if there is none."
   (handler-bind ((bad-line (lambda (condition)
                              (reject-line "~A APROPOS ~(~A~) searches all names."
                                           (bad-line-text condition) name))))
@@ -79,7 +79,7 @@ place type, attribute, value, error code, name of Lisp ..."
 ;;; Searching.
 
 (defparameter *largest-topic-count* 40
-  "The largest number of topics that APROPOS lists for a word that is only in their descriptions.")
+  "The largest number of topics that APROPOS lists because only their descriptions have the word.")
 
 (defun topics-matching (word)
   "Return two lists: topics with WORD in their names, and those with WORD only in descriptions."

@@ -16,13 +16,13 @@
 ;;; Which part, and which layers.
 
 (defun words-for-map-line ()
-  "Return the words that MAP accepts: names of layers, as for MAP and as for PICTURE, and LEGEND."
+  "Return the words that MAP accepts: LEGEND, and the names that MAP and PICTURE have for layers."
   (mapcar #'symbol-name
           (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
 (defun complete-word (text words line takes)
   "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
-BAD-LINE without such a word. TAKES, a format control for WORDS, tells what LINE takes."
+BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE accepts."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
       (reject-line "~A does not take ~A.~@[ Did you mean ~A?~] It takes ~?." line text
@@ -91,7 +91,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
 
 ;;; WATCH.
 
-;;; On a terminal each map replaces the one before, and a key ends this. Messages that arrive
+;;; On a terminal each map replaces the one before, and a key ends WATCH. Messages that arrive
 ;;; meanwhile are shown afterwards, their last line at once. Elsewhere, maps follow one another.
 
 (defconstant +shortest-frame-seconds+ 0.1d0
@@ -109,7 +109,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
   (and (time-passes-p session simulation) (idle-p simulation)))
 
 (defun pass-or-await-tick (session simulation)
-  "Pass a tick of SIMULATION. If its clock passes ticks, wait for a tick, or until the run is idle."
+  "Pass a tick of SIMULATION; if its clock runs, wait until a tick has passed or the run is idle."
   (let ((goal (1+ (simulation-tick simulation))))
     (unless (time-passes-p session simulation) (step-ticks 1 simulation))
     (await-test (lambda ()
@@ -139,7 +139,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
   "Return the text for the screen: the map, and below the map the time and the last message."
   (let ((columns (1- (terminal-size session)))
         (said (last-held-back-line (session-console session))))
-    (format nil "~A~A A key ends this.~%~A" (map-text session options 2)
+    (format nil "~A~A A key ends WATCH.~%~A" (map-text session options 2)
             (time-description session simulation)
             (subseq said 0 (min columns (length said))))))
 

@@ -45,7 +45,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
     "Go back to the end of TICK and continue from there, as with REWIND."
   (check-rewindable session)
   (let ((now (simulation-tick *simulation*)))
-    (unless (<= tick now) (reject-line "This run is only at tick ~D." now))
+    (unless (<= tick now) (reject-line "This run is only at tick ~D; give no later tick." now))
     (rewind-and-report session (- now tick))))
 
 ;;;; TRIAL
@@ -53,7 +53,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 ;;; Which trial is meant.
 
 (defun experiment-names (start)
-  "Return the names of experiments that begin with START; only START if START itself is a name."
+  "Return the experiment names that begin with START, or only START if START itself is a name."
   (let ((experiment (find-experiment start nil)))
     (if experiment
         (list (experiment-name experiment))
@@ -102,7 +102,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (write-fitted-line session "~@(~A~).~%~A" (open-trial-name trial)
                      (time-description session *simulation*))
   (when (open-trial-changed trial)
-    (write-fitted-line session "Since tick ~D this is no longer the experiment's run."
+    (write-fitted-line session "Since tick ~D the run is no longer the experiment's own."
                        (open-trial-changed trial))))
 
 ;;; Its end.
@@ -179,7 +179,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
                :then (lambda (result) (read-lines-after-trial session trial result parts row)))))
 
 (defun call-with-run-paused (function)
-  "Call FUNCTION, while the current live simulation, if any, is paused."
+  "Pause the current live simulation, if any, while calling FUNCTION."
   (let ((simulation *simulation*))
     (if (and simulation (live-p simulation) (not (paused-p simulation)))
         (unwind-protect (progn (pause simulation) (funcall function))

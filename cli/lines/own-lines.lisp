@@ -47,7 +47,7 @@ too."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun parse-switch (name word)
-  "True if WORD, typed after NAME, is ON, NIL if WORD is OFF. Signals BAD-LINE for another word."
+  "True if WORD is ON, NIL if WORD is OFF. Otherwise signals BAD-LINE about the line NAME."
   (cond ((string-equal word "on") t)
         ((string-equal word "off") nil)
         (t (reject-line "~A takes ON or OFF, not ~A." name word))))
@@ -69,7 +69,7 @@ command is a job of JOBS, or a waiting request that is not in the list INBOX."
     (reject-line "Time stands still: ~A runs once, after RESUME, and is not repeated." cmd)))
 
 (defun await-repeated-line (session cmd jobs inbox)
-  "Wait for the end of JOBS, issued by the line CMD of SESSION, and of commands issued by Lisp.
+  "Wait until the commands of the line CMD have ended: JOBS of SESSION, and commands issued by Lisp.
 Signals BAD-LINE if the line waits for RESUME. INBOX lists the requests that waited before CMD."
   (check-not-waiting-for-resume session cmd jobs inbox)
   (await-jobs session jobs)

@@ -5,8 +5,8 @@
 ;;; A picture shows the default layers, and those whose names are typed.
 
 (defun picture-layer-for-word (text line)
-  "Return the layer for TEXT, a word typed after LINE. TEXT is the name of a layer of MAP or
-PICTURE, or BARE, which omits the default layers, or the beginning of such a word."
+  "Return the layer for TEXT, typed after LINE: the beginning of the name that MAP or PICTURE has
+for a layer, or of BARE, which omits the default layers."
   (picture-layer-name (complete-word text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
@@ -55,7 +55,7 @@ from 4 to 40 for which the map has at most 900 x 700 pixels."
                              (what :rest "pixels per cell, names of layers; BARE; ANYWAY"
                                    :optional))
     (:seeing)
-    "Save in FILE, replacing it, a film of the run so far: an HTML page for any browser, to play,
+    "Save a film of the run so far in FILE, replacing it: an HTML page for any browser, to play,
 stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
 failed commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY
 saves the film even if definitions have changed since the run began."
@@ -102,7 +102,7 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
   "A text that tells how to install McCLIM.")
 
 (defun ensure-window-system ()
-  "Load the code for windows, if needed. Signals BAD-LINE without X server, McCLIM or working CLX."
+  "Load the code for windows, if needed. Signals BAD-LINE if X server, McCLIM or CLX does not work."
   (unless *display-opener*
     (when (member (environment-value "DISPLAY") '(nil "") :test #'equal)
       (reject-line "No display: the environment variable DISPLAY names no X server. MAP draws the ~

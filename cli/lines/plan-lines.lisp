@@ -45,8 +45,8 @@ package. Return NIL if there is no such plan."
         (unless (member plan parts)
           (write-filled (whole-sentence (plan-documentation plan)) 27
                         (format nil "  ~A" name))))))
-  (format t "HELP name shows the arguments of a plan. The parts of these plans are plans,~%~
-             too, and can be started as well.~%"))
+  (format t "HELP name shows the arguments of a plan. These plans call other plans,~%~
+             which you can start, too.~%"))
 
 (defun write-plan-help (plan)
   (format t "PLAN ~A~%" (plan-usage plan))
@@ -138,7 +138,7 @@ ended has failed, tell where and why it failed."
 interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (or (find n (plans) :key #'task-serial)
-                         (reject-line "No plan ~D is under way. PLANS shows which are." n))))
+                         (reject-line "No plan ~D is under way. PLANS lists the plans." n))))
         (t (end-plan :all))))
 
 ;;; PLAN-TREE, WHY and PLAN-TIMELINE: what plans do, and why.
@@ -161,7 +161,7 @@ variables, what it waits for and since when; and which task owns which valve."
                    (and which (task-tree-text which)))))))
     (cond (text (write-string (escape-controls text)))
           ((null (plans)) (reject-line "No plan is under way."))
-          (t (reject-line "No task ~D is under way. PLANS shows which are." n)))))
+          (t (reject-line "No task ~D is under way. PLANS lists the tasks." n)))))
 
 (defun task-why-text (n)
   (call-in-plan-package
@@ -173,8 +173,8 @@ variables, what it waits for and since when; and which task owns which valve."
 (define-line "WHY" (session (n count "the number of a task" :optional)) (:planning)
     "Explain why the last failed command failed: what was requested and when, what its error code
 means and what to try. With N, explain how the task N, running or ended, got where it is: which
-fluent woke it, what set that, and how it was started. WHY N needs a trace: TRACE-PLANS ON, or in
-Lisp (setf *trace-plans* t), before the plan starts."
+fluent woke the task, what set this fluent, and how the task was started. WHY N needs a trace:
+TRACE-PLANS ON, or in Lisp (setf *trace-plans* t), before the plan starts."
   (if n
       (write-string (escape-controls (task-why-text n)))
       (let ((robot (session-robot)))
@@ -182,9 +182,9 @@ Lisp (setf *trace-plans* t), before the plan starts."
 
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
-    "Save in FILE, replacing it, a picture of the plans that have run. Each task is a bar over
-ticks, with what it waited for and the commands that it issued. A trace is needed: TRACE-PLANS ON,
-or in Lisp (setf *trace-plans* t), before the plan starts."
+    "Save a timeline of the plans so far in FILE, replacing it. Each task is a bar over ticks, with
+what it waited for and the commands that it issued. A trace is needed: TRACE-PLANS ON, or in Lisp
+(setf *trace-plans* t), before the plan starts."
   (format t "~A~%" (native-name (save-plan-timeline (path-of-name file)))))
 
 ;;; END-TASK, STEP-TASK and TRACE-PLANS: changing running plans.
@@ -200,13 +200,13 @@ or in Lisp (setf *trace-plans* t), before the plan starts."
     (call-with-plans-in-use
      (lambda (runner)
        (or (and number (task-numbered number runner))
-           (reject-line "No task ~A is under way. PLANS shows which are." text))))))
+           (reject-line "No task ~A is under way. PLANS lists the tasks." text))))))
 
 (defun task-number-and-label (task) (format nil "~D, ~A" (task-serial task) (task-label task)))
 
 (define-line "END-TASK" (session (n :task-number "the number of a running task")) (:planning)
-    "End the task N of a plan and its subtasks. The task evaporates, as when its parent no longer
-needs a task. A stepped task ends without another stop. Commands that the task gave to the robot are
+    "End the task N of a plan and its subtasks. The task evaporates, as if its parent no longer
+needed it. A stepped task ends without another stop. Commands that the task gave to the robot are
 interrupted. STOP-PLAN ends whole plans."
   (let ((task (resolve-task n)))
     (step-task task nil)

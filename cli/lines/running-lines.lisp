@@ -7,11 +7,11 @@
   (check-run-not-over)
   (let ((simulation (current-simulation)))
     (unless (live-p simulation)
-      (reject-line "Time passes here only as commands need it. STEP lets ticks pass."))
+      (reject-line "Ticks pass here only while a command needs them. STEP lets ticks pass."))
     simulation))
 
 (defun time-description (session simulation &optional (tick (simulation-tick simulation)))
-  "Return a text with TICK, of SIMULATION, the run of SESSION, and how time passes in SIMULATION."
+  "Return a text that tells TICK and how time passes in SIMULATION, the run of SESSION."
   (format nil "Tick ~D, ~A." tick
           (cond ((session-trial session) (trial-pace-text (session-trial session)))
                 ((simulation-over simulation) (simulation-over simulation))
@@ -76,7 +76,7 @@ trial to its end."
             (reject-line "The rate cannot be ~A. Give ~A." text (argument-type-text 'rate))))))
 
 (defun rate-after-resume-text (session simulation)
-  "Return as text the rate after RESUME if SIMULATION, the run of SESSION, is paused; else NIL."
+  "If SIMULATION, the run of SESSION, is paused, return the rate after RESUME as text; else NIL."
   (let ((trial (session-trial session)))
     (cond ((and trial (not (open-trial-running-p trial))) (rate-text (open-trial-rate trial)))
           ((and (null trial) (paused-p simulation)) (rate-text (simulation-rate simulation))))))
@@ -95,7 +95,7 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
 
 (define-line "SEED" (session (n integer "the seed"))
     (:running)
-    "Draw all random numbers from the seed N from now on."
+    "From now on, draw all random numbers from the seed N."
   (set-seed n (current-simulation)))
 
 ;;; Parameters.

@@ -73,7 +73,7 @@
         (write-trimmed-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun command-entry-text (entry control)
-  "Return ENTRY, of :UNDER-WAY or :INTERRUPTED, as text: its part, then CONTROL formatted."
+  "Return the text for ENTRY, from :UNDER-WAY or :INTERRUPTED: its part, then CONTROL formatted."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
@@ -185,13 +185,13 @@ point is inside a wall."
     (t (if (eq key :failed) (object-for-json value) (lists-to-arrays value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with values that WRITE-JSON writes as *JSON-KINDS-OF-KEYS* says."
+  "Return PLIST with its values converted for WRITE-JSON, as *JSON-KINDS-OF-KEYS* says."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))
 
 (defun report-status-object (session robot)
-  "If SESSION reports objects, report ROBOT's status, while the world is still, and return true."
+  "If SESSION reports objects, report ROBOT's status and return true. The world must stand still."
   (let ((account (session-account session)))
     (when (reports-objects-p account)
       (apply #'report-object account "status"

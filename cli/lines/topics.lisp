@@ -116,7 +116,7 @@
                      :test #'string= :from-end t))
 
 (defun documented-names ()
-  "Return the documented names of simulator, worlds and user, sorted, without parameters."
+  "Return a sorted list of the documented names of simulator, worlds and user, except parameters."
   (let ((names '()))
     (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
@@ -190,8 +190,8 @@
     ("name of a library" names-in-optional-system identity optional-name-description)
     (lisp-name-kind documented-names identity lisp-name-description write-lisp-topic))
   "Lists (title lister name description [writer]), one for each kind of topic. LISTER is a function
-that returns all objects of the kind. NAME, DESCRIPTION and WRITER are functions of an object; the
-last prints its help. TITLE is a text or a function of an object.")
+that returns all objects of the kind. NAME, DESCRIPTION and WRITER are functions of an object;
+WRITER prints the object's help. TITLE is a text or a function of an object.")
 
 (defstruct (topic (:constructor make-topic (kind object name)) (:copier nil))
   "A topic of HELP: an OBJECT of KIND, an element of *TOPIC-KINDS*."

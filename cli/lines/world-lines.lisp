@@ -36,10 +36,10 @@
       (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
 (defun choose-robot (names name)
-  "Return the one of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
+  "Return the element of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
       (or (find name names :test #'same-name-p)
-          (reject-line "There is no robot ~A there, but ~{~A~^, ~}." (string-upcase name) names))
+          (reject-line "That world has no robot ~A, but ~{~A~^, ~}." (string-upcase name) names))
       (first names)))
 
 (define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
@@ -53,7 +53,7 @@ present run ends."
 
 (defun find-robot-named (name)
   (or (find name (robot-names) :test #'same-name-p)
-      (reject-unknown-name "robot" name (robot-names) "ROBOT lists those of this world.")))
+      (reject-unknown-name "robot" name (robot-names) "ROBOT lists the robots of this world.")))
 
 (defun list-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))

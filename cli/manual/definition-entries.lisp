@@ -229,7 +229,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
     (t "")))
 
 (defun value-facts (symbol)
-  "Return a list of the fact that tells the value of the variable SYMBOL; NIL if the value is long."
+  "Return a list of one fact, the value of the variable SYMBOL; NIL if the value is long."
   (when (and (boundp symbol) (not (constantp symbol)))
     (let ((value (symbol-value symbol)) (*print-case* :downcase))
       (when (typep value '(or real keyword boolean))

@@ -63,7 +63,7 @@ be variables of the block. ID is the id of the heading above the block."
     (#\; (or (position #\Newline text :start start) (length text)))))
 
 (defun call-with-each-name (function text)
-  "Call FUNCTION with name, start and end of each name in TEXT, Lisp, outside strings and comments."
+  "Call FUNCTION with name, start and end of each name in TEXT that is not in a string or comment."
   (loop with i = 0
         while (< i (length text))
         do (let ((skipped (string-or-comment-end text i)))
@@ -155,7 +155,7 @@ names. EXAMPLES are the examples found, the last first."
         when name collect name))
 
 (defun examples-of-page (page)
-  "Return the examples on PAGE, in order. Names in sequence share the blocks that follow."
+  "Return the examples on PAGE, in order. Names without a block between them share the next blocks."
   (let ((state (make-example-search :page page :heading (list 1 "" (page-title page)))))
     (flet ((wanted-p (token)
              (or (heading-level token) (member (tag-name token) '("p" "pre") :test #'equal))))
@@ -173,7 +173,7 @@ names. EXAMPLES are the examples found, the last first."
 ;;; Choosing.
 
 (defparameter *longest-example* 30
-  "The largest number of lines of a block that is shown for a name which merely occurs there.")
+  "The largest number of lines of a block that is shown for a name that only occurs in the block.")
 
 (defun names-of-kind (example kind)
   "Return the names in EXAMPLE of KIND: :TYPED at the prompt, :CALLED in Lisp, or :WRITTEN in Lisp."
@@ -183,8 +183,8 @@ names. EXAMPLES are the examples found, the last first."
     (:written (if (example-lisp-p example) (example-words example) '()))))
 
 (defun examples-for (name kind examples)
-  "Return those of EXAMPLES that are about NAME, a string, and true. If there are none, return a
-list of the shortest example that has NAME among its NAMES-OF-KIND for KIND, and NIL."
+  "Return two values: the EXAMPLES that are about the string NAME, and true. If there are none,
+return a list of the shortest example that has NAME among its NAMES-OF-KIND for KIND, and NIL."
   (flet ((having (reader)
            (remove-if-not (lambda (example)
                             (member name (funcall reader example) :test #'string=))

@@ -55,7 +55,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
     ("src/host/README.md" "host.html" "SBCL's internals" :inside)
     ("src/readings.md" "readings.html" "How the manual of 1992 is read" :inside)
     ("cli/manual/README.md" "about.html" "About this manual" :about))
-  "Lists (source file title part) of pages. Other README.md files are pages titled by headings.")
+  "Lists (source file title part) of pages. Other README.md files take their titles from headings.")
 
 (defun project-root () (asdf:system-relative-pathname "ars-magna" ""))
 

@@ -120,7 +120,7 @@ return the address of its page, or of the first page."
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
-  "Return TOKEN, of PAGE. If TOKEN is a picture, its address becomes that of the manual's copy."
+  "Return TOKEN of PAGE; if TOKEN is a picture, with the address of the manual's copy."
   (if (tag-named-p "img" token)
       (set-tag-attribute "src" (manual-address (attribute-value "src" token) page book) token)
       token))

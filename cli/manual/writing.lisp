@@ -119,7 +119,7 @@
   (or named-p (<= (count #\Newline (example-text example)) *longest-example*)))
 
 (defun examples-of-entry (entry examples)
-  "Return those of EXAMPLES that are for ENTRY, and true if they name the entry."
+  "Return two values: the EXAMPLES for ENTRY, and true if they name the entry."
   (let ((chapter (entry-chapter entry)))
     (examples-for (entry-key entry)
                   (cond ((eq :prompt chapter) :typed)

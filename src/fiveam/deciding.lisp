@@ -24,7 +24,7 @@
       :passed))
 
 (defun verdict (successes trials most rate level)
-  "Return :PASSED, :FAILED or, if more trials are needed, NIL, for SUCCESSES successes in TRIALS
+  "Return :PASSED, :FAILED, or NIL if more trials are needed, for SUCCESSES successes in TRIALS
 trials. MOST is the largest number of trials."
   (or (early-verdict successes trials rate level)
       (and (= trials most) (final-verdict successes trials rate level))))

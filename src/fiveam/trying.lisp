@@ -22,8 +22,8 @@ Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN; and at mo
 ;;; An experiment for a form.
 
 (defun experiment-parameters (parameters operator)
-  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM requires. OPERATOR is the
-operator whose argument PARAMETERS is, for errors."
+  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM requires. Errors say that
+PARAMETERS is an argument of OPERATOR."
   (unless (and (proper-list-p parameters)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
     (reject-argument operator 'parameters parameters "lists (name value)"))
@@ -154,8 +154,8 @@ worker, run only one trial."
     (form &rest options
           &key robots (seed 1) parameters clean (limit +default-tick-limit+)
           until then rate step journal trace)
-  "Run again, in this thread, the trial with SEED of a check of FORM by IS-SUCCESS-RATE. A failed
-check prints a form (repeat-trial ...); the arguments besides SEED are those of the check.
+  "Repeat a trial of a check by IS-SUCCESS-RATE in this thread: the trial of FORM with SEED. A
+failed check prints a form (repeat-trial ...); the arguments besides SEED are those of the check.
 
   (repeat-trial (run-plan 'fetch-thing '((:color blue)) '((109 24)))
     :robots marvin :seed 7 :parameters ((motion-noise* 0.2)))

@@ -17,7 +17,7 @@
 
 (addition chart-map)
 (defun chart-map (chart)
-  "Return the map of which CHART is a chart."
+  "Return the map of CHART."
   (terrain-map (chart-terrain chart)))
 
 (defmethod print-object ((chart chart) stream)
@@ -92,9 +92,9 @@ OPERATOR unless POINT is inside the map."
 
 (addition bar-cell)
 (defun bar-cell (chart point &optional cost)
-  "Mark the cell of CHART with POINT, a PT or a list (x y), as one that cannot be crossed. With
-COST, from 0 to 1e6, the cell can be crossed, but a metre in it costs COST more. The new mark
-replaces earlier marks of the cell. Return CHART. Signals WRONG-ARGUMENT."
+  "Make the cell of CHART that contains POINT, a PT or a list (x y), impossible to cross. With COST,
+from 0 to 1e6, the cell can be crossed, but a metre in it costs COST more. The new mark replaces
+earlier marks of the cell. Return CHART. Signals WRONG-ARGUMENT."
   (check-argument bar-cell chart (chart-p chart) "a chart")
   (check-argument bar-cell cost (or (null cost) (and (realp cost) (<= 0 cost 1000000)))
                   "a cost from 0 to 1e6, or NIL for a cell that cannot be crossed")
@@ -106,8 +106,8 @@ replaces earlier marks of the cell. Return CHART. Signals WRONG-ARGUMENT."
 
 (addition free-cell)
 (defun free-cell (chart point)
-  "Remove what BAR-CELL has set for the cell of CHART with POINT, a PT or a list (x y). Return
-CHART. Signals WRONG-ARGUMENT."
+  "Remove what BAR-CELL has set for the cell of CHART that contains POINT, a PT or a list (x y).
+Return CHART. Signals WRONG-ARGUMENT."
   (check-argument free-cell chart (chart-p chart) "a chart")
   (set-extra-cost chart (node-of-point 'free-cell chart point) nil)
   chart)
@@ -138,7 +138,7 @@ cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT.
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
 (defconstant +nodes-kept+ 2000000
-  "The largest total number of nodes in the fields that a terrain keeps, if more than two fields.")
+  "The largest number of nodes in all fields that a terrain keeps; two fields are always kept.")
 
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
@@ -170,7 +170,7 @@ cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT.
           (chart-field chart) own)))
 
 (defun field-for-goal (chart goal)
-  "Return the field with its goal in the node GOAL, for CHART as it is now."
+  "Return the field with its goal in the node GOAL, for the current state of CHART."
   (cond ((null (chart-barred chart)) (shared-field (chart-terrain chart) goal))
         (t (unless (and (chart-field chart) (= goal (field-goal (chart-field chart))))
              (copy-shared-field chart goal))

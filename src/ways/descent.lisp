@@ -109,9 +109,9 @@ near a wall."
 
 (declaim (inline best-point-on-side))
 (defun best-point-on-side (ahead aside drop cost)
-  "Return the position, from 0 to 1, of the best point of a side of a square, for a start that is
-AHEAD metres in front of the side and ASIDE metres along it. A metre on the way to the side costs
-COST. The cost to the goal is lower by DROP at the end of the side than at its beginning."
+  "Return the best point of a side of a square, as a position from 0 to 1, for a start that is AHEAD
+metres in front of the side and ASIDE metres along it. A metre on the way to the side costs COST.
+The cost to the goal is lower by DROP at the end of the side than at its beginning."
   (declare (type double-float ahead aside drop cost))
   (cond ((<= drop 0d0) (clamp aside 0d0 1d0))
         ((>= drop cost) 1d0)
@@ -181,7 +181,7 @@ COST. The cost to the goal is lower by DROP at the end of the side than at its b
 ;;;; Drawing a way
 
 (defconstant +straight-cost-ratio+ 1.02d0
-  "The largest ratio of a straight piece's cost to that of the steps replaced. This saves turns.")
+  "The highest cost ratio of a straight line to the steps that it replaces. This saves turns.")
 
 (defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
   "A growing way: its last vertex (X,Y), end (END-X,END-Y), cost SINCE the last vertex, and POINTS."
@@ -215,7 +215,7 @@ if the line is not free, or costs more than LIMIT. If LEAVING, the line may begi
 (declaim (inline go-straight-p extend-polyline))
 (defun go-straight-p (polyline field x y limit last)
   "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
-If LAST, the line is the last of a way, which may end as near to a wall as the first may begin."
+If LAST, it is the last line of a way and may end as near to a wall as a first line may begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
     (or (< (free-line-cost field from-x from-y x y limit (first-line-p polyline)) +barred+)

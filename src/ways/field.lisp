@@ -126,7 +126,7 @@ and CELLS are the cells of the terrain, which must not change."
 (declaim-final field)
 
 (defun make-field (terrain goal)
-  "Return a new field of TERRAIN with its goal in the node GOAL. No other total is known yet."
+  "Return a new field of TERRAIN with its goal in the node GOAL. Only GOAL's total is known yet."
   (ensure-memory (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
@@ -269,7 +269,7 @@ and CELLS are the cells of the terrain, which must not change."
              (set-draft field node draft)))))
 
 (defun compute-total (field node)
-  "Compute all totals up to NODE's in FIELD. Return NODE's total, +BARRED+ if there is no way."
+  "Compute the totals of FIELD up to NODE's total. Return that total, +BARRED+ if there is no way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))

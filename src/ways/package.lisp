@@ -1,7 +1,7 @@
 ;;;; package.lisp -- the ways layer: how to get from one point of a map to another.
 
 (ars-magna.host:define-package :ars-magna.ways
-  (:documentation "Search of ways through a map, at any angle, which keep away from walls and avoid
+  (:documentation "Finds ways through a map, at any angle, that keep away from walls and avoid
 barred cells. Changed cells are repaired at little cost. The algorithm is Field D* of Ferguson and
 Stentz (2006). The layer uses walls and places, but neither robots nor things.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)

@@ -53,7 +53,7 @@ never modified" :writable)
   "A lock that is held while a terrain is made, so that no other thread makes the same terrain.")
 
 (defconstant +terrains-kept+ 8
-  "The number of terrains of one map, with different clearances and costs, that are kept.")
+  "The number of terrains that are kept for one map, with different clearances and costs.")
 
 (defun discard-all-fields ()
   "Discard the fields of all terrains. Fields can be computed again."
@@ -61,7 +61,7 @@ never modified" :writable)
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
 (defun ensure-memory (cells octets)
-  "Signal MISUSE unless CELLS times OCTETS bytes are free. Discard all fields if this frees enough."
+  "Signal MISUSE unless CELLS times OCTETS bytes are free. First discard all fields if necessary."
   (let ((all (* cells octets)))
     (unless (or (heap-room-p all)
                 (progn (discard-all-fields) (heap-room-p all)))
@@ -99,8 +99,8 @@ never modified" :writable)
         (incf index)))))
 
 (defun offsets-within (clearance columns)
-  "Return a list of (dx offset) for the cells around a wall whose middles are nearer to the wall's
-cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of the wall's cell."
+  "Return a list of (dx offset) for the cells with middles nearer to the cell of a wall than
+CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's cell."
   (flet ((gap (d) (max 0 (- (abs d) 1/2))))
     (loop with radius = (ceiling clearance)
           for dy from (- radius) to radius
@@ -167,8 +167,8 @@ cell than CLEARANCE. OFFSET is the difference of the numbers of the cell and of 
     terrain))
 
 (defun terrain-for-map (map clearance costs)
-  "Return the terrain of MAP as it is now, for CLEARANCE, in metres, and COSTS, a list of (name
-cost), with double-float costs. Equal arguments return the same terrain while it is kept."
+  "Return the terrain of the current state of MAP, for CLEARANCE in metres and COSTS, a list of
+(name cost) with double-float costs. Equal arguments return the same terrain while it is kept."
   (or (known-terrain map clearance costs)
       (with-lock (**terrains-lock**)
         (or (known-terrain map clearance costs)

@@ -12,8 +12,8 @@
        (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
 
 (defun nearest-free-middle (chart x y)
-  "Return, as two values, the middle of the cell nearest to (X,Y) that can be crossed; NIL if there
-is no such cell within +FREE-POINT-DISTANCE+ columns and rows."
+  "Return the middle of the nearest cell to (X,Y) that can be crossed, as two values; NIL if there
+is none within +FREE-POINT-DISTANCE+ columns and rows."
   (loop with least = nil and best-x = nil and best-y = nil
         for column from (- (floor x) +free-point-distance+) to (+ (floor x) +free-point-distance+)
         do (loop for row from (- (floor y) +free-point-distance+)
@@ -67,8 +67,8 @@ map. CHART may be a map or a map's name. Signals WRONG-ARGUMENT."
       (eql number (aref places (+ x (* y width)))))))
 
 (defun points-of-way (chart x y goal-x goal-y until turns)
-  "Return a list of the points of the way on CHART from (X,Y) to (GOAL-X,GOAL-Y), both free, without
-its first point; () if there is no way. UNTIL and TURNS are arguments of TRACE-WAY."
+  "Return a list of the points after (X,Y) on the way to (GOAL-X,GOAL-Y) on CHART; () if there is no
+way. Both points are free. UNTIL and TURNS are arguments of TRACE-WAY."
   (let* ((field (field-for-goal chart (node-at chart goal-x goal-y)))
          (total (find-total field (node-at chart x y))))
     (when (< total +barred+)
