@@ -39,8 +39,8 @@ that fits DESCRIPTION. ME is the robot's reckoning. Return true. Fails with :NOT
 
 (def-interp-proc fetch-thing (description places
                               &key start (camera (widest-camera)) (hand 0) (bin 0))
-  "Look at PLACES, points of the map, for a thing that fits DESCRIPTION, stow it in BIN, return to
-START and put the thing on the floor there. START is the robot's position, a list (x y heading); the
+  "Find a thing that fits DESCRIPTION at PLACES, points of the map, stow it in BIN, return to START
+and put the thing on the floor there. START is the robot's position, a list (x y heading); the
 default is the true position. If the thing is in the hand or in BIN already, because an earlier
 errand was interrupted, the robot brings that thing. Return the estimated position at the end, a
 point. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
@@ -64,11 +64,11 @@ point. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
 
 (def-interp-proc tidy-room (descriptions places
                             &key start (camera (widest-camera)) (hand 0) (limit 20))
-  "Collect things near PLACES, points of the map: those that fit the first of DESCRIPTIONS into the
-first storage bin, and so on. START is the robot's position, a list (x y heading); the default is
-the true position. The robot first drops what it holds. It stops after LIMIT things, or after a
-whole round without a thing. Things that are kicked about meanwhile are searched for again. Return
-how many things were stowed."
+  "Collect things near PLACES, points of the map. Things that fit the first of DESCRIPTIONS go into
+the first storage bin, and so on. START is the robot's position, a list (x y heading); the default
+is the true position. The robot first drops what it holds. It stops after LIMIT things, or after a
+whole round without a thing. The robot searches again for things kicked about meanwhile. Return how
+many things were stowed."
   (check-points 'tidy-room 'places places)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

@@ -58,7 +58,7 @@ Return a local designator of this thing, or NIL."
   (reckon me))
 
 (def-interp-proc approach-thing (me camera designator description &key (attempts 6))
-  "Drive the robot of the reckoning ME, guided by CAMERA, to DESIGNATOR, which fits DESCRIPTION. If
+  "Drive the robot of the reckoning ME to DESIGNATOR, which fits DESCRIPTION, guided by CAMERA. If
 the track is lost, search again. Return the estimated position. Fails with :NOT-REACHED after
 ATTEMPTS attempts, or if the search finds nothing."
   (let ((target designator) (there nil) (attempt 0))
@@ -78,9 +78,9 @@ ATTEMPTS attempts, or if the search finds nothing."
     (reckon me)))
 
 (def-interp-proc visit-things (me camera description &key (candidates 3))
-  "Look round from the position of the robot of the reckoning ME for something that fits
-DESCRIPTION, drive to it and check it from there. If the thing does not fit, try another thing, at
-most CANDIDATES in all. Return a local designator of a thing that fits, or NIL."
+  "Look round for something that fits DESCRIPTION, drive the robot of the reckoning ME to it and
+check it from there. If the thing does not fit, try another thing, at most CANDIDATES in all. Return
+a local designator of a thing that fits, or NIL."
   (let ((found (if (look-for-things camera :local description)
                    (confirm-thing camera description)
                    nil)))

@@ -147,14 +147,14 @@ error code, or NIL when the robot is there."
 ;;; Whole ways.
 
 (defun widest-of (robot)
-  "Return the camera of ROBOT with the widest field of view, or NIL if it has none."
+  "Return ROBOT's camera with the widest field of view, or NIL if ROBOT has no camera."
   (let ((cameras (coerce (robot-cameras robot) 'list)))
     (and cameras
          (reduce (lambda (a b) (if (> (camera-field-of-view b) (camera-field-of-view a)) b a))
                  cameras))))
 
 (defun widest-camera ()
-  "Return the index of the plan's robot's camera with the widest field of view."
+  "Return the index of the camera that has the widest field of view on the plan's robot."
   (camera-index (widest-of (rpl-robot))))
 
 (def-interp-proc take-step-of-way (me camera step)

@@ -66,9 +66,9 @@ metres; NIL if there is no way."
     (if (confirm-thing camera description) t nil)))
 
 (def-interp-proc find-from-here (me camera description &key (candidates 3))
-  "Look round from the position of the robot of the reckoning ME for something that fits
-DESCRIPTION, and drive to it. If the thing does not fit, try another thing, at most CANDIDATES in
-all. Return true if a thing was found."
+  "Look round for something that fits DESCRIPTION, and drive the robot of the reckoning ME to it. If
+the thing does not fit, try another thing, at most CANDIDATES in all. Return true if a thing was
+found."
   (let ((found nil))
     (n-times candidates UNTIL found
       (let ((seen (look-round camera description)))
@@ -137,10 +137,10 @@ for each of PLACES. Return the estimated metres driven. Fails with :NOT-FOUND."
 
 (def-interp-proc search-by-chance (description places
                                    &key (rounds 10) start (camera (widest-camera)))
-  "Visit random ones of PLACES, points of the map, and look round from each with CAMERA for
-something that fits DESCRIPTION. Stop next to the thing. There are at most ROUNDS visits for each of
-PLACES. START is the robot's position, a list (x y heading); the default is the true position.
-Return the estimated metres driven. Fails with :NOT-FOUND."
+  "Visit random PLACES, points of the map, and look round from each with CAMERA for something that
+fits DESCRIPTION. Stop next to the thing. There are at most ROUNDS visits for each of PLACES. START
+is the robot's position, a list (x y heading); the default is the true position. Return the
+estimated metres driven. Fails with :NOT-FOUND."
   (search-places description places #'random-place 'go-and-look rounds start camera))
 
 (def-interp-proc search-nearest (description places

@@ -38,7 +38,7 @@
              (some (lambda (room) (in-wall-of-room-p x y room)) *ward-rooms*)))))
 
 (defun ward-seen-p (x y)
-  "True if the scanner has seen the pixel (X, Y), neither behind walls nor in the cupboard."
+  "True if the scanner has seen the pixel (X, Y), which is not behind walls or in the cupboard."
   (and (in-box-p x y '(8 8 121 91))
        (not (in-box-p x y '(113 67 119 79)))))
 

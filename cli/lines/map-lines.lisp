@@ -34,7 +34,7 @@ BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE ac
     (and (realp datum) (integer-if-whole datum))))
 
 (defun map-region-options (numbers)
-  "Return the options of TEXT-MAP for NUMBERS, a typed radius or region, or none."
+  "Return the options of TEXT-MAP for NUMBERS: a typed radius, a typed region, or an empty list."
   (case (length numbers)
     (0 '())
     (1 (unless (whole-p (first numbers))

@@ -91,7 +91,7 @@ Signals BAD-LINE if the line waits for RESUME. INBOX lists the requests that wai
 ;; As reading 204 says.
 (define-line "REPEAT" (session (num count "how often") (cmd :line "a command, with its arguments"))
     (:general)
-    "Run the command CMD NUM times, each time after the one before has completed. In a trial,
+    "Run the command CMD NUM times, each time after the previous run has completed. In a trial,
 commands do not wait for each other."
   (loop repeat num
         until (session-over-p session)

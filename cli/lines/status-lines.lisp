@@ -122,8 +122,8 @@
     (:seeing)
     "Show the robot's state: position, last change of position (real and estimated), heading, speed,
 turning speed, what its cameras see now, the last place sensed, its designators, the commands in
-progress and who issued them, the last interruption, and the cost of thinking if that was changed.
-A line tells if no ticks pass now. In Lisp: (status)."
+progress and who issued them, the last interruption, and the cost of thinking if it was changed. A
+line tells if no ticks pass now. In Lisp: (status)."
   (let ((robot (session-robot)))
     (while-still (or (report-status-object session robot)
                      (progn (write-status (status robot))

@@ -25,7 +25,7 @@
               (string= "" (result-error result)) (result-error result))))
 
 (defun failed-trial-lines (bad check)
-  "Return lines about the first *MOST-FAILURES-LISTED* of the unsuccessful results BAD of CHECK."
+  "Return lines about up to *MOST-FAILURES-LISTED* of BAD, the unsuccessful results of CHECK."
   (append (loop for result in bad
                 repeat *most-failures-listed*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)

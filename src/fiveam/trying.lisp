@@ -57,7 +57,7 @@ PARAMETERS is an argument of OPERATOR."
                                 robots))))
     (unless (and (proper-list-p names) names (every #'symbolp names))
       (reject-clause operator form
-                     "an option :robots, with the name of a robot or a list of names of one map"))
+                     "an option :robots, with the name of a robot or a list of robots of one map"))
     names))
 
 (defun parameters-form (operator parameters)
