@@ -91,7 +91,7 @@
 
 (define-condition doubtful-definition (definition-warning style-warning)
   ()
-  (:documentation "A definition in a compiled file may be mistaken: it refers to something
+  (:documentation "A definition in a compiled file may have a mistake: it refers to something
 undefined, or has an unused part. This is a style warning, so compiling does not fail."))
 
 (defun format-for-author (control arguments)
@@ -103,8 +103,8 @@ undefined, or has an unused part. This is a style warning, so compiling does not
   (warn 'definition-warning :text (format-for-author control arguments)))
 
 (defun warn-of-style (control &rest arguments)
-  "Warn, as WARN-OF-DEFINITION does, of a definition that may be intended. In a compiled file the
-warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts are not compiled.)"
+  "Like WARN-OF-DEFINITION, but the author may have intended the definition as it is. In a compiled
+file the warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts are not compiled.)"
   (warn (if *compile-file-truename* 'doubtful-definition 'definition-warning)
         :text (format-for-author control arguments)))
 
@@ -170,7 +170,7 @@ names KNOWN and suggests the most similar of the names MEANT."
 ;;;; Refusing to exit a Lisp that is shared with other code
 
 (defvar *exit-refusal* nil
-  "The text of the error that EXIT signals, while code must not exit this Lisp; else NIL.")
+  "While code must not exit this Lisp, the text of the error that EXIT signals; else NIL.")
 
 (defun exit-unless-refused (function &rest arguments)
   "Apply FUNCTION, which exits this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."

@@ -65,7 +65,7 @@
   (characters-hash (string name) #'upper-code))
 
 (defun make-dice (seed &optional (purpose ""))
-  "Return dice for PURPOSE, a string designator, that depend only on PURPOSE and the integer SEED."
+  "Return dice that depend only on the integer SEED and on PURPOSE, a string designator."
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-bits (logxor (mix-bits (ldb (byte 64 0) seed)) (text-hash purpose)))))
 
@@ -81,7 +81,7 @@
 
 (addition chance)
 (defun chance (probability dice)
-  "True with PROBABILITY. A PROBABILITY of 0 or less, or of 1 or more, rolls no dice. Signals
+  "True with PROBABILITY. No dice are rolled if PROBABILITY is 0 or less, or 1 or more. Signals
 WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
   (check-argument chance probability (quantity-p probability) "a probability, from 0 to 1")
   (let ((probability (double probability)))
@@ -115,7 +115,7 @@ to 2^53, the range in which every integer is a double-float."
 
 (addition roll-element)
 (defun roll-element (sequence dice)
-  "Return an element of SEQUENCE, each equally likely. Signals WRONG-ARGUMENT if SEQUENCE is empty."
+  "Return a random element of SEQUENCE. Signals WRONG-ARGUMENT if SEQUENCE is empty."
   (check-argument roll-element sequence (and (typep sequence 'sequence) (plusp (length sequence)))
                   "a sequence that is not empty")
   (elt sequence (roll-index (length sequence) dice)))
@@ -146,8 +146,8 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
         (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
 (defgeneric digest-identity (object digest)
-  (:documentation "Add to DIGEST the data that identify OBJECT; if there are none, the contents of
-OBJECT. Return DIGEST."))
+  (:documentation "Add to DIGEST the data that identify OBJECT. If no data identify OBJECT, add its
+contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their

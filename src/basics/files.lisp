@@ -66,7 +66,7 @@ file is and which function reads it; else return NIL."
          (third entry))))
 
 (defun other-kind-of-file-p (file kind)
-  "True if FILE exists, is not empty and does not begin like a file of KIND, or cannot be read."
+  "True if FILE exists, unless it can be read and is empty or begins like a file of KIND."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
@@ -83,8 +83,8 @@ file is and which function reads it; else return NIL."
 ;;;; Replacing a file, or explaining why that is impossible
 
 (defun path-to-write (file)
-  "Return the absolute path of FILE, for writing; if FILE is a link, that of its target. Signals an
-error if the path cannot be that of a regular file, or is write-protected."
+  "Return the absolute path of FILE, for writing; if FILE is a link, the path of its target. Signals
+an error if the path cannot name a regular file, or if the file is write-protected."
   (when (wildcard-name-p file) (error *wildcard-text*))
   (check-name-decodable file)
   (when (dangling-link-p file)
@@ -120,8 +120,8 @@ error, FILE is unchanged."
     (truename path)))
 
 (defun write-failure-text (trouble)
-  "Return a text that says why a file could not be written, from the error TROUBLE. The text has the
-system's words, without the names of Lisp streams and temporary files."
+  "Return a text that says why a file could not be written, from the error TROUBLE. The text is the
+system's message, without the names of Lisp streams and temporary files."
   (let* ((text (one-line-text trouble))
          (end (search ": " text :from-end t))
          (words (and end (subseq text (+ 2 end)))))

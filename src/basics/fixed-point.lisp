@@ -94,7 +94,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
     (list (first parts) (/ (second parts) (first parts)))))
 
 (defconstant +least-mantissa+ #x3FE6000000000000
-  "The bits of 0.6875. Mantissas go from 0.6875 to 1.375: exponents K are 0 for numbers near 1.")
+  "The bits of 0.6875. Mantissas go from 0.6875 to 1.375, so K is 0 for numbers near 1.")
 
 (defun mantissa-row-center (row)
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
@@ -140,7 +140,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
          (aref ,cells ,count)))))
 
 (defmacro define-cell-function (name (&rest arguments) &body body)
-  "Define NAME, a function of a vector of ARGUMENTS that stores the value of BODY in the last cell."
+  "Define the function NAME of a vector of ARGUMENTS, in whose last cell it stores BODY's value."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))
@@ -154,8 +154,8 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 
 (defmacro check-number (operator place)
   "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be converted to a
-double-float. Functions of DEFINE-CELL-FUNCTION reject infinities themselves, because an inline
-check would box the double-float."
+double-float. Functions defined by DEFINE-CELL-FUNCTION reject infinities themselves, because an
+inline check would box the double-float."
   `(check-argument ,operator ,place (or (typep ,place 'double-float) (finite-p ,place))
                    +number-text+))
 
@@ -191,7 +191,7 @@ check would box the double-float."
 
 (declaim (inline product-error))
 (defun product-error (a b product)
-  "Return the exact difference between A times B and PRODUCT, which is A times B, rounded (Dekker)."
+  "Return A times B, exactly, minus PRODUCT, the rounded product of A and B (Dekker)."
   (declare (type double-float a b product))
   (let* ((a-head (upper-bits a)) (a-tail (- a a-head))
          (b-head (upper-bits b)) (b-tail (- b b-head)))
@@ -201,7 +201,7 @@ check would box the double-float."
              (- (* a-head b-head) product))))))
 
 (defconstant +rounding-shift+ 6755399441055744d0
-  "1.5 times 2^52: added, then subtracted, it rounds a double-float up to 2^51 to a whole number.")
+  "1.5 times 2^52. Adding and then subtracting it rounds a double-float up to 2^51 to an integer.")
 
 (declaim (inline round-to-whole))
 (defun round-to-whole (number)

@@ -20,7 +20,7 @@
 ;;; roll makes SBCL renew the words. A copy of such words means the same.
 
 (defconstant +position-index+ 2
-  "The index of the word of a random state that holds the position of the next word to read.")
+  "The index, among the words of a random state, of the position of the next word to read.")
 (defconstant +first-word-index+ (1+ +position-index+))
 (defconstant +end-of-words+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
@@ -28,7 +28,7 @@
 filled.")
 
 (defun mark-seeded (words seed)
-  "Store SEED and the mark in WORDS of a random state, filled from SEED when SBCL renews them."
+  "Store SEED and the mark in WORDS, to be filled from SEED when SBCL renews the random state."
   (declare (type random-words words))
   (setf (aref words +position-index+) +end-of-words+
         (aref words +first-word-index+) seed)
@@ -58,7 +58,7 @@ filled.")
              (when filled-p (fill-if-marked words))
              state)))
     (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
-  "True if a random state can be filled at its first roll, as this SBCL renews its words.")
+  "True if this SBCL renews a random state's words at its first roll, so they can be filled then.")
 
 (defun seed-state (state short)
   "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."
@@ -102,7 +102,7 @@ is seeded with the integers SEED and TICK."
 
 (declaim (inline begin-tick-dice))
 (defun begin-tick-dice (dice seed tick)
-  "Prepare DICE for TICK of a world with the integer SEED."
+  "Prepare DICE for TICK of a world whose seed is the integer SEED."
   (declare (type tick-dice dice) (type fixnum tick))
   (setf (tick-dice-seed dice) seed
         (tick-dice-tick dice) tick
@@ -131,8 +131,8 @@ is seeded with the integers SEED and TICK."
 
 ;; The state itself is changed, because calls of users' code bind the variable again.
 (defun reseed-random-state (seed &optional (state *random-state*))
-  "Seed STATE, the random state that programs use by CL:RANDOM, with the integer SEED. Does nothing
-in code that changes a world, which uses *TICK-DICE*."
+  "Seed STATE, the random state that programs use through CL:RANDOM, with the integer SEED. In code
+that changes a world, do nothing: such code uses *TICK-DICE*."
   (unless *tick-dice* (reseed state seed)))
 
 ;;; In files. SBCL does not check the words of a random state, so those from a file are checked.

@@ -41,7 +41,7 @@ SYMBOL is an addition to the manual."
   "True while the simulator is being loaded. Later definitions belong to users and get no marks.")
 
 (defun mark-names (names addition-p)
-  "Mark and export NAMES, symbols or lists (symbol face...). An addition remains an addition."
+  "Mark and export NAMES, symbols or lists (symbol face...). An addition keeps its mark."
   (when *marking-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
@@ -82,8 +82,8 @@ the state of a run must be changed by functions that the journal records."
     (and mark (mark-addition-p mark))))
 
 (defun addition-text (text)
-  "Return TEXT, the documentation of an addition to the manual. If TEXT does not say so, add a last
-line that says so, and remove a reference to a chapter of the manual."
+  "Return TEXT, the documentation of an addition to the manual. If TEXT lacks the sentence that says
+this, add it as the last line, and remove a reference to a chapter of the manual."
   (let ((sentence "An addition to the manual."))
     (if (search sentence text)
         text
@@ -117,13 +117,13 @@ line that says so, and remove a reference to a chapter of the manual."
         do (setf (documentation function 'function) text)))
 
 (defun reader-text (slot text)
-  "Return the documentation of the reader of SLOT, a symbol, made from TEXT, which describes SLOT."
+  "Return documentation for the reader of the slot named SLOT. TEXT describes the slot's contents."
   (if (ends-with-subseq "-P" (symbol-name slot))
       (format nil "True if ~A." text)
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "Return an alist of the texts of PREDICATE and CONSTRUCTORS, lists (symbol [arguments] [text])."
+  "PREDICATE and CONSTRUCTORS are (symbol [arguments] [text]). Return an alist (symbol . text)."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -145,7 +145,7 @@ of the slot's name, returns the reader's name."
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return a list of the arguments of each option KEY in OPTIONS; if none, a list of DEFAULT."
+  "Return a list: the arguments of each option KEY in OPTIONS; if there is none, only DEFAULT."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 
@@ -181,9 +181,9 @@ of the slot's name, returns the reader's name."
 
 (defmacro define-record (name-and-options documentation &body slots)
   "Define a structure and document its slots. NAME-AND-OPTIONS is as in DEFSTRUCT; documentation may
-follow a constructor or predicate. There is a copier only if an option says so.
-A slot is (name default type [\"what is in it\"] mark...). The reader's documentation is \"Return
-what is in it\", or \"True if ...\" if the name ends in -P. The marks are
+follow a constructor or predicate. There is a copier only if an option names one. A slot is (name
+default type [\"what is in it\"] mark...). The reader's documentation is \"Return what is in it\",
+or \"True if ...\" if the name ends in -P. The marks are
   :writable  if the slot can be set;
   :export    if other layers use the reader;
   :addition  if users use the reader (see ADDITION).

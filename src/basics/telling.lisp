@@ -18,7 +18,7 @@
     (cons "a list with elements") (list "a list") (symbol "a symbol")
     (hash-table "a hash table") (array "an array") (sequence "a list, vector or string")
     ((or function symbol) "a function") (stream "a stream") (pathname "a path"))
-  "Lists (type words). A message names the first type in this list that the wrong value is not of.")
+  "Lists (type words). A message names the first type that the wrong value does not have.")
 
 (defparameter *arithmetic-texts*
   '((division-by-zero "A number is divided by 0.")
@@ -33,7 +33,7 @@
 (defparameter *compiler-phrases*
   '("Argument is neither a positive integer" "Invalid function name" "malformed property list"
     "is not a string designator")
-  "Parts of the texts of type errors that only some versions of SBCL use.")
+  "Parts of texts that only some versions of SBCL use in type errors.")
 
 ;; A type without elements, such as that of the indices of an empty vector, is part of any other.
 (defun common-type-text (datum type)
@@ -44,8 +44,8 @@
             return words)))
 
 (defun integer-range (type)
-  "Return the least and the greatest integer of TYPE, (integer LEAST GREATEST) or (mod N), and true.
-A missing limit is NIL. For other types, return NIL three times."
+  "For TYPE (integer LEAST GREATEST) or (mod N), return its least and greatest integers, and true. A
+missing limit is NIL. For other types, return NIL three times."
   (flet ((bound (bound step)
            (cond ((integerp bound) bound)
                  ((and (consp bound) (integerp (first bound))) (+ (first bound) step)))))
@@ -150,7 +150,7 @@ Return NIL if TYPE is no range of integers, or DATUM is no integer."
 ;;; A condition may report a circular list, or an object that cannot be printed.
 
 (defmacro printing-briefly (() &body body)
-  "Run BODY, which makes text for people, with deep, long and circular data abridged."
+  "Run BODY, which makes text for people. Deep, long and circular data are abridged."
   `(printing-text ()
      (let ((*print-circle* t) (*print-length* 100) (*print-level* 20) (*print-pretty* nil))
        ,@body)))
@@ -205,7 +205,7 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
                  trouble))))
 
 (defun reading-trouble (condition)
-  "Return a text, from CONDITION, that says why Lisp text cannot be read, without names of streams."
+  "Return the text of CONDITION, which says why Lisp text cannot be read, without names of streams."
   (let* ((cause (cause-of-reading-trouble condition))
          (text (cond ((encoding-trouble cause))
                      ((typep cause 'simple-condition)
@@ -242,7 +242,7 @@ printed form, or an empty text if it cannot be printed."
         finally (return text)))
 
 (defun failing-report-text (condition trouble beginning)
-  "Return a text: the report of CONDITION wrote BEGINNING and then failed with the error TROUBLE."
+  "Return a text for CONDITION, whose report wrote BEGINNING and failed with the error TROUBLE."
   (let ((why (or (simulator-error-text trouble)
                  (ignore-errors (format-briefly nil "~A" trouble))
                  ;; Its text may contain CONDITION, which cannot be printed.
@@ -270,7 +270,7 @@ printed form, or an empty text if it cannot be printed."
         (failing-report-text condition trouble (get-output-stream-string out))))))
 
 (defun simulator-error-text (condition)
-  "Return the simulator's text for CONDITION, a Lisp error, the same in each SBCL version; or NIL."
+  "Return the simulator's text (the same for each SBCL) for CONDITION, a Lisp error; or NIL."
   (cond ((typep condition 'storage-condition) (storage-error-text condition))
         ((and (typep condition 'end-of-file) (typed-input-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
@@ -291,7 +291,7 @@ printed form, or an empty text if it cannot be printed."
 
 (defun coordinate-text (number)
   "Return NUMBER, a coordinate in metres, as text, rounded to a tenth of a millimetre: a typed 23.2
-is 23.2, not 23.200000762939453. Numbers closer to 0 than half of that have an exponent."
+is 23.2, not 23.200000762939453. Numbers closer to 0 than 0.00005 have an exponent."
   (let ((text (string-right-trim "0" (format nil "~,4F" number))))
     (cond ((< 0 (abs number) 5d-5)
            (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))

@@ -38,7 +38,7 @@
     (or (< code 32) (<= 127 code 159) (<= #x202A code #x202E) (<= #x2066 code #x2069))))
 
 (defun escape-controls (text)
-  "Return TEXT with control characters, but not newlines and tabs, as ^ and a letter, or as ?."
+  "Return TEXT. Replace control characters, except newlines and tabs, by ^ and a letter, or by ?."
   (if (some #'control-character-p text)
       (with-output-to-string (stream)
         (loop for char across text
@@ -52,7 +52,7 @@
 ;;; Lines of limited length, broken between words.
 
 (defun line-end-position (text width)
-  "Return the end position of the first line of TEXT, which has at most WIDTH characters."
+  "Return the position at which to break TEXT after a first line of at most WIDTH characters."
   (flet ((last-place (character)
            (position character text :end (1+ width) :from-end t :start 1)))
     (cond ((<= (length text) width) (length text))
@@ -178,7 +178,7 @@ shows.")
     (prin1-to-string (without-packages (abridged datum)))))
 
 (defun text-as-typed (datum)
-  "Return DATUM, such as a symbol, as users type it in lower case, with bars (|) if necessary."
+  "Return DATUM, such as a symbol, as text to type: in lower case, with bars (|) if necessary."
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
@@ -202,7 +202,7 @@ the text says so."
 ;;; `red' read in the user's package is the `red' of the definition.
 
 (defun name-string (name)
-  "Return the name of NAME, a symbol or string, in upper case."
+  "Return NAME, a symbol or string, as a string in upper case."
   (string-upcase (string name)))
 
 (defun equal-names-p (a b)
@@ -218,8 +218,8 @@ the text says so."
   (or (eq a b) (equal-names-p a b)))
 
 (defun value-equal (a b)
-  "True if A and B are the same attribute value: symbols by name, numbers by value, lists by
-both (reading 38)."
+  "True if A and B are the same attribute value: symbols of the same name, equal numbers, or lists
+of such values (reading 38)."
   (cond ((eq a b) t)
         ((and (symbolp a) (symbolp b)) (and a b (same-name-p a b)))
         ((and (numberp a) (numberp b)) (= a b))
@@ -245,7 +245,7 @@ both (reading 38)."
                            (+ i j)))))))))
 
 (defun swapped-letters-p (a i b j)
-  "True if the two characters before I in A are those before J in B the other way round."
+  "True if the two characters before I in A are the two before J in B, in reverse order."
   (and (< 1 i) (< 1 j)
        (char-equal (char a (- i 1)) (char b (- j 2)))
        (char-equal (char a (- i 2)) (char b (- j 1)))))
@@ -281,7 +281,7 @@ do not sound alike. (SISE may be a misspelling of SIZE, but SIDE is another word
 
 (defun misspelling-p (a b)
   "True if the name A may be a misspelling of the different name B. They differ by one letter, or by
-two if both are long. In short names, and at the beginning, a different letter must sound alike."
+two if both are long. In short names, and at the beginning, the two letters must sound alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
          (or (similar-letters-p (char a 0) (char b 0))
@@ -292,7 +292,7 @@ two if both are long. In short names, and at the beginning, a different letter m
 ;;; Natural order of names: box 2 before box 10.
 
 (defun first-name-part (text start)
-  "Return the number or else the character at START in TEXT, and the position after it."
+  "Return the number at START in TEXT, or else the character there, and the position after it."
   (let ((end (or (position-if-not #'digit-char-p text :start start) (length text))))
     (if (> end start)
         (values (parse-integer text :start start :end end) end)

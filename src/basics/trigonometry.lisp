@@ -37,7 +37,7 @@ to SIZE. Bind REST to SIZE minus the argument of that row."
   (+ x (+ low (* x square (polynomial square -1/6 1/120)))))
 
 (defun small-versine (x low square)
-  "Return 1 less the cosine of X + LOW."
+  "Return 1 minus the cosine of X + LOW."
   (declare (type double-float x low square))
   (+ (* x low) (* square (polynomial square 1/2 -1/24 1/720))))
 
@@ -85,8 +85,8 @@ to SIZE. Bind REST to SIZE minus the argument of that row."
       (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1))))
 
 (defun reduce-large-angle (operator angle)
-  "Return three values for ANGLE, at least 1 in size: the number of right angles in ANGLE, and two
-numbers whose sum is the rest. OPERATOR rejects infinities."
+  "Return three values for ANGLE, whose absolute value is at least 1: the number of right angles in
+it, and two numbers whose sum is the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
     (let* ((places (- +inverse-pi-bits+ exponent))
@@ -126,7 +126,7 @@ sum is the rest. Error messages name OPERATOR."
 
 (declaim (inline sine-of-right-angles))
 (defun sine-of-right-angles (quarters high low)
-  "Return the sine of an angle: QUARTERS right angles, an integer, plus HIGH + LOW radians."
+  "Return the sine of QUARTERS (an integer) right angles plus HIGH + LOW radians."
   (declare (type (signed-byte 32) quarters) (type double-float high low))
   (let ((value (if (logtest 1 quarters) (cosine-near-zero high low) (sine-near-zero high low))))
     (if (logtest 2 quarters) (- value) value)))

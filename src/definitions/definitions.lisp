@@ -43,7 +43,7 @@ string after the name; or NIL."
     (and (stringp text) text)))
 
 (defun title (operator name)
-  "Return the name in messages of the definition of NAME by OPERATOR, such as \"defmap yard\"."
+  "Return the text by which messages name OPERATOR's definition of NAME, such as \"defmap yard\"."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
@@ -64,8 +64,8 @@ string after the name; or NIL."
                 (or (line-in-text (source-file source) clause (location-in-text clause)) line))))))
 
 (defun reject-clause (definition clause expected &optional (place (clause-location clause)))
-  "Signal MALFORMED-DEFINITION about CLAUSE, a part of DEFINITION, a string such as \"defmap
-watson\". PLACE is the file and line of CLAUSE. EXPECTED describes a valid clause."
+  "Signal MALFORMED-DEFINITION about CLAUSE. DEFINITION is a string such as \"defmap watson\". PLACE
+is the file and line of CLAUSE. EXPECTED describes a valid clause."
   (when *definition* (setf (defining-clause *definition*) clause))
   (error 'malformed-definition :definition definition :clause clause :expected expected
                                :place place))
@@ -127,9 +127,9 @@ with VALUE in place of the rejected clause."
                          value (definition-text definition))))))
 
 (defun call-with-definition-restarts (function replace)
-  "Call FUNCTION, with restarts for an error in the current definition. SKIP-DEFINITION leaves it
-out. READ-AGAIN and USE-VALUE call REPLACE with another form: read again from its file, or with
-another clause. The restarts remain available for that form."
+  "Call FUNCTION, with restarts for an error in the current definition. SKIP-DEFINITION skips the
+definition. READ-AGAIN calls REPLACE with the form that is now in its file, USE-VALUE with a form
+that has another clause. The new form has these restarts, too."
   (let ((definition *definition*))
     (flet ((instead (choose)
              (call-with-definition-restarts
@@ -169,7 +169,7 @@ another clause. The restarts remain available for that form."
                            name (string-right-trim "." (text-of-condition condition))))))
 
 (defun call-reporting-mistakes (function blame)
-  "Call FUNCTION. For each error of a user's form (no ARS-MAGNA-ERROR), call BLAME with the error."
+  "Call FUNCTION. For each error other than an ARS-MAGNA-ERROR, call BLAME with the error."
   (handler-bind ((error (lambda (condition)
                           (unless (typep condition 'ars-magna-error)
                             (funcall blame condition)))))
@@ -196,11 +196,11 @@ another clause. The restarts remain available for that form."
     (and (find-part (lambda (part) (and (consp part) (minusp (decf left)))) form) t)))
 
 (defun has-quote-p (form)
-  "True if a part of FORM is quoted, as a mistake where nothing is evaluated."
+  "True if a part of FORM is quoted. Where nothing is evaluated, that is a mistake."
   (and (find-part (lambda (part) (typep part '(cons (eql quote)))) form) t))
 
 (defun rejected-form (condition)
-  "Return a form that signals CONDITION, a MALFORMED-DEFINITION, again when the form is evaluated."
+  "Return a form whose evaluation signals CONDITION, a MALFORMED-DEFINITION, again."
   (when *compile-file-truename*
     (call-at-source-location (malformed-definition-clause condition)
                              (lambda () (warn-of-definition "~A" condition))))

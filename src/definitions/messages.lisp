@@ -22,10 +22,10 @@ an addition.")
   '(member :report :signal :collect))
 
 (defvar *request-origin* nil
-  "The origin, as of NOTE-OF-ASKER, of the request that this thread's messages are about; or NIL.")
+  "The origin, a value of NOTE-OF-ASKER, of the request this thread's messages are about; or NIL.")
 
 (defvar *reported-robot* nil
-  "The name of the robot that messages queued in this thread report about, or NIL.")
+  "The name of the robot that messages queued in this thread are about, or NIL.")
 
 (defvar *reporting-run* (constantly nil)
   "A function that returns the run to which messages queued in this thread belong, or NIL.")
@@ -103,7 +103,7 @@ listener, errors are shown at once"))
     (setf (message-queue-unsignalled queue) message)))
 
 (defun unreported-error-p (message)
-  "True if MESSAGE is about an error or mistake in users' code not reported in another way."
+  "True if MESSAGE is about an error or mistake in users' code that is not reported in another way."
   (and (not (message-told-p message))
        (or (message-cause message) (eq :error (message-kind message)))))
 
@@ -148,7 +148,7 @@ listener, errors are shown at once"))
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
-  "Queue a warning of the items STUFF, shown at once if the queue has no listener. Return nothing."
+  "Queue a warning of the items STUFF. If the queue has no listener, show it now. Return nothing."
   (queue-items :warning stuff :notable-p :at-once))
 
 (public message-set)
@@ -214,7 +214,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return the text of MESSAGE, made to begin with the name of the command it is about."
+  "Return the text of MESSAGE, preceded by the name of the command it is about, if missing."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)

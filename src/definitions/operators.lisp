@@ -71,13 +71,13 @@ given, the text also says what is wrong with VALUE."
 
 (defun perhaps-degrees-p (angle)
   "True if the user perhaps meant ANGLE, in radians, as degrees: if ANGLE is more than a full turn,
-but not a whole number of degrees. (An angle computed with a unit or pi mostly is whole degrees.)"
+but not a whole number of degrees. (An angle computed with a unit or pi usually is a whole number.)"
   (and (< (* 2 pi) (abs angle))
        (let ((degrees (* angle (/ 180 pi))))
          (< 1d-6 (abs (- degrees (fround degrees)))))))
 
 (defun degrees-advice (angle)
-  "Return a text that says how many turns ANGLE, in radians, is, and what to write for degrees."
+  "Return a text that says how many turns ANGLE radians are, and what to write for degrees."
   (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
     (format nil "~A radians are ~,1F full turns. If ~A degrees are meant, write (* ~A (/ pi 180)), ~
                  or at the prompt ~A deg."

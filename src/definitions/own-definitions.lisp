@@ -11,7 +11,7 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun snapshot-entry (entry)
-  "Return a list of ENTRY, a copy of its object, and a list of its variable's value (NIL: unbound)."
+  "Return a list: ENTRY, a copy of its object, and a list with its variable's value (NIL: unbound)."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
@@ -40,7 +40,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
     other))
 
 (defvar *variables-to-restore* '()
-  "Variables of layers, such as that of the current simulation, restored by WITH-OWN-DEFINITIONS.")
+  "Variables that WITH-OWN-DEFINITIONS restores. Each layer adds its own.")
 
 (defun call-with-own-definitions (function)
   "Call FUNCTION, then undo its definitions; see WITH-OWN-DEFINITIONS."
@@ -60,7 +60,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
 (addition with-own-definitions)
 (defmacro with-own-definitions (() &body body)
   "Run BODY. Then undo all definitions, redefinitions and undefinitions by BODY (of maps, robots,
-kickers and so on), even after an error. Made for tests. Return the values of BODY. A run of a map
-that BODY redefines ends; start another with SIMULATOR. Definitions are shared by all threads. If
-another thread is inside this macro, it signals MISUSE."
+kickers and so on), even after an error. Made for tests. Return the values of BODY. If BODY
+redefines the map of a run, that run ends; start another with SIMULATOR. Definitions are shared by
+all threads. If another thread is inside this macro, it signals MISUSE."
   `(call-with-own-definitions (lambda () ,@body)))

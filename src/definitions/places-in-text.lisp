@@ -17,7 +17,7 @@
   i)
 
 (defvar *last-element* '("" 0 0 nil)
-  "A cache, because elements are requested in order: the arguments of the last call of
+  "A cache, because callers request elements in order: the arguments of the last call of
 ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modified.")
 
 (defun element-bounds (text start number)
@@ -39,8 +39,8 @@ ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modi
               (values begin end))))))))
 
 (defun bounds-of-location (text location)
-  "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT. If
-that form cannot be found, return those of the smallest form around it."
+  "Return the start and end in TEXT of the form at LOCATION, a value of LOCATION-IN-TEXT. If that
+form cannot be found, return the start and end of the smallest form around it."
   (destructuring-bind (position . numbers) location
     (let ((start (skip-blanks text position)) (end (length text)))
       (dolist (number numbers (values start end))
@@ -61,7 +61,7 @@ value of LOCATION-IN-TEXT. Return NIL if both fail."
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
-  "Return the number of the line on which the form begins that LOAD is reading from STREAM."
+  "LOAD is reading a form from STREAM. Return the number of the line on which the form begins."
   (let ((text (file-text (pathname stream))))
     (line-number text (skip-blanks text (min (form-start stream) (length text))))))
 

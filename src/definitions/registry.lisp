@@ -67,7 +67,7 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol that the string NAME, such as \"P:NAME\", denotes as is or upcased; or NIL."
+  "Return the symbol that the string NAME, such as \"P:NAME\", names, if necessary upcased; or NIL."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
@@ -187,7 +187,7 @@ NAME is a symbol of Common Lisp or of the simulator."
                           (registry-text registry) (entry-name new) other file))))
 
 (defun choose-variable (name old registry)
-  "Return the variable for a definition of NAME: that of the entry OLD; or NAME, if unused; or NIL."
+  "Return the variable for a definition of NAME: OLD's variable; or NAME, if unused; or NIL."
   (cond ((and old (entry-variable old) (boundp (entry-variable old))) (entry-variable old))
         (t (usable-variable name (registry-text registry)))))
 
@@ -206,9 +206,9 @@ nothing and return NIL."
 
 (defun register (registry name object &key variable (value object) before)
   "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. If VARIABLE is true, set the
-special variable NAME to VALUE, if NAME can be a special variable and is unused. A new entry is the
-last, or precedes that of the object BEFORE. Return OBJECT and the object that it replaces, or NIL.
-If several threads define NAME at a time, each replaces a different object."
+special variable NAME to VALUE, if NAME can be a special variable and is unused. A new entry is
+added at the end, or before the entry of the object BEFORE. Return OBJECT and the object that it
+replaces, or NIL. If several threads define NAME at a time, each replaces a different object."
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (choose-variable name old registry)))
@@ -258,10 +258,10 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
 
 (addition undefine)
 (defun undefine (kind name)
-  "Remove the definition of NAME as KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
-MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. The variable of the definition
-becomes unbound. Existing worlds do not change. Return NAME. Signals UNKNOWN-NAME; MISUSE for some
-definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  "Remove the definition of NAME as KIND, one of MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
+KICKER, MANIPULATION, ROBOT, PLAN, POLICY and GOAL, a symbol of any package. The variable of the
+definition becomes unbound. Existing worlds do not change. Return NAME. Signals UNKNOWN-NAME; MISUSE
+for some definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))

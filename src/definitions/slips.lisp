@@ -40,7 +40,7 @@ sentence that says how to use this symbol; or NIL if there is no such symbol."
                       (package-name package))))))))
 
 (defun accessible-symbols (package test)
-  "Return the symbols accessible in PACKAGE, without Common Lisp's, with TEST true, sorted by name."
+  "Return, sorted, the symbols accessible in PACKAGE for which TEST is true, but not Common Lisp's."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
       (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))

@@ -35,7 +35,7 @@ belongs to the last call; it is replaced, never modified."
         (first (setf (first cell) (cons (funcall function) keys))))))
 
 (defmacro caching ((&rest keys) &body body)
-  "Return the value of BODY, or of the last call if KEYS, strings and other objects, are the same."
+  "Return the value of BODY. If KEYS are the same as in the last call, return its value instead."
   (apply #'form-calling 'call-caching body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
@@ -133,8 +133,8 @@ EQUAL-P is true if the form equals FORM."
   (caching (text form) (find-definitions-in-text text form)))
 
 (defun position-of-definition (positions ordinal)
-  "Return the element of POSITIONS, lists of DEFINITION-POSITIONS, whose form is unchanged; else
-number ORDINAL; else the first. Return its number as a second value."
+  "Return an element of POSITIONS, a value of DEFINITION-POSITIONS, and its number: the element
+whose form is unchanged; else number ORDINAL; else the first."
   (let ((number (or (position-if #'third positions)
                     (and ordinal (< ordinal (length positions)) ordinal)
                     0)))
@@ -163,8 +163,8 @@ than once, prefer the first position after that of the last search."
           (look forms)))))
 
 (defun word-position (text form start end)
-  "Return the position in TEXT, between START and END, of FORM, if it is an atom, or of its first
-element; or NIL."
+  "Return the position of FORM, if it is an atom, or of its first element, in TEXT between START and
+END; or NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))
@@ -213,8 +213,8 @@ return the line of the definition, or NIL."
               thereis (form-position text part start end)))))
 
 (defun read-definition-again (file form ordinal)
-  "Return the present version, in FILE, of the definition FORM, number ORDINAL among those of the
-same operator and name. Signals MISUSE if it is not found."
+  "Return the definition FORM as it now is in FILE. FORM is number ORDINAL among the definitions
+with its operator and name. Signals MISUSE if it is not found."
   (let* ((text (read-file-into-string (native-path file)))
          (place (position-of-definition (definition-positions text form) ordinal)))
     (unless place
@@ -252,7 +252,7 @@ same operator and name. Signals MISUSE if it is not found."
         finally (return (length text))))
 
 (defun code-without-forms (operator text)
-  "Return TEXT, of CODE-WITHOUT-COMMENTS, without the top-level forms with the operator OPERATOR."
+  "Return TEXT, a value of CODE-WITHOUT-COMMENTS, without the top-level forms of OPERATOR."
   (with-output-to-string (stream)
     (loop with i = 0
           while (< i (length text))
@@ -294,8 +294,8 @@ leave out the top-level forms with that operator."
     (t (first (ensure-list (type-of atom))))))
 
 (defun add-atom-to-digest (atom digest known)
-  "Add ATOM, a part of a form, to DIGEST. For an uninterned symbol, add its number of first
-occurrence, which the table KNOWN holds."
+  "Add ATOM, a part of a form, to DIGEST. For an uninterned symbol, add the ordinal of its first
+occurrence, kept in the table KNOWN."
   (digest-add digest (atom-type-name atom))
   (typecase atom
     (symbol (digest-add digest (if (symbol-package atom)
