@@ -84,7 +84,7 @@
   ((text :initarg :text :reader definition-warning-text))
   (:report (lambda (condition stream)
              (write-string (definition-warning-text condition) stream)))
-  (:documentation "A definition is valid, but perhaps not what its author meant."))
+  (:documentation "A definition is valid, but may not be what its author meant."))
 
 (setf (documentation 'definition-warning-text 'function)
       "Return the text of a DEFINITION-WARNING, a string.")
@@ -113,7 +113,7 @@ file the warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts a
   (if (symbolp name) (string-downcase name) name))
 
 (defun names-to-show (names)
-  "Return a list of texts: the first 12 of NAMES, and how many more there are."
+  "Return a list of texts: the first 12 of NAMES, and a text that says how many more there are."
   (let ((more (- (length names) 12)))
     (append (mapcar #'plain-name (subseq names 0 (min 12 (length names))))
             (when (plusp more) (list (format nil "and ~D more" more))))))
@@ -223,7 +223,7 @@ If TEXT is NIL, let EXIT exit again."
   (within-p value +largest+))
 
 (defun quantity-p (value)
-  "True if VALUE is a possible attribute value: a number from -1e15 to 1e15."
+  "True if VALUE, such as the value of an attribute, is a number from -1e15 to 1e15."
   (within-p value +largest-quantity+))
 
 (defun amount-p (value)

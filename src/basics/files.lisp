@@ -77,7 +77,7 @@ file is and which function reads it; else return NIL."
 (defun check-kind-of-file (file kind what)
   "Signal MISUSE if FILE exists, is not empty and is not of KIND, which the message calls WHAT."
   (when (other-kind-of-file-p file kind)
-    (reject-use "~A is no ~A, and remains unchanged. Give another name."
+    (reject-use "~A is no ~A. The file is unchanged; give another name."
                 (file-name-text file) what)))
 
 ;;;; Replacing a file, or explaining why that is impossible

@@ -130,7 +130,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
 (defmacro result-in-last-cell (function &rest numbers)
-  "Call FUNCTION with a vector of NUMBERS and a cell for the result. Return the result."
+  "Call FUNCTION with a vector of NUMBERS and a last cell for the result. Return the result."
   (with-gensyms (cells)
     (let ((count (length numbers)))
       `(let ((,cells (make-array ,(1+ count) :element-type 'double-float)))

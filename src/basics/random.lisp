@@ -98,7 +98,7 @@ is seeded with the integers SEED and TICK."
   (seeded-p nil boolean :writable))
 
 (defvar *tick-dice* nil
-  "The TICK-DICE for users' code that this thread calls; or NIL, to use *RANDOM-STATE*.")
+  "The TICK-DICE of users' code that this thread calls, or NIL if such code uses *RANDOM-STATE*.")
 
 (declaim (inline begin-tick-dice))
 (defun begin-tick-dice (dice seed tick)

@@ -165,7 +165,7 @@ that has another clause. The new form has these restarts, too."
   (let ((name (undefined-name-of condition)))
     (reject-clause (definition-text *definition*)
                    (or name (append (operator-and-name (defining-form *definition*)) (list +more+)))
-                   (format nil "forms that have values~:[~;, with a quote before names~] (~A)"
+                   (format nil "forms that can be evaluated~:[~;, with a quote before names~] (~A)"
                            name (string-right-trim "." (text-of-condition condition))))))
 
 (defun call-reporting-mistakes (function blame)

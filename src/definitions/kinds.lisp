@@ -24,7 +24,7 @@
   (initial nil function "the function that returns the slot's initial contents" :export)
   (reader nil function "the function of an object that returns the slot's contents" :export)
   (writer nil function
-          "the function of a value and an object that stores the value in the slot" :export))
+          "the function that stores a value in the slot of an object (value, object)" :export))
 
 (defun decisive-slot-p (slot)
   "True if SLOT has the role :STATE, or is a :FIXED slot that contains parts of the object."

@@ -144,7 +144,7 @@ listener, errors are shown at once"))
   (queue-items :warning stuff))
 
 (defun warn-notably (&rest stuff)
-  "Queue a warning of the items STUFF, shown at the end like an error if unread. Return nothing."
+  "Queue a warning of the items STUFF. If still unread at the end, show it then. Return nothing."
   (queue-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
@@ -214,7 +214,7 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
 (defun text-with-command (message)
-  "Return the text of MESSAGE, preceded by the name of the command it is about, if missing."
+  "Return the text of MESSAGE. Unless it begins with the name of its command, prepend the name."
   (let ((text (message-text message)) (name (message-about message)))
     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
         (format nil "~(~A~): ~A" name text)

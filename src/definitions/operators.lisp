@@ -63,7 +63,7 @@ given, the text also says what is wrong with VALUE."
 (define-argument-type 'truth (constantly t) "a boolean: NIL is false, anything else is true")
 (define-argument-type 'datum (constantly t) "anything")
 (define-argument-type 'name (lambda (value) (and value (typep value '(or symbol string))))
-  "a name, a symbol or string")
+  "a name: a symbol or string")
 (define-argument-type 'keyword #'keywordp "a keyword")
 (define-argument-type 'function #'functionp "a function")
 

@@ -36,7 +36,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
   (let ((other (compare-and-swap (symbol-value '*own-definitions-thread*) nil
                                  (current-thread))))
     (unless (member other (list nil (current-thread)))
-      (reject-use "Another thread is inside with-own-definitions. Only one may be at a time."))
+      (reject-use "Another thread is inside with-own-definitions. Wait for that thread."))
     other))
 
 (defvar *variables-to-restore* '()

@@ -172,7 +172,7 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
      (motion-noise* 0.1d0 "fraction of the speed" :noise (real 0 1)
       "The largest error of the distance driven in a tick. It also sets odometer intervals.")
      (robot-turn-max-error* 0.01d0 "fraction of the angle" :noise (real 0 1)
-      "How far the angle turned in a tick may be from the turn angle.")
+      "The largest error of the angle turned in a tick.")
      (robot-align-error-prob* 0.1d0 "probability" :noise (real 0 1)
       "The chance that aligning succeeds although the place type was sensed wrongly.")
      (robot-move-delay* 5 "ticks" :delay (integer 0 #.+largest+)
@@ -180,7 +180,7 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
      (robot-turn-delay* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long a turn takes to start.")
      (robot-align-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How many more ticks an alignment takes to start than a turn."))
+      "How many more ticks an alignment takes to start than a turn does."))
     ("Cameras"
      (camera-angle-max-error* 0.02d0 "radians" :noise (real 0 #.+largest+)
       "The largest error of a designator's angle and of a camera's report of its turn.")
@@ -224,7 +224,7 @@ beyond 30 m, even straight ahead, because an even number of rays has no ray in t
       "The chance that a search for things finds a thing that does not exist. The manual has false
 designators of things, but no parameter for them." :addition :digested)
      (pixel-error-range* 2.0d0 "substance units" :noise (real 0 #.+largest+)
-      "The largest usual error of a pixel's value. Errors are uniform between minus and plus that.")
+      "The largest usual error of a pixel's value, too high or too low. Errors are uniform.")
      (pixel-outlier-prob* 0.01d0 "probability" :noise (real 0 1)
       "The chance that a pixel has a random value in the map's range.")
      (no-sensor-error* nil "" :noise boolean

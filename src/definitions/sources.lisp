@@ -35,7 +35,7 @@ belongs to the last call; it is replaced, never modified."
         (first (setf (first cell) (cons (funcall function) keys))))))
 
 (defmacro caching ((&rest keys) &body body)
-  "Return the value of BODY. If KEYS are the same as in the last call, return its value instead."
+  "Return the value of BODY or, if KEYS are the same as in the last call, the value of that call."
   (apply #'form-calling 'call-caching body '(load-time-value (list '())) keys))
 
 ;;; Finding a form in a text.
@@ -198,7 +198,7 @@ return the line of the definition, or NIL."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
-  "Return how often WORD occurs in FILE, with comments, ignoring case; NIL if FILE is unreadable."
+  "Return how often WORD occurs in FILE or its comments, ignoring case; NIL if FILE is unreadable."
   (ignore-errors
     (loop with text = (text-of-file file)
           for start = (search word text :test #'char-equal)

@@ -43,7 +43,7 @@ of a plan. TEXT is the message on one line. Return nothing."
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
 
 (defun user-code-errors-in (queue run-p)
-  "Return USER-CODE-ERRORs, the oldest first, for errors in QUEUE of runs for which RUN-P is true."
+  "Return USER-CODE-ERRORs, the oldest first, for errors in QUEUE whose runs fulfil RUN-P."
   (let ((messages (with-queue (queue)
                     (reverse (message-queue-troubles queue)))))
     (loop for message in messages
@@ -116,7 +116,7 @@ the error; NIL if there was none."
         (and (not (eq :collect policy)) (unreported-error-p message)))))
 
 (defun show-unread-messages (queue &optional (wanted (constantly t)))
-  "Write to the error output the unread messages in QUEUE to be shown for which WANTED is true."
+  "Write to the error output the unread messages in QUEUE that must be shown and fulfil WANTED."
   (unless flush-all-errors*
     (let ((messages (remove-if-not (lambda (message)
                                      (and (shown-at-end-p message
@@ -172,7 +172,7 @@ the error; NIL if there was none."
 ;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "A pending question of the debugger of HOOK, or Lisp's own if NIL, for a restart of THREAD."
+  "A pending question to the user by the debugger of HOOK (NIL: Lisp's own): a restart for THREAD."
   (thread nil :read-only t)
   (hook nil :read-only t))
 
@@ -195,8 +195,8 @@ are called before the debugger asks for a restart, in the thread of the error.")
     (and inquiry (debugger-name (inquiry-hook inquiry)))))
 
 (defun end-inquiries (gone-p)
-  "Interrupt the threads whose debugger asks for a restart. In each, if GONE-P returns true, its
-debugger has disconnected, and the question ends."
+  "Interrupt the threads whose debugger asks for a restart. The question of a thread ends if GONE-P
+returns true there: its debugger has disconnected."
   (dolist (inquiry *inquiries*)
     (interrupt-thread (inquiry-thread inquiry)
                       (lambda ()
@@ -224,7 +224,7 @@ debugger has disconnected, and the question ends."
                             ((null hook) (invoke-debugger condition))))))
 
 (defun choose-restart-unasked (condition)
-  "Choose a restart of CONDITION without a debugger, ABORT for errors, else CONTINUE, and warn."
+  "Warn, and invoke a restart of CONDITION without a debugger: ABORT for errors, else CONTINUE."
   (let ((name (if (typep condition 'serious-condition) 'abort 'continue)))
     (warning-set "The debugger that asked for a restart has disconnected; " (string-downcase name)
                  " was chosen: " (one-line-text condition))

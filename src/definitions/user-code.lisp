@@ -155,8 +155,7 @@ part of. The run goes on."
  'stop-simulator "Report the error, leave your code and stop the live simulator.")
 
 (define-constant +leave+ "Report it and leave " :test #'string=
-  :documentation "The beginning of the report of the restart ABORT that a call of users' code
-establishes.")
+  :documentation "The beginning of the restart ABORT's report in a call of users' code.")
 
 (defun stoppable-p (condition)
   "True if the work of this thread can be stopped, regardless of CONDITION."

@@ -66,7 +66,7 @@ wrong keyword, or a form in place of a list. Return NIL if no argument is wrong.
                                (misfit-text parameter argument)))))))
 
 (defun warn-of-nisp-syntax (form)
-  "Warn if FORM has Nisp's syntax, such as !>robot.cameras, read as a symbol by Lisp's reader."
+  "Warn if FORM has a symbol such as !>robot.cameras, because Lisp's reader has read Nisp's syntax."
   (let ((slot (find-part (lambda (part)
                            (and part (symbolp part)
                                 (< 2 (length (symbol-name part)))

@@ -135,8 +135,8 @@
   (internal (:sb-kernel #:value-cell-set) cell value))
 
 (defun exit-cell-p (cell)
-  "True if CELL belongs to a block or tag that a closure can exit to, and the block was not exited.
-Such a cell holds a stack address: an integer too large for other uses."
+  "True if CELL belongs to a block or tag to which a closure can still exit. Such a cell holds a
+stack address: an integer too large for other uses."
   (typep (cell-value cell) '(integer #.(ash #x700000000000 -1) #.(ash #x7FFFFFFFFFFF -1))))
 
 (defun make-value-cell (value)

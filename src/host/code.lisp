@@ -110,7 +110,7 @@ other functions, constants and closed-over values. Numbers, characters and strin
 ;;; The source files of functions. SBCL does not know the file of forms that are evaluated singly.
 
 (defvar *write-dates* (make-hash-table :test 'equal :synchronized t)
-  "A table from the names of files whose forms were evaluated one by one to their write dates.")
+  "A table from file names to write dates, for files whose forms were evaluated one by one.")
 
 (defun evaluated-file-p (namestring)
   "True if NAMESTRING is the name of a file whose forms were evaluated one by one."
@@ -155,8 +155,8 @@ file at that time; NIL if FUNCTION was typed."
     (error () (ignore-errors (file-of-code function)))))
 
 (defun files-of-other-definitions (symbol)
-  "Return lists (file write-date), with values as of FUNCTION-FILE, for the definitions of SYMBOL as
-other things than a function."
+  "Return a list (file write-date), as for FUNCTION-FILE, for each definition of SYMBOL that is not
+a function."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
                       :structure :condition)
         append (loop for source in (ignore-errors
@@ -168,7 +168,7 @@ other things than a function."
 ;;; definitions are reported as declarations of that name, since no other type is unused.
 
 (defun add-definition-sources (function)
-  "Make Lisp report also the sources (file position operator) that FUNCTION lists for a symbol."
+  "Make Lisp also report the sources (file position operator) that FUNCTION lists for a symbol."
   (wrap-function 'sb-introspect:find-definition-sources-by-name
                  (lambda (original name type)
                    (append (funcall original name type)

@@ -89,8 +89,8 @@ next form. ENCAPSULATED-CONDITION returns the cause of CONDITION."
   "While deferred work is done: a list (form . location) of its form and the location in the text.")
 
 (defun source-location-at (path)
-  "Return the location, as LOCATION-IN-TEXT does, of the form with the source path PATH: a list of
-numbers, the innermost first. Return NIL if the location is unknown."
+  "Return the location, as LOCATION-IN-TEXT does, of the form with the source path PATH. PATH is a
+list of numbers, the innermost first. Return NIL if the location is unknown."
   (destructuring-bind (&optional top . numbers) (reverse path)
     (let* ((info (value-if-bound (compiler-variable #:*source-info*)))
            (positions (and info
@@ -101,7 +101,7 @@ numbers, the innermost first. Return NIL if the location is unknown."
 
 (defun compiler-location ()
   "Return the pathname of the file that is being compiled, and the location of the current form, as
-of LOCATION-IN-TEXT, or NIL if unknown. Return NIL if no file is being compiled."
+LOCATION-IN-TEXT returns it, or NIL. Return NIL if no file is being compiled."
   (let* ((context (and *compile-file-truename* (error-context)))
          (file (and context (internal (:sb-c #:compiler-error-context-file-name) context))))
     (when (pathnamep file)
@@ -143,7 +143,7 @@ attributes the warnings of FUNCTION to FORM. Outside of compiling and loading, d
 
 (defun call-as-compiler (function)
   "Call FUNCTION and report its warnings as those of the compiler. Return two values: whether there
-were warnings, and whether there were others than style warnings."
+were warnings, and whether any was worse than a style warning."
   (let ((warned nil) (failed nil))
     (with-compilation-unit ()
       (progv (list (compiler-variable #:*last-message-count*)

@@ -103,7 +103,7 @@ names, :macro with lists (name expander), :symbol-macro with (name expansion)."
 
 ;; Environments of a walk do not show that its variables shadow symbol macros.
 (defun expand-in-walk (form environment)
-  "Return the expansion, by one step, of FORM, a macro call in a code walk with ENVIRONMENT."
+  "Return FORM, a macro call in a code walk with ENVIRONMENT, expanded once."
   (let ((shadowing (remove :symbol-macro (variables-of-walk environment)
                            :key (lambda (name) (variable-kind name environment))
                            :test-not #'eq)))
@@ -117,8 +117,8 @@ names, :macro with lists (name expander), :symbol-macro with (name expansion)."
        (macro-function (first form) environment)))
 
 (defun walk-form (form environment visit)
-  "Return FORM with each subform replaced by the value of VISIT, called with the subform and its
-environment, outermost first. A replacement is visited in turn, unless VISIT returns true as its
+  "Return FORM with each subform, the outermost first, replaced by the value of VISIT, called with
+the subform and its environment. A replacement is visited in turn, unless VISIT returns true as its
 second value. A replacement gets the source location of the form that it replaces."
   (declare (type function visit))
   (let ((entered nil))
@@ -184,7 +184,7 @@ such as those of Common Lisp and of the simulator, cannot."
       (values (second arguments) (first arguments)))))
 
 (defun still-undefined-p (name kind)
-  "True if NAME is still undefined as KIND, a :FUNCTION or :VARIABLE."
+  "True if NAME is still undefined as KIND, :FUNCTION or :VARIABLE."
   (ecase kind
     (:function (not (fboundp name)))
     (:variable (not (or (boundp name) (known-variable-p name nil))))))
@@ -194,7 +194,7 @@ such as those of Common Lisp and of the simulator, cannot."
 ;;; Names of a locked package cannot be redefined by accident.
 
 (deftype lock-violation ()
-  "The type of the error that a name of a locked package would be redefined."
+  "The type of the error that is signalled when a name of a locked package would be redefined."
   'sb-ext:package-lock-violation)
 
 (defun locked-symbol (condition)

@@ -18,7 +18,7 @@
 ;;; In a native name no character is special, unlike * in a Lisp pathname.
 
 (defun native-name (path)
-  "Return the operating system's name of PATH, a pathname or string; NIL for NIL."
+  "Return the operating system's name of PATH, a pathname or string. If PATH is NIL, return NIL."
   (uiop:native-namestring path))
 
 (defun native-path (name)
@@ -57,7 +57,7 @@ true. ~ and ~/ are the home directory."
     (error () t)))
 
 (defun file-name-text (file)
-  "Return FILE, a pathname or string, as a native name for messages; an empty name as two quotes."
+  "Return the native name of FILE, a pathname or string, for messages; two quotes if it is empty."
   (let ((name (if (and (pathnamep file) (not (wildcard-name-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
@@ -93,7 +93,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
       (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun regular-file-p (path)
-  "True if PATH is a regular file: no directory, device, pipe. Signals an error if PATH is missing."
+  "True if PATH is a regular file: no directory, device or pipe. Signals an error if it is missing."
   (= sb-posix:s-ifreg
      (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
 
@@ -126,7 +126,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
         ((not (regular-file-p path)) "it is a directory or a device")))
 
 (defun check-name-decodable (path)
-  "Signal an error if the name PATH has bytes that are not valid text. (Different names of that sort
+  "Signal an error if the name PATH has bytes that are not valid text. (Several invalid names can
 look the same.)"
   (when (find +illegible+ (native-name path))
     (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
@@ -158,7 +158,7 @@ look the same.)"
     (handler-case (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o777)
       (sb-posix:syscall-error ()
         (unless (uiop:directory-exists-p path)
-          (error "~A cannot be made; give the name of a directory that can be"
+          (error "~A cannot be created; give the name of another directory"
                  (native-name path)))))))
 
 (defun make-new-directory (path)
@@ -194,11 +194,11 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
 ;;; and process, so files of killed processes can be recognized.
 
 (defun host-file-prefix ()
-  "Return the prefix of the names of temporary files of all processes on this computer."
+  "Return the prefix that this computer's processes use for names of temporary files."
   (format nil "ars-magna-~A-" (machine-instance)))
 
 (defun temporary-file-prefix ()
-  "Return the prefix of the names of temporary files of this process."
+  "Return the prefix that this process uses for names of temporary files."
   (format nil "~A~D-" (host-file-prefix) (process-id)))
 
 (defun abandoned-file-p (file)
@@ -219,7 +219,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
   (uiop:getenv name))
 
 (defun real-microseconds ()
-  "Return the real time, on which no result may depend, in microseconds since an arbitrary moment."
+  "Return the real time in microseconds since some moment. Results of runs must not depend on it."
   ;; Lisp's own clock has steps of 4000.
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
@@ -302,7 +302,7 @@ output as a string."
                                                   :external-format '(:utf-8 :replacement #\?)))
 
 (defun wait-for-input (stream seconds)
-  "Wait at most SECONDS; return true if STREAM, on a file descriptor, has input or is at its end."
+  "Wait at most SECONDS for input to STREAM, on a descriptor. Return true if it has input or ended."
   (or (listen stream)
       (internal (:sb-sys #:wait-until-fd-usable)
                 (internal (:sb-sys #:fd-stream-fd) stream) :input seconds)))
@@ -324,7 +324,7 @@ output as a string."
     (values (sb-alien:deref size 0) (sb-alien:deref size 1))))
 
 (defun char-width (char)
-  "Return the columns of CHAR on a terminal: combining accents 0, East Asian ones 2, others 1."
+  "Return how many terminal columns CHAR takes: 0 if combining, 2 if East Asian, 1 otherwise."
   (cond ((member (internal (:sb-unicode #:general-category) char) '(:mn :me :cf)) 0)
         ((member (internal (:sb-unicode #:east-asian-width) char) '(:w :f)) 2)
         (t 1)))

@@ -18,8 +18,8 @@
 
 (defvar *interrupt-deferral* nil
   "How this thread defers interrupts: NIL, not at all; :STRICTLY, everywhere; or a function
-with the arguments FUNCTION and WAITING-P. It calls FUNCTION with interrupts allowed; if WAITING-P
-is true, they are allowed only while SBCL waits.")
+with the arguments FUNCTION and WAITING-P. The function calls FUNCTION with interrupts allowed; if
+WAITING-P is true, only while SBCL waits.")
 
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()
@@ -142,7 +142,7 @@ values of the first form."
 ;;;; Time limits, and other conditions that are for callers
 
 (deftype time-limit ()
-  "The type of the condition that a form has exceeded its time limit, for example of WITH-TIMEOUT."
+  "The type of the condition signalled when a form exceeds its time limit, such as WITH-TIMEOUT's."
   'sb-ext:timeout)
 
 ;;; FiveAM signals failed checks and continues the test by the restart IGNORE-FAILURE. The caller of
@@ -175,7 +175,7 @@ thread. GIVE-UP may make a non-local exit."
 ;;;; Signals from the system
 
 (deftype user-interrupt ()
-  "The type of the condition that the user has pressed Ctrl-C."
+  "The type of the condition signalled when the user presses Ctrl-C."
   (internal-name :sb-sys '#:interactive-interrupt))
 
 (defun signal-user-interrupt ()

@@ -70,7 +70,7 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
 ;;; Because they are names, reloading a file adds none twice, and a redefined function takes effect.
 
 (defmacro define-event (name documentation)
-  "Define the variable NAME as an event, a list of listeners, called as DOCUMENTATION says."
+  "Define the variable NAME as an event, a list of listeners. DOCUMENTATION says when to call them."
   `(defvar ,name '() ,documentation))
 
 (defmacro add-listener (event listener)

@@ -31,14 +31,14 @@
 
 ;; The stack is scrubbed, because its old values would keep objects alive.
 (defun collect-garbage-early (octets)
-  "Collect garbage now, if otherwise a garbage collection would occur while new objects of OCTETS
-are allocated. A later collection would have to copy the new objects."
+  "Collect garbage now if a garbage collection would otherwise occur while OCTETS of new objects are
+allocated. A later collection would have to copy the new objects."
   (when (< (octets-before-collection) octets (sb-ext:bytes-consed-between-gcs))
     (scrub-stack)
     (sb-ext:gc)))
 
 (defun heap-room-p (octets)
-  "True if new objects of OCTETS fit on the heap. Collects garbage first if OCTETS is large."
+  "True if OCTETS of new objects fit on the heap. Collects garbage first if OCTETS is large."
   (flet ((enough-p () (< (+ (dynamic-usage) octets) (* 9/10 (heap-bytes)))))
     (or (< octets (/ (heap-bytes) 100))
         (enough-p)

@@ -38,7 +38,7 @@
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
 (defun call-if-free (lock function)
-  "Unless another thread holds LOCK, call FUNCTION holding it; return its value and true. Else NIL."
+  "Call FUNCTION holding LOCK, and return its value and true; NIL if another thread holds LOCK."
   (sb-thread:with-mutex (lock :wait-p nil)
     (return-from call-if-free (values (funcall function) t)))
   (values nil nil))
@@ -63,8 +63,8 @@ the terminal. Return true if SEMAPHORE was decremented. Call this function in a 
   (wait-on-semaphore semaphore seconds))
 
 (defun wait-while-serving (semaphore seconds)
-  "Wait on SEMAPHORE for SECONDS in all, by short waits between which this thread serves others. The
-time for serving others does not count. Return true if SEMAPHORE was decremented."
+  "Wait on SEMAPHORE for SECONDS in all, in short waits. Between them, this thread serves others.
+The time for serving others does not count. Return true if SEMAPHORE was decremented."
   (loop for left = seconds then (- left 0.2)
         thereis (wait-and-serve semaphore (min left 0.2))
         while (< 0.2 left)))
@@ -106,7 +106,7 @@ values. While this thread waits, it serves the front end and allows interrupts."
 
 ;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
 (defun report-unit-end (function left-p)
-  "Call FUNCTION to report that a compilation unit has ended; if LEFT-P is true, it was aborted.
+  "Call FUNCTION to report that a compilation unit has ended, or was aborted if LEFT-P is true.
 Report nothing if the unit was aborted because this Lisp exits."
   (unless (and left-p *exiting-p* (own-thread-p))
     (funcall function left-p)))
@@ -180,7 +180,7 @@ Else return NIL."
                                 (car *bound-names*)))
         (word (string-downcase name)))
     (unless (or (null entries) (find (current-thread) entries :key #'first))
-      (values (format nil "In this thread, ~A, ~A is the robot of the top level. The robot of ~
+      (values (format nil "In this thread (~A), ~A is the robot of the top level. The robot of ~
                            (with-simulation (~A) ...) is bound in ~A only. Pass it on in a ~
                            variable: (let ((robot ~A)) (make-thread (lambda () ... robot)))."
                       (thread-name (current-thread)) word word
