@@ -221,7 +221,7 @@
   (flet ((turn () (command:robot-turn rover 1)))
     (with-rover ()
       (let ((told (told-in-thread #'turn)) (again (told-in-thread #'turn)))
-        (is-true (has-words-p told "robot-turn is kept" "In this thread (helper), rover is the robot"
+        (is-true (has-words-p told "robot-turn is kept" "In this thread (helper), rover is the"
                               "(with-simulation (rover) ...)"
                               (base:thread-name (base:current-thread))
                               "(let ((robot rover)) (make-thread (lambda () ... robot)))")

@@ -21,7 +21,7 @@
   (:documentation "The root of all errors that ARS MAGNA signals."))
 
 (defmethod print-object :around ((condition ars-magna-error) stream)
-  "Print CONDITION to STREAM without control characters, as far as the report can be written."
+  "Print the report of CONDITION to STREAM, as far as possible, without control characters."
   (if *print-escape*
       (call-next-method)
       (let ((out (make-string-output-stream)))
@@ -241,7 +241,7 @@ If TEXT is NIL, let EXIT exit again."
 ;;;; Keywords
 
 (defun check-keywords (operator known options)
-  "Signal UNKNOWN-NAME if the list OPTIONS, passed to OPERATOR, has a keyword not among KNOWN."
+  "Signal UNKNOWN-NAME if the list OPTIONS, passed to OPERATOR, has a keyword that is not in KNOWN."
   (loop for (key) on options by #'cddr
         unless (or (member key known) (eq key :allow-other-keys))
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))

@@ -132,9 +132,9 @@ system's message, without the names of Lisp streams and temporary files."
 (defun overwrite-file (function file what
                        &key (check #'identity) kind
                          (remedy "give the name of a file that you may write"))
-  "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE, with the text REMEDY, if
-WHAT, such as \"the run\", cannot be written to FILE, or if FILE is of another known kind than KIND
-(see NOTE-KIND-OF-FILE). FILE is then unchanged."
+  "Call CALL-REPLACING-FILE with FUNCTION, FILE and CHECK. Signals MISUSE if FILE cannot be written
+(the message gives REMEDY), or is of another known kind than KIND (see NOTE-KIND-OF-FILE). Messages
+call the contents WHAT, such as \"the run\". FILE is then unchanged."
   (let ((advice (advice-on-file file kind)))
     (when advice
       (reject-use "~@(~A~) is not written to ~A: ~A. The file is unchanged; give another name."

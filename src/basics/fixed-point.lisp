@@ -160,7 +160,7 @@ inline check would box the double-float."
                    +number-text+))
 
 (defmacro polynomial (x &rest coefficients)
-  "Return the polynomial with COEFFICIENTS, the constant term first, at X (Horner's method)."
+  "Return the value at X of the polynomial with COEFFICIENTS, constant term first (by Horner)."
   (let ((first (coerce (first coefficients) 'double-float)))
     (if (rest coefficients)
         `(+ ,first (* ,x (polynomial ,x ,@(rest coefficients))))

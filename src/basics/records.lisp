@@ -50,13 +50,13 @@ SYMBOL is an addition to the manual."
           (register-mark (make-mark symbol (or faces (list (default-face symbol))) addition-p)))))))
 
 (defmacro public (&rest names)
-  "Mark NAMES, defined next, as names for users that the manual has. A name may be a list (name
-face...), with the packages, :ARS and :NISP, that export the name."
+  "Mark NAMES, which are defined next, as public names that the manual has. A name may be a list
+(name face...), with the packages, :ARS and :NISP, that export the name."
   `(mark-names ',names nil))
 
 (defmacro addition (&rest names)
-  "Mark NAMES, defined next, as names for users that the manual does not have. A name may be a list
-\(name face...), as for PUBLIC."
+  "Mark NAMES, which are defined next, as public names that the manual does not have. A name may be
+a list (name face...), as for PUBLIC."
   `(mark-names ',names t))
 
 (defvar *settable* '() "The public symbols whose functions users may SETF.")

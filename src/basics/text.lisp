@@ -61,7 +61,7 @@
           (t width))))
 
 (defun wrapped-text (text width)
-  "Return TEXT, a single line, wrapped: a list of lines of at most WIDTH characters. Lines break at
+  "Wrap TEXT, a single line. Return a list of lines of at most WIDTH characters. Lines break at
 no-break spaces only if they have no other space. No-break spaces become spaces."
   (loop with blanks = '(#\Space #\No-break_space)
         with rest = (string-trim blanks text)

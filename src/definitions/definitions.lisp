@@ -23,7 +23,7 @@ its file; NIL until it is looked up" :writable)
   "The definition that is being expanded or evaluated, or NIL.")
 
 (defun current-source ()
-  "Return the source of the current definition, or else of the form being loaded; NIL if typed."
+  "Return the source of the current definition, else of the form being loaded; NIL for typed forms."
   (if *definition*
       (defining-source *definition*)
       (source-of-current-form)))

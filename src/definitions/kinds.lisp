@@ -93,7 +93,7 @@ BASE and the kinds that include BASE count. Return NIL if no such kind has this 
 
 (declaim (inline slot-content))
 (defun slot-content (slot object)
-  "Return the contents of SLOT of OBJECT."
+  "Return the contents of SLOT in OBJECT."
   (funcall (kind-slot-reader slot) object))
 
 (defun object-slots (object &rest roles)
@@ -150,7 +150,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
   (let* ((parent (and parent
                       (or (kind-named parent)
                           (reject-clause-of-kind name (list :include parent)
-                                                 "a kind to include"))))
+                                                 "an existing kind after :include"))))
          (kind (make-kind name (append (and parent (kind-slots parent)) slots) parent)))
     (register *object-kinds* name kind)
     (setf (get name 'object-kind) kind)
@@ -190,7 +190,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
     (loop for group in groups
           do (unless (and (proper-list-p group)
                           (member (first group) '(:fixed :state :memory :scratch :link)))
-               (reject-clause-of-kind name group "(role slot...), with one of the roles of kinds"))
+               (reject-clause-of-kind name group "(:fixed/:state/:memory/:scratch/:link slot...)"))
              (dolist (slot (rest group))
                (check-kind-slot name slot known)
                (push (first slot) known)))))
@@ -235,7 +235,7 @@ To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-
   (multiple-value-bind (name include constructor) (kind-options name-and-options)
     (check-kind-form name include documentation groups)
     (unless (or (null include) (kind-named include) (find-class include nil environment))
-      (reject-clause-of-kind name (list :include include) "a kind to include"))
+      (reject-clause-of-kind name (list :include include) "an existing kind after :include"))
     (kind-definition name include constructor documentation groups)))
 
 (defun kind-definition (name include constructor documentation groups)

@@ -23,7 +23,7 @@ value. TROUBLE is NIL if TEXT says enough, or a function that returns a text abo
   name)
 
 (defun similar-argument-type (name)
-  "Return the name of an argument type of which NAME, a symbol, may be a misspelling; or NIL."
+  "Return the name of an argument type that the symbol NAME may misspell; or NIL."
   (find-if (lambda (known) (misspelling-p name known))
            (mapcar #'argument-type-name (all-argument-types))))
 

@@ -279,7 +279,7 @@ for some definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are s
 (defmacro define-registry (kind text &key object-p by-symbol fixed sealed synonyms aliases internal
                                        (finder (symbolicate 'find- kind))
                                        (lister (symbolicate 'all- kind 's)))
-  "Define the registry of KIND, a symbol. For the kind KICKER it is in the variable *KICKERS*, and
+  "Define the registry of KIND, a symbol. The registry of KICKER is in the variable *KICKERS*, and
 the functions FIND-KICKER and ALL-KICKERS (or the names FINDER and LISTER) search it. Users may call
 the functions unless INTERNAL is true. Messages name a definition with TEXT. Objects for which
 OBJECT-P is true can be passed in place of names. The other arguments are slots of REGISTRY."

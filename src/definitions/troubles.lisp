@@ -63,8 +63,8 @@ Otherwise the queue would keep finished runs from being garbage collected."
     (setf (message-queue-unsignalled queue) nil)))
 
 (defun take-unsignalled (queue)
-  "Take the first error that is to be signalled from QUEUE, and return it as a USER-CODE-ERROR, or
-NIL. Later errors now in QUEUE will not be signalled."
+  "Remove from QUEUE the first error that must be signalled. Return it as a USER-CODE-ERROR, or NIL.
+Later errors now in QUEUE will not be signalled."
   (when (message-queue-unsignalled queue)
     (with-queue (queue)
       (let ((message (shiftf (message-queue-unsignalled queue) nil)))

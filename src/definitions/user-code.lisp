@@ -142,8 +142,8 @@ again by itself, such as a kicker, return that function; else NIL.")
     nil))
 
 (defgeneric recurring-remedy (item)
-  (:documentation "Return a sentence that says how to stop the recurring code that ITEM names from
-being called. See RECURRING-CODE."))
+  (:documentation "Return a sentence that says how to end the calls of the recurring code that ITEM
+names. See RECURRING-CODE."))
 
 ;;; Calling.
 

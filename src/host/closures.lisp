@@ -17,7 +17,7 @@
     (internal (:sb-eval #:env-p) object))
 
   (defun environment-values (environment)
-    "Return the values of the variables and functions in ENVIRONMENT and those around it."
+    "Return the values of the variables and functions in ENVIRONMENT and its outer environments."
     (loop for each = environment then (internal (:sb-eval #:env-parent) each)
           while each
           append (mapcar #'cdr (internal (:sb-eval #:env-vars) each))

@@ -81,7 +81,7 @@ true. ~ and ~/ are the home directory."
       (native-name directory))))
 
 (defun replace-file (file by)
-  "Rename the file BY to FILE, and replace an existing FILE, atomically. FILE and BY are pathnames;
+  "Atomically rename the file BY to FILE, replacing an existing FILE. FILE and BY are pathnames;
 relative ones start in the BASE-DIRECTORY. Signals an error if the system refuses."
   (sb-posix:rename (system-name by) (system-name file))
   (values))

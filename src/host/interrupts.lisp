@@ -191,11 +191,11 @@ thread. GIVE-UP may make a non-local exit."
                           (funcall function))))
 
 (defun call-on-interrupt (function)
-  "When the user presses Ctrl-C, call FUNCTION, in any thread."
+  "Call FUNCTION, in an arbitrary thread, when the user presses Ctrl-C."
   (call-on-signal sb-posix:sigint function))
 
 (defun call-on-continuing (function)
-  "When this process continues after a stop, for example by Ctrl-Z, call FUNCTION, in any thread."
+  "Call FUNCTION, in an arbitrary thread, when this process continues after a stop, as by Ctrl-Z."
   (call-on-signal sb-posix:sigcont function))
 
 ;;; In some states Lisp can no longer handle a signal, so the system itself ends the process. (It

@@ -164,7 +164,7 @@ messages in other threads. Return the values of FUNCTION."
             until (swap-if-eq (car *bound-names*) entries (remove entry entries :test #'eq))))))
 
 (defun other-thread-run-text ()
-  "Return a text on how this thread can use another's run; NIL if no thread has bound a run."
+  "Return a text on how this thread can use another thread's run; NIL if no thread has bound a run."
   (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
     (and entry
          (format nil "The simulation of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is known to ~
