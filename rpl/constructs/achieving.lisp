@@ -106,8 +106,8 @@ matches, the end of the plan counts as success. (From CRAM and XFRM.)"
   "Find out whether GOAL holds, in a plan, by the matching DEF-GOAL of PERCEIVE. The plan of
 PERCEIVE should not change the world. GOAL is evaluated, such as `(on ,a ,b). Return whether GOAL is
 believed afterwards, by the matching DEF-GOAL of BELIEF. If no BELIEF matches, return the value of
-the plan of PERCEIVE. Fails with UNKNOWN-GOAL if no PERCEIVE matches, and if the plan of PERCEIVE
-fails. (From CRAM and XFRM, except for the return value.)"
+the plan of PERCEIVE. Fails with UNKNOWN-GOAL if no PERCEIVE matches. Also fails if the plan of
+PERCEIVE fails. (From CRAM and XFRM, except for the return value.)"
   (:like achieve)
   (:steps
    (begin

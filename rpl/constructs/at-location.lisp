@@ -7,7 +7,7 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
-  "The stays of one plan runner's tasks at places. The fluent STAYS has a list of the stays."
+  "The tasks of a plan runner that are busy at a place, as a list of STAYs in the fluent STAYS."
   (valve (make-valve 'whereabouts) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
@@ -32,7 +32,7 @@
                (remove stay (fluent-value (whereabouts-stays whereabouts))))))
 
 (defun no-other-stays (whereabouts)
-  "Return a fluent that is true while only the current task and the tasks around it stay."
+  "Return a fluent that is true while no task stays, except the current one and those around it."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
                   (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
@@ -94,8 +94,8 @@ attempts to return."))
   GO is plan text that brings the robot to PLACE. GO is skipped if the robot is at PLACE already.
   ATTEMPTS is how often the robot may go back to PLACE, by default 10.
 When the robot leaves PLACE, BODY evaporates, GO runs again and BODY starts again. A GO that does
-not lead to PLACE counts as an attempt. After ATTEMPTS, AT-LOCATION fails with LOCATION-LOST, which
-names PLACE. If GO fails, AT-LOCATION fails too.
+not lead to PLACE counts as an attempt. After ATTEMPTS attempts AT-LOCATION fails with
+LOCATION-LOST, which names PLACE. If GO fails, AT-LOCATION fails too.
 Several plans of one robot can use AT-LOCATION. Plans whose THERE is true run without driving. The
 others wait, in order of arrival, until no plan is at a place. (From CRAM, which asks its process
 modules instead of THERE and GO.)"

@@ -21,7 +21,7 @@
   +parked+)
 
 (define-construct par (&body branches)
-  "Run BRANCHES in parallel in a plan. PAR succeeds when all branches have, with the first value of
+  "Run BRANCHES in parallel in a plan. When all branches have succeeded, return the first value of
 the last form written. When one branch fails, PAR fails and evaporates the others (manual D.7)."
   (:manual)
   (:parts (branches simple-vector (branches-code branches (single-scope scope))))
@@ -53,8 +53,8 @@ that branch, or fails as it failed, and evaporates the others (manual D.4; readi
   (failure-of (make-condition 'composite-failure :failures (reverse failures)) task frame))
 
 (define-construct try-all (&body branches)
-  "Run BRANCHES in parallel in a plan. TRY-ALL succeeds as soon as one branch does, with its value,
-and evaporates the others. If all branches fail, TRY-ALL fails with a COMPOSITE-FAILURE."
+  "Run BRANCHES in parallel in a plan. As soon as one branch succeeds, TRY-ALL returns its value and
+evaporates the others. If all branches fail, TRY-ALL fails with a COMPOSITE-FAILURE."
   (:like par)
   (:steps
    (begin
@@ -126,8 +126,8 @@ has no dice, keep the order as written."
 ;;; For each element.
 
 (define-construct try-each-in-order ((variable sequence) &body body)
-  "Run BODY in a plan, with VARIABLE bound to one element of SEQUENCE after the other, until BODY
-succeeds. Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE-FAILURE."
+  "Run BODY in a plan for each element of SEQUENCE in turn, bound to VARIABLE, until BODY succeeds.
+Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE-FAILURE."
   (:like try-in-order)
   (:arguments sequence)
   (:parts (attempts simple-vector `(vector ,(each-body-code variable body scope)))
@@ -146,7 +146,7 @@ succeeds. Return the value of BODY. If BODY succeeds for no element, fail with a
           'simple-vector))
 
 (defun iteration-code (variable body scope)
-  "Return code for BODY in the environment of one turn, with its own VARIABLE and its own tags."
+  "Return code for BODY in the environment of a turn. Each turn has its own VARIABLE and tags."
   (let ((tags (tags-in body)))
     (binding-body-code body (tagged-scope (variable-scope (single-scope scope)
                                                           (cons variable tags))

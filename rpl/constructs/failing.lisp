@@ -39,7 +39,7 @@
     (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
 
 (defun failure-specifier-p (type)
-  "True if TYPE can be the type of a clause of HANDLE-FAILURE: a symbol, or (or TYPE...)."
+  "True if a clause of HANDLE-FAILURE may have the type TYPE: a symbol, or (or TYPE...)."
   (if (consp type)
       (and (symbolp (first type)) (same-name-p 'or (first type))
            (rest type) (proper-list-p type)
@@ -66,7 +66,7 @@
   "Names of operators that fail with the error code of a command only if a form in them does.")
 
 (defun may-fail-with-class-p (form code)
-  "True if FORM, in a plan, may fail with class CODE, by what is known of the functions in FORM."
+  "True if FORM, in a plan, may fail with class CODE, as far as the functions in FORM are known."
   (let ((operator (first form)))
     (cond ((fail-p form) (let ((class (if (eq :class (second form)) (third form) (second form))))
                            (or (not (keywordp class)) (eq class code))))
@@ -77,7 +77,7 @@
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
 (defun warn-of-code-as-class (code body form)
-  "Warn if FORM handles CODE in BODY, where only commands, which do not fail, have the error CODE."
+  "Warn if FORM handles the failure class CODE, which in BODY is only an error code of commands."
   (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
          (fluent (and command (fluent-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-with-class-p form code)) body)))
@@ -141,7 +141,7 @@ Return all values of BODY."
   (:like with-failure-handling))
 
 (define-construct retry ()
-  "Run the body of the WITH-FAILURE-HANDLING again, in one of its handlers."
+  "In a handler of WITH-FAILURE-HANDLING, run the body again."
   (:code
    (if (scope-retry scope)
        `(make-leave :form ',(form-as-written form) :target ,(scope-retry scope) :result +nothing+)
@@ -184,7 +184,7 @@ handler. (From CRAM.)"
 
 (addition get-counter)
 (defmacro get-counter (counter &environment environment)
-  "Return how often DO-RETRY still runs its body for COUNTER of WITH-RETRY-COUNTERS. (From CRAM.)"
+  "Return how many times DO-RETRY may still run its body for COUNTER. (From CRAM.)"
   (check-counter "get-counter" counter environment)
   counter)
 
@@ -209,8 +209,8 @@ handler. (From CRAM.)"
   (shiftf (frame-data frame) nil))
 
 (defun signal-after-cleanup (first signal task)
-  "Return NIL and FIRST if the signal FIRST, which caused a cleanup, continues after the cleanup
-ended with SIGNAL. Return NIL alone if SIGNAL continues instead."
+  "FIRST is the signal that caused a cleanup; SIGNAL is how the cleanup ended. Return NIL and FIRST
+if FIRST continues, or NIL alone if SIGNAL continues instead."
   (let ((failed (typep signal 'plan-failure)))
     (when (or (eq first :evaporate) (and failed (not (completion-p first))))
       (when failed (note-suppressed first signal task))

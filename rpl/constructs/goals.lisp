@@ -14,7 +14,7 @@
   (index 0 :type fixnum :read-only t))
 
 (defun parse-pattern (pattern)
-  "Return the shape of PATTERN, where ?x stands for the variable x, and its variables in order."
+  "Return the shape of PATTERN, and its variables in order. ?x stands for the variable x."
   (let ((holes '()))
     (labels ((hole-of (variable)
                (or (find variable holes :key #'hole-variable)
@@ -28,7 +28,7 @@
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun shape-matches-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the holes' values."
+  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the values."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -40,7 +40,7 @@
         (t (value-equal shape object))))
 
 (defun match-shape (shape count object)
-  "Return true if SHAPE, with COUNT holes, matches OBJECT, and a list of the values of the holes."
+  "If SHAPE, with COUNT holes, matches OBJECT, return true and a list of the values of the holes."
   (let ((values (make-array count)))
     (fill values values)                ; an object that is in no pattern and no goal
     (and (shape-matches-p shape object values)
@@ -110,7 +110,7 @@ NIL" :writable)
                 values found))))))
 
 (defun advice-on-goal (name)
-  "Return a sentence about how to write a goal, if NAME is the first word of its pattern; or NIL."
+  "Return a sentence about how to write the goal whose pattern starts with NAME; NIL if none does."
   (let ((goal (find-if (lambda (goal)
                          (let ((first (first (goal-pattern goal))))
                            (and first (symbolp first) (same-name-p name first))))

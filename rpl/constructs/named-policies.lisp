@@ -109,7 +109,7 @@ clause. VALUE and NAME are evaluated. The value is kept while the policy is in f
           do (reject-clause definition clause "each kind of clause once")))
 
 (defun clause-code (kind parameters clauses environment)
-  "Return code for the plan of the clause of KIND in CLAUSES; NIL if CLAUSES have no such clause. A
+  "Return code for the plan of the KIND clause in CLAUSES; NIL if CLAUSES have no KIND clause. A
 missing :INIT counts as (:init t), because the plan of :INIT checks the arguments."
   (let ((clause (or (assoc kind clauses) (and (eq kind :init) '(:init t)))))
     (and clause
@@ -117,7 +117,7 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
                         environment))))
 
 (defun name-arguments-in (operator form)
-  "Return the name arguments of all calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
+  "Return the first arguments of all calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
   (when (consp form)
     (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
             (loop for rest = form then (cdr rest)
@@ -143,8 +143,8 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
 (addition define-policy)
 (define-user-macro define-policy (&whole form name (&rest parameters) &body clauses
                                   &environment environment)
-  "Define NAME, also a special variable, as a policy with PARAMETERS, an ordinary lambda list. The
-clauses, after an optional documentation string, are plan text: they may wait.
+  "Define NAME as a policy with PARAMETERS, an ordinary lambda list. The special variable NAME holds
+the policy. The clauses, after an optional documentation string, are plan text: they may wait.
   (:init form...)      runs first. If :INIT returns false, the policy fails with POLICY-INIT-FAILED.
   (:check form...)     is the condition that must not become true. It is watched as by WAIT-UNTIL,
                        before each step of the body. A fluent or network is waited for; any other

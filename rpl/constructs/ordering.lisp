@@ -56,8 +56,8 @@ if TASK evaporated or was left by a non-local exit (from CRAM, except for NIL)."
 ;;; comes earlier is over. The orders hold as long as the construct runs; then they are lifted.
 
 (defstruct (order (:constructor make-order (earlier later)) (:copier nil))
-  "The constraint that the task LATER starts only when EARLIER is over, if it is a task, or true, if
-it is a fluent. WATCHER waits for EARLIER."
+  "The constraint that the task LATER starts only when the task EARLIER is over, or when the fluent
+EARLIER is true. WATCHER waits for EARLIER."
   (earlier nil :type (or task fluent) :read-only t)
   (later nil :type task :read-only t)
   (watcher nil :type (or null watcher)))
@@ -113,7 +113,7 @@ it is a fluent. WATCHER waits for EARLIER."
 ;;; Reading the constraints.
 
 (defun constraint-list (constraints)
-  "Return CONSTRAINTS, (:order a b) forms or lists of such forms, as one list of such forms."
+  "Return a list of all the (:order a b) forms that are elements of CONSTRAINTS or of its lists."
   (loop for constraint in constraints
         if (and (consp constraint) (consp (first constraint)))
           append constraint
@@ -189,10 +189,9 @@ it is a fluent. WATCHER waits for EARLIER."
 
 (define-construct partial-order (steps &body constraints)
   "Run STEPS in parallel, in a plan, as PAR does, under CONSTRAINTS. With the constraint (:order a
-b), the task b starts only after the task a has ended, in whatever way.
-  a and b are names of tags, (:tag name form), in STEPS or around PARTIAL-ORDER, or forms whose
-values are tasks. a may also be a fluent. Then b starts when this fluent is true, or has been pulsed
-since PARTIAL-ORDER began.
+b), the task b starts only after the task a has ended in any way. Each of a and b is the name of a
+tag, (:tag name form), in STEPS or around PARTIAL-ORDER, or a form whose value is a task. If a is a
+fluent, b starts when the fluent is true, or has been pulsed since PARTIAL-ORDER began.
 The constraints hold until PARTIAL-ORDER ends. A task that has started already cannot be b. Cycles
 of the tags in STEPS are errors when the plan is defined; other cycles are reported as a deadlock.
 Return the first value of the last step (from CRAM, except for the value)."

@@ -6,7 +6,7 @@
 ;;; gives way to it before its next step.
 
 (defun tests-once-p (policy scope)
-  "True if POLICY, plan text, is a test made only once, after which POLICY fails or does not wait."
+  "True if POLICY, plan text, only tests a condition once, and then fails or ends without a wait."
   (and (consp policy)
        (operator-in-p policy '("IF" "WHEN" "UNLESS" "COND"))
        (find-call #'fail-p (list policy))
@@ -25,10 +25,10 @@
 (defparameter *constructs-left-by-return*
   '("LOOP" "DO" "DO*" "DOTIMES" "DOLIST" "N-TIMES" "BLOCK" "PROG" "PROG*" "WHENEVER" "PAR-LOOP"
     "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
-  "Names of operators that a (return value) in their body ends.")
+  "Names of operators that end when a form in their body is (return value).")
 
 (defun lost-return-value (policy)
-  "Return the (return value) that ends POLICY, if it is a WHENEVER and so loses the value; or NIL."
+  "Return the (return value) that ends POLICY, a WHENEVER, and whose value is lost; or NIL."
   (and (operator-in-p policy '("WHENEVER"))
        (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
                         (cddr policy)))

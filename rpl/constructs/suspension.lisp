@@ -44,7 +44,7 @@ status of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 ;;;; Reacting to suspension
 
 (defun run-reaction (reaction task frame)
-  "Run the leaf REACTION with the task variables of TASK at FRAME. Errors in it become messages."
+  "Run the leaf REACTION with the task variables of TASK at FRAME. Its errors become messages."
   (let ((*calling-task* task)
         (*asker* task)
         (innermost (shiftf (task-frame task) frame)))

@@ -6,7 +6,7 @@
 ;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
-  "Return in ticks the price SPAN of OPERATOR. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
+  "Return SPAN, OPERATOR's price, in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number not below 0, up to 1e15"))

@@ -241,7 +241,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
   (when (eq claim (task-awaiting (claim-task claim))) (wake (claim-task claim) nil)))
 
 (defun grant-queued-claims (task)
-  "Grant the grantable claims that TASK, which has just got back a valve, and its parts wait for."
+  "TASK has just got back a valve. Grant the waiting claims of TASK and its parts, where possible."
   (let ((awaited (task-awaiting task)))
     (when (and (claim-p awaited) (grantable-p awaited)) (grant-queued-claim awaited)))
   (mapc #'grant-queued-claims (task-children task)))

@@ -34,7 +34,7 @@
                    (format nil ":unit :ticks or :unit :seconds, not ~(~S~)" unit))))
 
 (defun span-lambda (operator span unit form scope)
-  "Return a lambda expression from the environment to ticks, for SPAN and UNIT, forms in FORM."
+  "Return a lambda expression that returns SPAN in ticks. SPAN and UNIT are forms in FORM."
   (check-unit unit form)
   (when (and (realp span) (minusp span))
     (style-warn-of form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
@@ -147,14 +147,14 @@ is the view itself; for any other fluent, a watcher; for anything else, NIL."
   +parked+)
 
 (defun take-events (source missed)
-  "Remove from SOURCE one event if MISSED is :all, otherwise all. Signals WRONG-ARGUMENT."
+  "Remove one event from SOURCE if MISSED is :all; otherwise all events. Signals WRONG-ARGUMENT."
   (check-argument whenever missed (member missed '(:once :all)) ":once or :all")
   (cond ((not (watcher-p source)))
         ((eq missed :all) (decf (watcher-pending source)))
         (t (setf (watcher-pending source) 0))))
 
 (defun fluent-with-options-p (condition environment)
-  "True if CONDITION, of a WHENEVER, is a list of a form and keywords and not a call."
+  "True if CONDITION, the first argument of WHENEVER, is a form with keywords, and not a call."
   (and (typep condition '(cons t (cons keyword)))
        (or (eq :missed (second condition))
            (consp (first condition))

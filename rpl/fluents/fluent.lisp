@@ -30,7 +30,7 @@
 
 (define-record (derived (:include fluent)
                         (:constructor %make-derived (name operator sources height)))
-  "A fluent whose value is that of OPERATOR for the values of SOURCES, fluents and other objects."
+  "A fluent whose value OPERATOR computes from those of SOURCES, fluents and other objects."
   (operator #'list function)
   (sources '() list)
   (users 0 fixnum :writable)

@@ -44,7 +44,7 @@ entry, or NIL" :writable))
   "The default owner of plans and fluents, or NIL: see RPL-INIT-ROBOT.")
 
 (defgeneric home-in-use (interface)
-  (:documentation "Return the home, or NIL, that code outside of the plans of INTERFACE uses for a
+  (:documentation "Return the home, or NIL, in which code outside of INTERFACE's plans changes a
 fluent without a home.")
   (:method (interface) (declare (ignore interface)) nil))
 
@@ -113,7 +113,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (values))
 
 (defun next-entry (home)
-  "Remove the oldest entry posted to HOME. Return the entry and true; or NIL and false without one."
+  "Remove the oldest entry posted to HOME. Return the entry and true, or NIL and false if none."
   (unless (home-outbox home)
     (loop for entries = (home-inbox home)
           until (swap-if-eq (home-inbox home) entries '())

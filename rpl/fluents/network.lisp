@@ -51,7 +51,7 @@
     (recompute fluent)))
 
 (defun remove-user (fluent)
-  "Count one user of FLUENT less. With the last user, FLUENT stops following its sources."
+  "Count one user fewer of FLUENT. With the last user, FLUENT stops following its sources."
   (when (and (derived-p fluent) (= 0 (decf (derived-users fluent))))
     (dolist (link (shiftf (derived-links fluent) '()))
       (leave-links link)
@@ -85,7 +85,7 @@ just set the fluent, so a caller that waits for it to become true must check it 
 ;;; Reading.
 
 (defun value-in-use (fluent)
-  "Return the value of FLUENT, which is in use. If computing FLUENT met an error, signal that."
+  "Return the value of FLUENT, which is in use. Signal the error of its last computation, if any."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
   (unless (fluent-reading fluent) (setf (fluent-reading fluent) :once))
@@ -129,7 +129,7 @@ itself. Signals MISUSE for a vector of fluents."
   (if (fluent-p object) (current-value (entity-here object)) object))
 
 (defun names-fluent-p (object)
-  "True if OBJECT is a symbol whose value is a fluent or a vector of fluents, or will be."
+  "True if OBJECT is a symbol whose value is, or will be, a fluent or a vector of fluents."
   (and (symbolp object)
        (boundp object)
        (let ((value (symbol-value object)))
@@ -148,8 +148,8 @@ itself. Signals MISUSE for a vector of fluents."
 (settable fluent-value)
 (defun fluent-value (object)
   "Return the current value of OBJECT if OBJECT is a fluent; otherwise return OBJECT. Can be set:
-see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is the name of a variable that holds a fluent,
-or a vector of fluents."
+see SET-VALUE (manual D.2). Signals MISUSE if OBJECT is a vector of fluents, or the name of a
+variable that holds a fluent."
   (cond ((fluent-p object) (current-value (entity-here object)))
         ((and object (symbolp object)) (reject-name-of-fluent object))
         ((and (simple-vector-p object) (fluents-vector-p object))
@@ -214,7 +214,7 @@ a base fluent, return a list of FLUENT."
 (defconstant +most-fluents+ 100 "How many fluents the text of a network shows at most.")
 
 (defun write-network (fluent stream)
-  "Write the expression that made FLUENT to STREAM. Of a large expression, write the beginning."
+  "Write to STREAM the expression that made FLUENT, or the beginning of a large expression."
   (let ((left +most-fluents+))
     (labels ((name (fluent)
                (write-string (if (or (fluent-name fluent) (derived-p fluent))
@@ -303,8 +303,8 @@ because the values of fluents may refer to each other.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Register WATCHERS in HOME again, and the other watchers of their fluents. Leave out other
-watchers for which UNWANTED-P is true."
+  "Register again in HOME: WATCHERS, and the other watchers of their fluents, except those for which
+UNWANTED-P is true."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

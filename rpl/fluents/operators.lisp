@@ -24,7 +24,7 @@
       (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
 
 (defun change-since-reading (view value)
-  "Return a number if VALUE, of VIEW's fluent, is not that at the last reading of VIEW; or NIL."
+  "Return a number if VALUE, of VIEW's fluent, has changed since VIEW was last read; or NIL."
   (destructuring-bind (sets . last) (view-memory view)
     (let ((now (count-sets (view-bases view))))
       (unless (= sets now)

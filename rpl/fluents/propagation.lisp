@@ -104,7 +104,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
 ;;; Views, see operators.lisp, are true for the instant of a change.
 
 (defun end-instants (instants)
-  "Make the views in the list that is the element of INSTANTS false again."
+  "The only element of INSTANTS is a list of views. Make these views false again."
   (let ((backlog (backlog-now)))
     (dolist (view (nreverse (shiftf (first instants) '())))
       (setf (fluent-now view) nil)
@@ -119,7 +119,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
      (when (first instants) (end-instants instants))))
 
 (defun propagate-to-dependents (fluent kind)
-  "Renew the fluents that depend on FLUENT. As long as only one fluent does, no backlog is needed."
+  "Renew the fluents that depend on FLUENT, without a backlog as long as they form a chain."
   (declare #.*hot*)
   (propagating
     (let ((how t))
@@ -202,8 +202,8 @@ for RENEW."
 
 (public set-value)
 (defun set-value (fluent value)
-  "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), tasks that wait for FLUENT
-or a network of FLUENT, and find it true, wake. FLUENT must not be a network, and VALUE must not be
+  "Set FLUENT to VALUE and return VALUE. If the value changed (by EQL), wake the tasks that wait for
+FLUENT or a network of FLUENT that is now true. FLUENT must not be a network, and VALUE must not be
 FLUENT or a network of FLUENT. Any thread may call SET-VALUE; from outside of plans SET-VALUE takes
 effect when the running plans pause (manual D.2)."
   (check-settable 'set-value fluent)
@@ -237,7 +237,7 @@ effect when the running plans pause (manual D.2)."
     (propagate-back fluents)))
 
 (defun propagate-back (fluents)
-  "Recompute the fluents that depend on FLUENTS, which after a pulse have their old values again."
+  "Recompute the fluents that depend on FLUENTS when FLUENTS have their old values after a pulse."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
       (propagating

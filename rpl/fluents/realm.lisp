@@ -77,7 +77,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
          (gethash (entity-token entity) (realm-twins realm)))))
 
 (defun twin-here (entity)
-  "Return what represents ENTITY, from this run or any fork of the same origin, in the current run."
+  "Return what represents ENTITY in the current run. ENTITY may be of a fork of the same origin."
   (or (known-twin entity *realm*) (entity-here entity)))
 
 (defgeneric fresh-twin (entity realm)

@@ -33,7 +33,7 @@ parts begun; its memory is the new environment."
             variables)))
 
 (defun fill-lambda (values scopes sequential)
-  "Return a lambda expression that makes an environment of the values of VALUES, forms in SCOPES."
+  "Return a lambda expression that makes an environment from VALUES, forms in SCOPES."
   (if sequential
       (let ((inner (scope-variable (first scopes))))
         `(lambda (outer)

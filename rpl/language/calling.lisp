@@ -44,7 +44,7 @@
        (not (known-variable-p name (scope-environment scope)))))
 
 (defun check-plan-quote (plan form scope)
-  "Warn if PLAN, a plan's form in FORM, is the unquoted name of a plan and no variable in SCOPE."
+  "Warn if PLAN, an argument in FORM, is the unquoted name of a plan and no variable in SCOPE."
   (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
     (style-warn-of-own form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
 

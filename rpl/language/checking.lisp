@@ -29,7 +29,7 @@
     (warn-at-form #'warn-of-style form control arguments)))
 
 (defun known-operators (&optional (package *package*))
-  "Return the names, of several letters, of operators that a misspelt call in PACKAGE could mean."
+  "Return operator names, longer than one letter, that a misspelt call in PACKAGE could mean."
   (let ((names (declared-names)))
     (do-symbols (symbol package names)
       (when (and (known-function-p symbol nil)
@@ -108,7 +108,7 @@ plan procedure or function."
           (t (warn-of-unknown form)))))
 
 (defun check-later (check form)
-  "Call CHECK with FORM at the end of the compilation unit, at this source location and package."
+  "Call CHECK with FORM, at this place and in this package, at the end of the compilation unit."
   (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
         (loaded *load-truename*))
     (at-end-of-unit form
@@ -134,7 +134,7 @@ names are checked at the end of the compilation unit."
                   (first form))))
 
 (defun missing-list-text (part expected)
-  "Return a text that PART, a name or a quoted name, must be a list of the shape EXPECTED; or NIL."
+  "Return a text which says that PART, a name, must be a list of the shape EXPECTED; or NIL."
   (let ((name (if (typep part '(cons (eql quote) (cons symbol null))) (second part) part)))
     (and name
          (typep name '(or symbol real))
@@ -142,7 +142,7 @@ names are checked at the end of the compilation unit."
          (format nil "~(~S~): write (~(~A~))" part name))))
 
 (defun missing-keyword-text (shape rest)
-  "Return a text that a keyword of SHAPE is missing before the first of the forms REST; or NIL."
+  "Return a text which says that a keyword of SHAPE is missing before the forms REST; or NIL."
   (let ((value (first rest)))
     (and (oddp (length rest))
          (not (keywordp value))

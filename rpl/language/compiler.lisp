@@ -40,7 +40,7 @@
           (t (copy-source-location `(truth-value ,form) form)))))
 
 (defun plan-meaning (form environment)
-  "Return a Lisp form with the meaning in plans of FORM, a call in plan text; perhaps FORM itself."
+  "Return a Lisp form that means what the call FORM means in a plan; this may be FORM itself."
   (let ((name (or (plan-operator-name form) "")))
     (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
       (mapc #'check-condition (rest form)))
@@ -83,7 +83,7 @@
 
 (defparameter *tests-in-loops*
   '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")
-  "The keywords of LOOP that a test follows.")
+  "The keywords of LOOP that stand before a test.")
 
 (defun extended-loop-meaning (form environment)
   "Return FORM, an extended LOOP of Lisp, with tests that use the values of fluents."
@@ -123,7 +123,7 @@
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun condition-lambda (form scope)
-  "Return a lambda expression from an environment to the fluent or other object of condition FORM."
+  "Return a lambda expression that takes an environment and returns the fluent or value of FORM."
   (check-condition form)
   (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
 

@@ -38,7 +38,7 @@
          ,@forms))))
 
 (defun state-forms (states)
-  "Return the forms of a step with STATES, each (state form...), which become local functions."
+  "Return the forms of a step. Its STATES, each (state form...), become local functions."
   (let* ((names (mapcar #'first states))
          (functions (loop for name in names collect (make-symbol (symbol-name name)))))
     `((macrolet ((at-once (state)
@@ -171,7 +171,7 @@ first occurrence is expanded, because arguments come before bodies."
       (cons (first form) (expanded (rest form))))))
 
 (defun hoisted-form (parts form)
-  "Return FORM with variables instead of PARTS, conses in FORM, and bind the variables around it."
+  "Return FORM with its conses PARTS replaced by variables, inside a LET* that binds the variables."
   (let ((names (loop for nil in parts collect (gensym "PART"))))
     `(let* ,(mapcar #'list names parts)
        ,(reduce (lambda (form pair) (subst (first pair) (second pair) form :test #'eq))

@@ -146,8 +146,8 @@ value of TEMPLATE is the plan text. A documentation string may come before TEMPL
            ',name)))))
 
 (defun pattern-to-show (parameters literals)
-  "Return PARAMETERS as a lambda list for display, with the words of LITERALS. A variable for all
-remaining forms with the name BODY or FORMS is shown after &BODY."
+  "Return PARAMETERS as a lambda list for display, with the words of LITERALS. A variable BODY or
+FORMS that takes all remaining forms is shown after &BODY."
   (cond ((null parameters) '())
         ((atom parameters) (if (assoc parameters literals)
                                (second (assoc parameters literals))

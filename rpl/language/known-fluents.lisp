@@ -41,8 +41,8 @@
 ;;; Waits for what cannot change.
 
 (defun known-value-p (form environment)
-  "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Constants and calls
-of FLUENT-VALUE return values, and so do calls of lifted operators with them."
+  "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Such forms are
+constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone."
   (cond ((constantp form) t)
         ((not (and (consp form) (symbolp (first form)) (proper-list-p form))) nil)
         ((local-function-p (first form) environment) nil)

@@ -7,7 +7,7 @@
 ;;; that Lisp runs, but not in what these only call later.
 
 (defvar *mistakes* '()
-  "The names of the rules for mistakes: a property list of the lists for :TEXT and :LEAF.")
+  "A property list from :TEXT and :LEAF to lists of the names of rules for mistakes.")
 
 (defmacro define-mistake (name where (form) documentation &body body)
   "Define the rule NAME, a function that returns sentences about a mistake in FORM, a call; or NIL.
@@ -80,12 +80,12 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
             collect test)))
 
 (defun pulse-form-p (form)
-  "True if FORM is the variable of a fluent only pulsed, or an element of a vector of such fluents."
+  "True if FORM is the variable of a pulse-only fluent, or an element of a vector of such fluents."
   (or (known-pulse-p form)
       (and (operator-in-p form '("VREF")) (consp (rest form)) (known-pulse-p (second form)))))
 
 (defun pulse-in-test (test)
-  "Return the form of the fluent, only pulsed, whose value TEST tests; or NIL."
+  "Return the form of the pulse-only fluent whose value TEST tests; or NIL."
   (cond ((pulse-form-p test) test)
         ((not (proper-list-p test)) nil)
         ((operator-in-p test '("FLUENT-VALUE" "NOT" "NULL" "AND" "OR"))
@@ -183,7 +183,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
     ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("AWAIT-IDLE" . "await-idle is for programs: a plan would wait for itself.")
     ("RUN-UNTIL" . "run-until is for programs: it cannot be called inside of a tick or plan."))
-  "Conses (operator . text) of operators that do not wait in plans, and why.")
+  "Conses (operator . text). TEXT says why the operator must not be used for waits in plans.")
 
 (define-mistake program-wait :leaf (form)
   "FORM lets time pass in programs, but not in plans."

@@ -111,7 +111,7 @@ source of the block. The code has a node for the block only if some form leaves 
 
 (define-expression turns
   "Runs BODY repeatedly, while the function UNTIL returns false for the environment. The function
-TIMES returns the largest number of turns, NIL for any number. A frame counts down the turns."
+TIMES returns the largest number of turns, or NIL for no limit. A frame counts down the turns."
   (:hot)                                ; 40 ns a turn
   (:parts (until function) (times function) (body node))
   (:steps
@@ -131,7 +131,7 @@ TIMES returns the largest number of turns, NIL for any number. A frame counts do
                (enter body environment frame)))))))
 
 (defun split-loop-test (forms)
-  "Return the condition, or NIL, that ends a loop of FORMS, which follow LOOP, and the loop's body."
+  "FORMS follow LOOP. Return the condition that ends the loop, or NIL, and the body of the loop."
   (cond ((starts-with-test-p forms "UNTIL") (values (second forms) (cddr forms)))
         ((starts-with-test-p forms "WHILE")
          (values (note-own-text `(not ,(second forms))) (cddr forms)))
@@ -139,7 +139,7 @@ TIMES returns the largest number of turns, NIL for any number. A frame counts do
 
 (defun loop-code (form count forms scope)
   "Return code for a loop of FORMS, which follow LOOP or N-TIMES. COUNT is the form for the largest
-number of turns, NIL for no limit."
+number of turns, or NIL if there is no limit."
   (multiple-value-bind (test body) (split-loop-test forms)
     (if (suspends-p test scope)
         (loop-code form count

@@ -6,7 +6,7 @@
           variable-scope scope-variables scope))
 
 (defun invalid-variable-text (name environment)
-  "Return a text of why NAME cannot be a variable, lexical or special, in ENVIRONMENT; or NIL."
+  "Return a text which says why NAME cannot be any variable in ENVIRONMENT; or NIL."
   (cond ((not (symbolp name)) "is no symbol")
         ((or (null name) (keywordp name)) "is a constant")
         ((member name lambda-list-keywords) "is a word of lambda lists")
@@ -26,7 +26,7 @@
 ;;; Lambda lists.
 
 (defun invalid-parameters-text (parameters environment)
-  "Return a text of why PARAMETERS, without types, is not an ordinary lambda list; or NIL."
+  "Return a text which says why PARAMETERS, without types, is no ordinary lambda list; or NIL."
   (flet ((first-trouble (names)
            (loop for name in names
                  for trouble = (invalid-variable-text name environment)
@@ -183,7 +183,7 @@ handlers" :writable :export)
     (layered-scope scope (list :functions level names) level :function names)))
 
 (defun wrapped-scope (scope wrapping)
-  "Return a copy of SCOPE with leaves wrapped in WRAPPING, a bodiless MACROLET or SYMBOL-MACROLET."
+  "Return a copy of SCOPE that wraps leaves in WRAPPING, a MACROLET or the like without a body."
   (destructuring-bind (operator definitions) wrapping
     (multiple-value-call #'layered-scope scope (list :wrapping wrapping) (scope-level scope)
       (ecase operator
@@ -251,7 +251,7 @@ handlers" :writable :export)
   "The innermost form of the source text around the form that is being compiled, or NIL.")
 
 (defun add-source-location (form)
-  "Return FORM, made around parts of the current source form, with that form's source location."
+  "Give FORM the location of the current source form, of which FORM has parts. Return FORM."
   (labels ((place (form depth)
              (when (and (consp form) (plusp depth) (not (has-source-location-p form)))
                (copy-source-location form *current-source-form*)

@@ -110,8 +110,8 @@ Lisp code, and looks like the prompt's command PLAN."
   "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
 
 (defmacro in-plans-only (form)
-  "Expand to a form that plans accept for FORM, a form of the plan language, while a plan is
-compiled. Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
+  "While a plan is compiled, expand to a form that stands for FORM, a form of the plan language.
+Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   (if *conses-of-plan-text* `(construct-form ',form) (reject-in-lisp form)))
 
 (defun construct-form (form)
@@ -207,7 +207,7 @@ EXPANSION."
   (gethash form *conses-of-plan-text*))
 
 (defmacro with-own-text ((form) &body body)
-  "Run BODY with FORM, and all forms recorded meanwhile, known as the text of a plan. Generated
+  "Run BODY while FORM, and all forms recorded meanwhile, count as the text of a plan. Generated
 names are the same every time, so that traces can be compared."
   `(let ((*conses-of-plan-text* (make-hash-table :test 'eq))
          (*written-forms* (make-hash-table :test 'eq))

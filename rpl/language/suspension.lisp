@@ -15,7 +15,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "A table of the operators with special meanings in plans, by their names or users' symbols.")
+  "A table from operators, names or users' symbols, to their special meanings in plans.")
 
 (defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Names of functions that may make other tasks ready.")
@@ -31,7 +31,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
   "The names of the blocks and tags inside the expression that is being examined.")
 
 (defun exit-suspends-p (form scope)
-  "True if FORM leaves for a block or tag of the plan in SCOPE, outside of the examined expression."
+  "True if FORM jumps to a block or tag of the plan in SCOPE, outside of the examined expression."
   (let ((name (second form)))
     (and (not (member name *inner-exits*))
          (if (eq (first form) 'go)
@@ -74,7 +74,7 @@ variable, or a binding of something that cannot be bound."
           (t :may))))
 
 (defun defined-exits (form plan-form)
-  "Return lists of the parts of FORM and of the blocks or tags that FORM defines for them; or NIL."
+  "Return two lists, the parts of FORM and the blocks or tags that FORM defines for them; or NIL."
   (cond ((eq (first form) 'block) (values (cddr form) (list (second form))))
         ((eq (first form) 'tagbody)
          (values (remove-if #'atom (rest form)) (remove-if #'consp (rest form))))
@@ -115,7 +115,7 @@ variable, or a binding of something that cannot be bound."
              (procedure-name-p (first form))))))
 
 (defun suspension (form scope)
-  "Return whether FORM makes its task wait, :MUST, :MAY or NIL, and the reason, a part of FORM."
+  "Return :MUST, :MAY or NIL: whether FORM makes its task wait. Return also the part that does."
   (let ((result nil) (reason nil))
     (labels ((note (kind form)
                (when (or (null result) (and (eq kind :must) (eq result :may)))

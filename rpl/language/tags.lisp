@@ -188,11 +188,11 @@ WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
 
 (addition replace-task-code)
 (defun replace-task-code (path form &key compile)
-  "Let tasks at PATH, see TASK-CODE, run FORM, plan text, from their next start on. Running tasks
-are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and local
-plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is true.
-Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
-MALFORMED-DEFINITION. (From CRAM, where it takes a function.)"
+  "Let tasks at PATH run FORM, plan text, from their next start on (for PATH see TASK-CODE). Running
+tasks are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and
+local plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is
+true. Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
+MALFORMED-DEFINITION. (In CRAM, REPLACE-TASK-CODE takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
          (body (call-reporting-form
                 (lambda ()
@@ -207,7 +207,7 @@ MALFORMED-DEFINITION. (From CRAM, where it takes a function.)"
 
 (addition restore-task-code)
 (defun restore-task-code (path)
-  "Restore and return the original code of tasks at PATH, see TASK-CODE, from their next start on."
+  "Restore the code of tasks at PATH (see TASK-CODE) from their next start on. Return the code."
   (let ((node (find-tagged 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))

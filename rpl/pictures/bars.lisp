@@ -206,7 +206,7 @@ box. Return the x coordinate where box and name end."
 
 (defun draw-command (canvas span next from y scale)
   "Draw SPAN, a command, in the lane at Y, which is free from the x coordinate FROM on. NEXT is the
-next command in the lane, or NIL. Return the x coordinate from which the lane is free then."
+next command in the lane, or NIL. Return the x coordinate from which the lane is free afterwards."
   (let ((x (x-of-tick (span-start span) scale)) (width (span-width span scale))
         (to (if next
                 (x-of-tick (span-start next) scale)

@@ -89,7 +89,7 @@ right if the parts are folded."
              2))))
 
 (defun draw-calls (canvas image x y width)
-  "Write the calls of plans in which the task of IMAGE is, from X, Y down. Return their number."
+  "Write the plan calls in progress in the task of IMAGE, from X, Y down. Return their number."
   (loop for call in (task-image-calls image)
         for line from 0
         for left = (+ x (* +character-width+ (1+ (min line 8))))
@@ -145,7 +145,7 @@ coordinate of its end, in pixels."
 (addition save-plan-tree)
 (define-with-keywords save-plan-tree
     (file &key runner (most 300))
-  "Save a picture of the running tasks in FILE, replacing an older file. The name ends in .svg or,
+  "Save in FILE a picture of the running tasks, replacing an older file. The name ends in .svg or,
 if the program rsvg-convert is installed, in .png. Each task is below its parent task, with a mark
 for its state, its expression, and what it waits for. RUNNER is the plan runner, by default the plan
 runner in use. At most MOST tasks are drawn; the others are counted. Return the truename of FILE.

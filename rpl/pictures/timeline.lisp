@@ -219,7 +219,7 @@ the y coordinate of the end of PAGE, in pixels."
           (t (reject-use "No plan has run here.")))))
 
 (defun plan-package (bars)
-  "Return the package of the name of the first plan in BARS that has a name, or else *PACKAGE*."
+  "Return the package of the first plan name in BARS, or *PACKAGE* if no plan has a name."
   (let ((name (some #'bar-name bars)))
     (or (and (symbolp name) (symbol-package name))
         *package*)))

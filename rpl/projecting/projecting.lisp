@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl-projecting)
 
 (defun plan-with-arguments (plan arguments)
-  "Return a list of a plan and its arguments. PLAN is a plan for the list ARGUMENTS, or already such
-a list. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
+  "Return a list of a plan and its arguments. PLAN is a plan for the list ARGUMENTS, or is itself a
+list of a plan and its arguments. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (flet ((reject (name value expected) (reject-argument 'project name value expected)))
     (unless (proper-list-p arguments) (reject :arguments arguments "a list"))
     (when (and (consp plan) arguments)
@@ -19,7 +19,7 @@ a list. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       call)))
 
 (defun make-question (task interface plan arguments options)
-  "Return a question, asked by TASK or NIL outside of plans, how PLAN may end. PLAN is a task of
+  "Return the question how PLAN may end. TASK asks it, or is NIL outside of plans. PLAN is a task of
 INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
 UNKNOWN-NAME and WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
@@ -136,7 +136,7 @@ McDermott's projection of reactive plans, 1992.)"
     interface))
 
 (defun fork-with-question (question)
-  "Return a fork, with a copy of QUESTION, of the run of QUESTION, which is asked outside of plans."
+  "QUESTION is asked outside of plans. Return a fork of its run, with a copy of QUESTION."
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-operator* (question-operator question)))
@@ -158,7 +158,7 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
 ;;;; Doing what goes best
 
 (defun question-of-branches (task forms options)
-  "Return the question of TASK which of FORMS is best, with OPTIONS; NIL if there is only one form."
+  "Return TASK's question, with OPTIONS, which of FORMS is best; NIL if there is only one form."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)

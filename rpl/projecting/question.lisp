@@ -8,7 +8,7 @@
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
   "A question for rollouts: how good each of BRANCHES, texts, is for the rest of the plan; or how
 PLAN with ARGUMENTS, or the task SUBJECT, may end. OPERATOR is the operator that asks. In a rollout,
-ENDED and RESULT say how the branch or plan that the asking task tries has ended."
+ENDED and RESULT say how the branch or plan on trial has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)
   (operator nil :type symbol :read-only t)
   (branches '() :type list :read-only t)
@@ -51,7 +51,7 @@ ENDED and RESULT say how the branch or plan that the asking task tries has ended
           (question-result question) result)))
 
 (defun note-signal (question signal)
-  "Record, in a rollout, that SIGNAL has ended QUESTION's branch or plan. RETURN-FROM is a success."
+  "Record, in a rollout, that SIGNAL has ended QUESTION's trial. RETURN-FROM counts as success."
   (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
         ((escape-p signal) (note-ended question :succeeded nil))
         ((eq signal :evaporate) (note-ended question :evaporated nil))))
@@ -151,7 +151,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
                   (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)
-  "Answer QUESTION, asked by a plan, by rollouts. Return :LATER if the answer is needed no more."
+  "Answer QUESTION, asked by a plan, by rollouts. Return :LATER if the answer is no longer needed."
   (let* ((interface (wish-interface question))
          (moment (and (null (option question :world))
                       (let ((*fork-operator* (question-operator question)))

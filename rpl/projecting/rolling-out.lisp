@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl-projecting)
 
 (defun final-state-of-question (task question interface)
-  "Return how TASK has ended. Without a TASK, return how the branch or plan that QUESTION tries has
-ended, or else the asking plan. Return NIL if nothing has ended yet."
+  "Return how TASK has ended. Without a TASK, return how the branch or plan of QUESTION has ended,
+or else how the asking plan has. Return NIL if nothing has ended yet."
   (cond (task (final-state-of-task interface task))
         ((question-ended question))
         (t (final-state-of-task interface (task-top (wish-task question))))))
@@ -118,7 +118,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
 
 (defun call-without-run (function)
   "Call FUNCTION without a current simulation, and with the variables of the robots unbound.
-FUNCTION can change only runs that it makes itself. Existing fluents can be changed without effect
+FUNCTION can change only runs that it makes itself. Changes of existing fluents have no effect
 outside, as in a fork."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (progv (mapcar #'robot-name robots) '()
