@@ -81,9 +81,9 @@
   (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
          (fluent (and command (fluent-of-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-with-class-p form code)) body)))
-      (style-warn-of-own form "~(~A~) does not fail with class ~S when it ends so; ~(~A~) has that ~
-                               value then. After the wait write (if (fluent-value ~(~A~)) ...), or ~
-                               (fail :class (fluent-value ~(~A~))) in that."
+      (style-warn-of-own form "~(~A~) does not fail with class ~S, but sets ~(~A~) to that value. ~
+                               After the wait write (if (fluent-value ~(~A~)) ...). To fail, write ~
+                               (fail :class (fluent-value ~(~A~))) there."
                          (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)

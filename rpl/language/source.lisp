@@ -26,7 +26,7 @@
   (:report (lambda (condition stream)
              (let ((*print-case* :downcase))
                (format stream "A plan cannot wait inside ~A~@[ (~A)~]:~%  ~S~%~
-                               with, inside,~%  ~S~%~A"
+                               because it contains~%  ~S~%~A"
                        (operator-text (misplaced-container condition))
                        (malformed-definition-place condition)
                        (misplaced-container condition) (misplaced-form condition)

@@ -216,7 +216,7 @@ the y coordinate of the end of PAGE, in pixels."
            (reject-use "No trace was kept of these plans. Set *trace-plans* to true before ~
                         they start, or at the prompt type TRACE-PLANS ON."))
           ((bars trace (plan-runner-tick runner)))
-          (t (reject-use "No plan has run here.")))))
+          (t (reject-use "No plan has run here: run a plan first.")))))
 
 (defun plan-package (bars)
   "Return the package of the first plan name in BARS, or *PACKAGE* if no plan has a name."

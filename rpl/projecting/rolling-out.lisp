@@ -128,7 +128,7 @@ outside, as in a fork."
 
 (defun run-in-belief (scene trial seed)
   (unless *simulation*
-    (reject-use "project: the function :world must call the function that it is given inside of ~
+    (reject-use "project: the function :world must call its argument, a function, inside of ~
                  (with-simulation ...)."))
   (let ((question (scene-question scene)) (interface (ensure-interface)))
     (run-rollout scene trial seed question interface
