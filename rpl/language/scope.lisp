@@ -6,7 +6,7 @@
           variable-scope scope-variables scope))
 
 (defun invalid-variable-text (name environment)
-  "Return a text which says why NAME cannot be any variable in ENVIRONMENT; or NIL."
+  "Return a text which says why NAME cannot be a variable of any kind in ENVIRONMENT; or NIL."
   (cond ((not (symbolp name)) "is no symbol")
         ((or (null name) (keywordp name)) "is a constant")
         ((member name lambda-list-keywords) "is a word of lambda lists")

@@ -192,7 +192,7 @@ WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
 tasks are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and
 local plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is
 true. Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
-MALFORMED-DEFINITION. (In CRAM, REPLACE-TASK-CODE takes a function.)"
+MALFORMED-DEFINITION. (From CRAM, where REPLACE-TASK-CODE takes a function.)"
   (let* ((node (find-tagged 'replace-task-code path))
          (body (call-reporting-form
                 (lambda ()
