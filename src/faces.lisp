@@ -9,7 +9,7 @@ all layers.")
 (in-package :ars-magna.faces)
 
 (defun document-addition (symbol)
-  "Append the remark that SYMBOL is an addition to the manual to all documentation of SYMBOL."
+  "Append to all documentation of SYMBOL the remark that SYMBOL is an addition to the manual."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (when text

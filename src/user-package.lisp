@@ -60,7 +60,7 @@ symbols. If several packages extend a name, the last one is used. The names SETT
   (find-if (lambda (package) (eq :external (nth-value 1 (find-symbol name package)))) packages))
 
 (defun check-clashes (definition packages settled)
-  "Signal MALFORMED-DEFINITION if PACKAGES export different symbols of a name not in SETTLED."
+  "Signal MALFORMED-DEFINITION if PACKAGES export different symbols with a name not in SETTLED."
   (let ((names (conflicting-names packages settled)))
     (when names
       (let ((package (package-exporting (first names) packages)))

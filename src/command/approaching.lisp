@@ -14,7 +14,7 @@
   "The number of turns towards its goal after which a robot drives, whatever its heading.")
 
 (defun angle-to-goal (robot designator)
-  "Return the angle by which ROBOT has to turn to face DESIGNATOR where it was last seen."
+  "Return the angle by which ROBOT has to turn to face the point where DESIGNATOR was last seen."
   (let ((x (designator-x designator)) (y (designator-y designator)))
     (if (zerop (distance-to robot x y))
         0d0
@@ -41,7 +41,7 @@ arrived, and the obstacle that blocked it: :WALL, :THING or NIL."
     (arrived-at-point-p robot x y last-step block)))
 
 (defun arrive (operation camera designator)
-  "End OPERATION, whose robot is at DESIGNATOR, and the track of CAMERA (readings 108, 110)."
+  "The robot is at DESIGNATOR: end OPERATION and the track of CAMERA (readings 108, 110)."
   (cond ((designator-denotation designator)
          (succeed operation camera designator)
          (end-track-on-arrival camera))

@@ -35,7 +35,7 @@
   (resource nil parameter-spec
             "the specification of the command's first argument, its resource" :addition)
   (occupies nil (or null symbol)
-            "a function of the resource that returns what the command occupies instead, or NIL")
+            "a function that maps the resource to what the command occupies instead, or NIL")
   (parameters '() list
               "the specifications of the command's arguments, without resource and
 continuation" :addition)
@@ -71,8 +71,8 @@ if another command follows" :export)
 
 ;; For other definitions in the same file, when that is compiled and the command does not exist.
 (defun command-signature (name)
-  "Return a list of three parts of the definition of the command NAME: its resource (variable type),
-a list of its parameters (variable type text), and its sentence. Signals UNKNOWN-NAME."
+  "Return three parts of the definition of the command NAME, as a list: its resource (variable
+type), a list of its parameters (variable type text), and its sentence. Signals UNKNOWN-NAME."
   (or (get name 'command-signature)
       (find-command name)))
 

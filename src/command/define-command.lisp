@@ -51,7 +51,7 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
   `(check-argument-type ',name ',variable ,variable (load-time-value (find-argument-type ',type))))
 
 (defun warn-of-uncallable (name forms)
-  "Warn of each form in FORMS, the arguments in a call of the command NAME, that is no valid call,
+  "FORMS are the arguments in a call of the command NAME. Warn of each form that is no valid call,
 such as an unquoted list of data, or (90 deg)."
   (dolist (form forms)
     (typecase form

@@ -170,7 +170,7 @@ prolong the coasting."
     (wall-at-p (world-map (robot-world robot)) (+ (robot-x robot) dx) (+ (robot-y robot) dy))))
 
 (defun distance-to-side (robot quarter)
-  "Return ROBOT's distance from its cell's side QUARTER, counted in quarter turns from the x axis."
+  "Return ROBOT's distance from the side of its cell in direction QUARTER, as in NEIGHBOUR-WALL-P."
   (let ((x (mod (robot-x robot) 1d0)) (y (mod (robot-y robot) 1d0)))
     (ecase (mod quarter 4) (0 (- 1 x)) (1 (- 1 y)) (2 x) (3 y))))
 

@@ -72,11 +72,11 @@ the camera carries out nothing else."
 
 (addition under-way)
 (defun under-way (resource)
-  "Return the name of the command that RESOURCE, a robot or part of one, executes or is about to
-begin, and who issued it: a string such as \"the prompt\", \"the plan fetch\", \"the continuation of
-robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes CAMERA-TRACK, and a robot
-that only thinks executes THINK. Return NIL if RESOURCE executes no command. A newer command always
-interrupts an older command."
+  "Return two values: the name of the command that RESOURCE, a robot or part, executes or is about
+to begin; and who issued the command, a string such as \"the prompt\", \"the plan fetch\", \"the
+continuation of robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes
+CAMERA-TRACK, and a robot that only thinks executes THINK. Return NIL if RESOURCE executes no
+command. A newer command always interrupts an older command."
   (check-resource 'under-way resource)
   (let ((occupant (occupant resource)))
     (when occupant

@@ -57,7 +57,7 @@ no thing, drop only DESIGNATOR, with PROBABILITY."
       (part-reaches-p part container)))
 
 (defun has-room-p (container size)
-  "True if CONTAINER can hold things of SIZE more, apart from rounding (readings 153 and 237)."
+  "True if CONTAINER has room for a thing of SIZE, apart from rounding (readings 153 and 237)."
   (and (plusp (if (storage-bin-p container)
                   (storage-bin-capacity container)
                   (thing-capacity container)))
@@ -78,7 +78,7 @@ no thing, drop only DESIGNATOR, with PROBABILITY."
         ((not (tracking-p camera designator)) :not-tracked)))
 
 (defun grasp (hand thing dice)
-  "Let HAND grasp THING, NIL for a false sighting. Return an error code or NIL (readings 151, 231)."
+  "Let HAND grasp THING (NIL: a false sighting). Return an error code or NIL (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
         ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
         (t (move-thing thing hand)

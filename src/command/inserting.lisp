@@ -23,7 +23,7 @@
         thereis (eq outer (hand-holding hand))))
 
 (defun try-hand-insertion (hand container)
-  "Move HAND into CONTAINER, NIL for a false designator. Return an error code or NIL (reading 155)."
+  "Move HAND into CONTAINER (NIL: a false designator). Return an error code or NIL (reading 155)."
   (cond ((null container) :hand-bump)
         ((location-closed-p container) :bin-closed)
         ((not (has-room-p container (if (hand-holding hand) (thing-size (hand-holding hand)) 0d0)))
@@ -105,7 +105,7 @@
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if CAMERA bumps CONTAINER, in its reach, by chance, or if DESTINATION is false and local."
+  "True if DESTINATION is false and local, or if CAMERA by chance bumps a CONTAINER in its reach."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))

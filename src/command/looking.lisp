@@ -36,7 +36,7 @@ that the attributes can have; a range begins with its lower end"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
-  "Return designators for CAMERA's still true SIGHTINGS, at most as many as a robot keeps."
+  "Return designators for CAMERA's SIGHTINGS that are still true, at most as many as a robot keeps."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
@@ -57,7 +57,7 @@ that the attributes can have; a range begins with its lower end"
         (fail-with operation :designator-not-found))))
 
 (defun designate-all (operation sightings)
-  "End OPERATION with designators for SIGHTINGS, a tick later for each but the first (reading 134)."
+  "End OPERATION with designators for SIGHTINGS. Each but the first takes one tick (reading 134)."
   (setf (operation-subject operation) sightings)
   (if (rest sightings)
       (go-on operation 'designate-found (length (rest sightings)))
@@ -96,7 +96,7 @@ that the attributes can have; a range begins with its lower end"
               (:designator-not-found (format-text "~A found no ~A")))
      (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for a place of a type. Of several places, one is chosen at random. The error
-code :DESIGNATOR-NOT-FOUND means that the camera found no place; the robot has no fault."
+code :DESIGNATOR-NOT-FOUND means that the camera found no place; this is no failure."
   (search-for-places operation camera place-type nil))
 
 (define-command camera-get-all-place-designators (operation (camera camera)
@@ -140,8 +140,8 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
               (:designator-not-found (format-text "~A found no such object")))
      (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for an object that fits a description. Of several objects, one is chosen at
-random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; the robot has no
-fault."
+random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; this is no
+failure."
   (search-for-things operation camera type specification nil))
 
 (define-command camera-get-all-object-designators

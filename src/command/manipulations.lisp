@@ -112,7 +112,7 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
        "the list of options comes after the parameters, () for none"))
 
 (defun outdated-method-p (name method source)
-  "True if METHOD of NAME was in an earlier version of the file of SOURCE, and no longer is."
+  "True if METHOD of NAME comes from an earlier version of SOURCE's file, and is no longer in it."
   (let ((old (method-source method)))
     (and source
          (equal (source-file old) (source-file source))
@@ -143,8 +143,8 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
          (others (remove nil files)))
     (when (and others (not (member file files :test #'equal)))
       (warn-of-definition "The manipulation ~(~A~) has methods from ~{~A~^, ~} too: they are used ~
-                           where no newer method fits. (undefine 'manipulation '~(~A~)) forgets ~
-                           them all."
+                           where no newer method fits. (undefine 'manipulation '~(~A~)) removes ~
+                           all methods."
                           name (remove-duplicates others :test #'equal) name))))
 
 (defun define-manipulation (name form body &key (success 1) (delay 0))

@@ -53,7 +53,8 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return VALUE of KEY; of substances, the parameter if WANTED is a number or range, else the type."
+  "Return VALUE; for the key :SUBSTANCE, its parameter if WANTED is a number or range, else its
+type."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))

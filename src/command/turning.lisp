@@ -68,7 +68,7 @@ the step (reading 99)."
             (* 0.5d0 (+ (robot-turned-low robot) (robot-turned-high robot))))))
 
 (defun turn-towards (robot angle close)
-  "Turn ROBOT by ANGLE, at most a tick's turn, or not if ANGLE < CLOSE. True if no angle is left."
+  "Unless ANGLE < CLOSE, turn ROBOT by ANGLE, at most for a tick. True if no angle is left."
   (or (< (abs angle) close)
       (< (abs (turn-step robot angle)) +facing+)))
 

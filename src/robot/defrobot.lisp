@@ -12,7 +12,7 @@
                 :resolution (second specification)))
 
 (defun amount-parser (kind initarg)
-  "Return a function that parses the specification of a part of KIND, an amount, as the value of
+  "Return a function that parses an amount, the specification of a part of KIND, as the value of
 INITARG. PARSE-CAMERA is such a function for cameras."
   (lambda (amount reject)
     (unless (amount-p amount)
@@ -37,7 +37,7 @@ INITARG. PARSE-CAMERA is such a function for cameras."
         (funcall reject position "a position (x y), two numbers from -1e9 to 1e9"))
       (let ((trouble (start-problem-text map x y)))
         (when trouble
-          (funcall reject position (format nil "a position in the open of ~(~A~), and ~A"
+          (funcall reject position (format nil "a free position in ~(~A~); ~A"
                                            (map-name map) trouble))))
       (unless (sane-number-p angle)
         (funcall reject angle (argument-type-text 'angle)))

@@ -43,7 +43,7 @@ radians")
    (refreshed -1 fixnum "the tick in which the designator was last updated")))
 
 (setf (documentation 'make-designator 'function)
-      "Return a new designator, which has no number of a robot yet.")
+      "Return a new designator, which no robot has numbered yet.")
 
 (define-argument-type 'designator #'designator-p "a designator"
   (constantly (format nil "cameras' searches pass designators to their continuations, as in ~

@@ -89,7 +89,7 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
   (move-part part nil))
 
 (defun must-pull-out-p (part)
-  "True if PART is inside a thing out of the robot's reach, in a closed bin or another robot's bin."
+  "True if PART is inside a thing that is out of reach, in a closed bin or in another robot's bin."
   (let ((location (part-location part)))
     (and (thing-p location)
          (or (multiple-value-bind (x y) (thing-position location)

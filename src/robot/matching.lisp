@@ -171,7 +171,7 @@ when LOW is NIL, one of CHOICES."
   (world-map (thing-world thing)))
 
 (defun reading-with-asked-symbols (demand reading thing)
-  "Return READING of THING, which fits DEMAND, with symbols of DEMAND or else of the map's package."
+  "READING of THING fits DEMAND. Return it with symbols of DEMAND or else of the map's package."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
                (symbol-of-package value
@@ -186,8 +186,8 @@ when LOW is NIL, one of CHOICES."
   (second (assoc key (thing-attributes thing) :test #'eq)))
 
 (defun match-thing (thing demands distance dice)
-  "Return true if readings of THING from DISTANCE metres away meet all DEMANDS, and these readings,
-an object descriptor, as a second value (reading 127)."
+  "True if readings of THING from DISTANCE metres away meet all DEMANDS. The second value is these
+readings, an object descriptor (reading 127)."
   (let ((readings '()))
     (dolist (demand demands (values t (nreverse readings)))
       (let* ((key (demand-key demand)) (attribute (demand-attribute demand))
@@ -208,8 +208,8 @@ for the base probability p and n supporters among KEYS (manual 3.4.2; reading 22
     (- 1d0 (power (- 1d0 (attribute-noticed attribute)) (1+ given)))))
 
 (defun noticeable-p (attribute value map)
-  "True if a robot can notice ATTRIBUTE of a thing of MAP that has VALUE. A missing boolean is
-noticed as false; a user-defined boolean only if a thing in the definition of MAP has it."
+  "True if a robot can notice ATTRIBUTE, which has VALUE in a thing of MAP. A missing boolean is
+noticed as false; a user-defined one is noticed only if a thing in MAP's definition has it."
   (or value
       (and (can-be-false-p attribute)
            (or (built-in-attribute-p attribute)

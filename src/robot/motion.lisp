@@ -22,9 +22,9 @@
 ;; behind it when moving right or down, and to the cell before it when moving left or up.
 (declaim (inline free-distance))
 (defun free-distance (world x y dx dy distance)
-  "Return the length of the free way from (X,Y), a point of the map, in direction (DX,DY), at most
-DISTANCE; the column and the row of the cell at its end; the obstacle, :WALL, :THING or NIL; and
-whether the obstacle is in another column."
+  "Return five values for the way from (X,Y), a point of the map, in direction (DX,DY): its free
+length, at most DISTANCE; the column and row of the cell at its end; the obstacle, :WALL, :THING or
+NIL; and whether the obstacle is in another column."
   (declare (type world world) (type double-float x y dx dy distance))
   (let* ((map (world-map world)) (flags (world-flags world))
          (cell-x (cell-number x)) (cell-y (cell-number y))
@@ -95,9 +95,9 @@ metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL."
              nil))))
 
 (defun meet-obstacle (robot block dx dy moved left cell-x cell-y sideways)
-  "Stop ROBOT before the obstacle BLOCK, which is in the next column if SIDEWAYS, else in the next
-row, after MOVED metres with LEFT to go. If ROBOT only touches the obstacle, continue. Return the
-obstacle that stops ROBOT, or NIL."
+  "ROBOT has moved MOVED metres and has LEFT to go. Stop ROBOT before the obstacle BLOCK, which is
+in the next column if SIDEWAYS, else in the next row. If ROBOT only touches the obstacle, continue.
+Return the obstacle that stops ROBOT, or NIL."
   (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
     (cond ((only-touches-p (if sideways dx dy) left)
            (move-within-cell robot dx dy moved cell-x cell-y)

@@ -81,7 +81,7 @@ in metres, and the heading in radians. Only displays use this position; robots c
 
 (declaim (inline rounding-bound odometer-drive))
 (defun rounding-bound (value)
-  "Return an upper bound of the rounding error of a sum with the result VALUE."
+  "Return an upper bound for the rounding error in a sum whose result is VALUE."
   (declare (type double-float value))
   (+ 1d-14 (* 1d-15 (abs value))))
 
@@ -202,7 +202,7 @@ TYPE-FALSE-POS* (reading 221)."
              (and (plusp (length types)) (roll-element types dice)))))))
 
 (defun canonical-directions (robot type)
-  "Return a list of the two canonical directions, in radians, of the cell of ROBOT as a place of
+  "Return a list of the two canonical directions, in radians, that ROBOT's cell has as a place of
 TYPE. In a cell without a place, both directions are the robot's heading (reading 223)."
   (let ((place (robot-place-here robot)))
     (if place

@@ -87,7 +87,7 @@ destroyed: it no longer changes (manual 3.2.2)."
 (define-operator 'make-odometer '(robot name) #'make-odometer)
 
 (defun reset-by-program (odometer part)
-  "Reset PART of ODOMETER for a program; return ODOMETER. If destroyed, do not journal the reset."
+  "Reset PART of ODOMETER and return ODOMETER. Journal the reset unless ODOMETER is destroyed."
   (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
     (if (eq odometer (robot-odometer robot name))
         (changing ((robot-world robot) reset-odometer robot name part)

@@ -91,7 +91,7 @@ has the number" :part :export)
 
 ;; Parts of another run are not copied.
 (defun copy-robot-object (object robot copier)
-  "Return COPIER's copy of OBJECT, which is ROBOT or ROBOT's; OBJECT if ROBOT is in another run."
+  "OBJECT is ROBOT or ROBOT's. Return COPIER's copy, or OBJECT itself if ROBOT is in another run."
   (if (eq (robot-world robot) (copier-option copier :world))
       (copy-slots object copier)
       object))
@@ -137,7 +137,7 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
    (contents '() list "a list of the thing that the hand holds, or ()" :addition))
   (:memory
    (way-in '() list
-           "the containers that the hand is in since plans put it there, innermost first" :export)))
+           "the containers into which plans have put the hand, innermost first" :export)))
 
 (public storage-bin)
 (addition storage-bin-p)

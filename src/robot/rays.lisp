@@ -11,7 +11,7 @@
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the current scan has found; clear between scans.")
 (define-constant +least-component+ 1d-12
-  :documentation "The replacement for any component of a ray's direction that is nearer to 0.")
+  :documentation "A component of a ray's direction that is nearer to 0 is replaced by this number.")
 
 (deftype flag-vector () '(simple-array (unsigned-byte 8) (*)))
 (deftype index-step ()
@@ -73,8 +73,8 @@ there, continue the ray. Return a list of the cells with things that the continu
                    &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
 ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. The values for a
-direction are computed before BODY runs for the previous direction, so that the processor divides
-while BODY walks."
+direction are computed before BODY runs for the previous direction, so that the processor can divide
+while BODY runs."
   (with-gensyms (spacing first cos sin next-x next-y next-per-x next-per-y)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))

@@ -91,7 +91,7 @@ things that rays meet within REACH columns and rows."
                                 scan-density* reach)))))
 
 (defun in-close-view-p (camera thing)
-  "True if THING, on the floor within reach, is in CAMERA's view and not hidden, or is at CAMERA."
+  "THING is on the floor within reach. True if CAMERA sees THING or is exactly at THING."
   (let ((robot (camera-robot camera)) (x (thing-x thing)) (y (thing-y thing)))
     (or (<= (distance-to robot x y) +contact+)
         (and (<= (abs (angle-difference (bearing-to robot x y) (camera-heading camera)))
@@ -108,7 +108,7 @@ things that rays meet within REACH columns and rows."
                        when index collect index))))
 
 (defun things-in-cells (cells camera local)
-  "Return the things in CELLS local to CAMERA's robot if LOCAL, else the others (reading 131)."
+  "Return the things in CELLS that are local to the robot if LOCAL, else the others (reading 131)."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
     (dolist (index cells (nreverse things))
       (do-cell (thing index world)

@@ -36,8 +36,8 @@ farther than this from a corner, along both axes, passes through the corner.")
 
 (defun point-beyond-corner (world mask x y column row)
   "(X,Y) may be at a corner of the cell at COLUMN and ROW. If so, and if one of the two cells beside
-the corner lets a line pass, return, as two values, the point just beyond the corner, in the cell
-opposite; else NIL. Cells with a flag of MASK stop the line."
+the corner lets a line pass, return the point just beyond the corner, in the opposite cell, as two
+values; else NIL. Cells with a flag of MASK stop the line."
   (let ((corner-x (round x)) (corner-y (round y)))
     (flet ((other (cell corner) (if (= cell corner) (1- corner) corner)))
       (let ((other-column (other column corner-x)) (other-row (other row corner-y)))

@@ -25,7 +25,7 @@
 ;;; Things have a direction from the robot unless they are exactly where it is.
 
 (defconstant +no-distance+ 1d-9
-  "Things no farther than this, in metres, have no direction.")
+  "Things no farther than this from the robot, in metres, have no direction.")
 
 (defun distance-to (robot x y)
   "Return the distance from ROBOT to (X,Y), in metres."
@@ -44,7 +44,7 @@
 
 (defun walk-to-phantom (robot angle dice)
   "Return the end of a random walk from ROBOT in the direction ANGLE. After each metre outside the
-robot's cell the walk ends with probability PROB-STOP*, else at the edge of the map (reading 136)."
+robot's cell the walk ends with probability PROB-STOP*, and always at the map's edge (reading 136)."
   (let ((map (world-map (robot-world robot)))
         (dx (cosine angle)) (dy (sine angle)))
     (loop for metres from 1d0 by 1d0

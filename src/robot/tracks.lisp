@@ -26,7 +26,7 @@ NIL" :export)))
   (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
 
 (defgeneric approaching-p (event camera)
-  (:documentation "True if EVENT, pending on a robot, moves it to what CAMERA tracks.")
+  (:documentation "EVENT is pending on a robot. True if it moves the robot to what CAMERA tracks.")
   (:method (event camera)
     (declare (ignore event camera))
     nil))
