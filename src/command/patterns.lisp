@@ -53,8 +53,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (<= (- low threshold) number (+ high threshold)))
 
 (defun comparable-value (key value wanted)
-  "Return VALUE; for the key :SUBSTANCE, its parameter if WANTED is a number or range, else its
-type."
+  "Return VALUE; for key :SUBSTANCE, its parameter if WANTED is a number or range, else its type."
   (cond ((not (eq key :substance)) value)
         ((value-limits wanted) (substance-value-parameter value))
         (t (substance-value-type value))))
