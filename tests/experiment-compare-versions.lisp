@@ -77,7 +77,7 @@ would be beyond doubt, and three seeds are p = 1/4."
                               (rows-of-outcomes "b" "0" "+++")))
     (is (= 1 (length (experiment:comparison-contrasts comparison))))
     (is (mentions-p text "Only one of the tables has the condition plan=b noise=0."))
-    (is (mentions-p text "Left out, as only one has their seeds: plan=a noise=0: 1 of dir 1."))))
+    (is (mentions-p text "Left out, as one side lacks these seeds: plan=a noise=0: 1 of dir 1."))))
 
 (test compare-results.refuses-what-does-not-belong-together
   (with-directories (before after nothing)

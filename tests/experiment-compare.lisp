@@ -154,7 +154,7 @@
            (success (difference-in "success"
                                    (experiment:compare-conditions results 1 2 :stream nil))))
       (is (equal '(0 2 0 1) (experiment:paired-table success)))
-      (is (mentions-p text "Left out, as only one has their seeds: noise=0: 2 of a and 2 of b."))
+      (is (mentions-p text "Left out, as one side lacks these seeds: noise=0: 2 of a and 2 of b."))
       (is (mentions-p text "with an error, and counted as not succeeded: noise=0: 2 of b."))
       (is (mentions-p text "way of a and b cannot be compared: over 1 common seed (2 left out,")))))
 
@@ -284,14 +284,14 @@
   (loop for (first second) in '((1700000010 1700000000) (4000000000.002d0 4000000000.001d0)
                                 (1.000000000002d0 1.000000000001d0) (2d-300 1d-300)
                                 (100000000000000000002 100000000000000000001))
-        do (is (mentions-p (verdict-on-all first second) "x is more with a than with b: p < .001")))
+        do (is (mentions-p (verdict-on-all first second) "x is higher with a than with b: p <")))
   (is (mentions-p (verdict-on '(1d9 2d9) '(1000000000.5d0 2000000000.25d0))
                   "No significant difference in x"))
   (is (mentions-p (verdict-on '(1 0.1d0) '(1.0d0 0.1d0)) "x of a and b are equal, seed by seed")))
 
 (test compare.tells-rounding-as-what-it-is
-  (is (string= (format nil "x of a and b differ by no more than rounding, seed by seed at most ~
-                            1.1e-16: 0.6000000000000001 against 0.6 on average over 30 common ~
+  (is (string= (format nil "x of a and b differ only by rounding, by at most 1.1e-16 for any seed: ~
+                            0.6000000000000001 against 0.6 on average over 30 common ~
                             seeds.")
                (verdict-on-all (+ .1d0 .2d0 .3d0) (+ .3d0 .2d0 .1d0))))
   (is-false (experiment::counts-as-test-p (experiment::mean-difference "x" '(.1d0 .3d0)
@@ -312,11 +312,11 @@
 (test compare.takes-numbers-of-any-size
   (let ((numbers (loop for i below 30 collect (if (< (mod i 10) 3) 1d99 5))))
     (let ((text (verdict-on numbers (make-list 30 :initial-element 5))))
-      (is (mentions-p text "x is more with a than with b: p = .004"))
+      (is (mentions-p text "x is higher with a than with b: p = .004"))
       (is (mentions-p text "against 5 on average"))))
   (is (mentions-p (verdict-on-all 1.5d308 -1.5d308)
                   "difference 3e308 (95 % interval 3e308 to 3e308)"))
-  (is (mentions-p (verdict-on-all 1d15 -1d15) "x is more with a")))
+  (is (mentions-p (verdict-on-all 1d15 -1d15) "x is higher with a")))
 
 (test compare.says-how-many-seeds-have-no-number
   (with-made-up (results (append (rows-of-outcomes "a" "0" "++++"

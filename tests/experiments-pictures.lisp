@@ -156,7 +156,7 @@
                              :key #'pathname-name :test #'string=)
             for words = (written-in file)
             for comparison = (experiment:compare-levels results 'plan :measure measure :stream nil)
-            do (is (mentions-p words (format nil "each plan against a, seed by seed: first less ~
+            do (is (mentions-p words (format nil "each plan against a, seed by seed: first minus ~
                                                   second, with 95 % intervals~@?"
                                              seeds)))
                (loop for contrast in (append (experiment:comparison-contrasts comparison)
@@ -191,7 +191,7 @@
         (is (= 100 (first (first steps))))
         (is (close-p 3/4 (second (first steps))))))
     (let ((words (format nil "~{~A ~}" (chart-texts (picture-text results :survival)))))
-      (is (search "limit of 5000 ticks is never done" words))
+      (is (search "limit of 5000 ticks are never done" words))
       (is (search "1 trial broke off with an error" words)))))
 
 ;;; Ways.

@@ -153,8 +153,8 @@
            "  1  boom: noise=0.5 (1)"
            "     (replay-trial 'made-up \"noise=0.5\" 8)"
            ""
-           ,(concatenate 'string "In parentheses 95 % intervals: Wilson's of rates, by ranks of "
-                         "medians, Student's of means.")
+           ,(concatenate 'string "In parentheses: 95 % intervals, Wilson's for rates, by ranks for "
+                         "medians, Student's for means.")
            "A trial that ended with an error counts as one that did not succeed.")
          (text-lines (report-text results))))))
 
@@ -278,9 +278,9 @@ And more."
                (experiment:summary-confidence summary)))
         (is (>= 2/10 (- (experiment:estimate-high (experiment:summary-success summary))
                         (experiment:estimate-low (experiment:summary-success summary)))))
-        (is (search "Look K spends .05 / (K (K + 1))" (report-text results)))
+        (is (search ".05 / (K (K + 1))" (report-text results)))
         (is (has-words-p (substitute #\Space #\Newline (report-text results))
-                         "the intervals of one condition, at all its looks together, err in at most"
+                         "The K-th look at a condition has a wrong interval with a probability of"
                          "each of these 2 conditions by itself"))
         (is (legible-p (report-text results)))))
     (walk directory :trials 410)

@@ -180,9 +180,9 @@ to share it, or a replacement. (forked x fork) returns the counterpart of anothe
 ;;; Copy policies.
 
 (defstruct (copy-policy (:constructor make-copy-policy (way indices fresh)) (:copier nil))
-  "How structures of a class are copied. WAY is :SHARE; :COPY; :METHOD, by a user's method; or :ASK,
-for structures of SBCL. INDICES are the numbers of the slots whose contents are copied too. FRESH is
-a list of pairs of functions (writer . initial), for slots that get their initial values."
+  "How structures of a class are copied. WAY is :SHARE, :COPY, :METHOD (by a user's method) or :ASK
+(the caller, for SBCL's structures). INDICES are the numbers of the slots whose contents are copied
+too. FRESH lists pairs of functions (writer . initial), for slots that get initial values."
   (way :copy :type (member :share :copy :method :ask) :read-only t)
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))

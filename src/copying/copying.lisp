@@ -30,7 +30,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
           (t (begin-copy value copier)))))
 
 (defun copy-unless-screened (value copier)
-  "Return what the screen of COPIER puts in place of VALUE; if it puts nothing, a copy of VALUE."
+  "Return the replacement for VALUE that the screen, a function in COPIER, gives, or a copy."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (record-copy value instead copier)
@@ -127,7 +127,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return the copy of FUNCTION, no closure: FUNCTION itself, unless its class is a user's."
+  "Return the copy of FUNCTION, not a closure: FUNCTION itself, unless its class is a user's."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (copy-by-decision function copier))
         (t function)))

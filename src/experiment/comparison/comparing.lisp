@@ -53,7 +53,7 @@ with equal values make the contrast's WHERE; the other factors make the names of
                         group)))
 
 (defun overall-contrasts (results pairs place names)
-  "Return overall contrasts: one for each two levels that several PAIRS with common seeds compare."
+  "Return overall contrasts: one for each two levels compared by several PAIRS with common seeds."
   (loop for (level base . group) in (pairs-by-levels
                                      results
                                      (remove-if-not (lambda (pair) (apply #'common-trials pair))
@@ -117,7 +117,7 @@ both conditions have count. A trial that ended in an error or at its limit did n
 Give a condition by its number, from 1, by its name, or by an unambiguous part of its name, such as
 one value of a factor. :ALL as SECOND compares FIRST with each other condition. FIRST and SECOND may
 be values of one factor. If several conditions have these values, each condition with FIRST is
-compared with the otherwise equal condition with SECOND, and all together, as by COMPARE-LEVELS.
+compared with the otherwise equal condition with SECOND, and all together as in COMPARE-LEVELS.
 Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
@@ -142,7 +142,7 @@ pairs together, and separately for all tests over several pairs."
          (base (find-level (levels results place) against))
          (pairs (pairs-differing-in-factor results place nil base)))
     (unless pairs
-      (reject-use "No condition differs only in this factor from a condition with ~A=~A. (In ~
+      (reject-use "No condition differs only in ~A from a condition with ~:*~A=~A. (In ~
                    designs, such as :sobol, all factors vary together.)"
                   (nth place (results-factors results)) base))
     (comparison-of-conditions results pairs place names stream)))
@@ -196,8 +196,8 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                          table." count)))))
 
 (defun changes-between (pairs after before)
-  "Return sentences: which code and data of the conditions in PAIRS differ between two tables. The
-files experiment.txt in the directories AFTER and BEFORE list it; either may be NIL."
+  "Return sentences on the code and data of the conditions in PAIRS that differ between two tables,
+as listed by experiment.txt in the directories AFTER and BEFORE. Either directory may be NIL."
   (let* ((changed (remove-if (lambda (pair)
                                (apply #'string= (mapcar #'sample-fingerprint pair)))
                              pairs))
@@ -220,7 +220,7 @@ files experiment.txt in the directories AFTER and BEFORE list it; either may be 
 ;;;; Comparing versions
 
 (defun results-and-name (operator name value)
-  "Return two values: the results that VALUE, the argument NAME of OPERATOR, means, and their name."
+  "Return the results that VALUE designates, and their name. VALUE is OPERATOR's argument NAME."
   (cond ((results-p value)
          (values value (if (results-directory value)
                            (native-name (results-directory value))
@@ -287,15 +287,15 @@ the names of conditions that only FIRST or only SECOND has."
 
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
-  "Compare two tables that two versions of the code have made of one experiment. BEFORE and AFTER
-are directories or results. Trials of equal condition and seed are compared, per condition and over
-all conditions, where each seed counts once. Differences are AFTER minus BEFORE.
+  "Compare two tables of one experiment, made by two versions of the code. BEFORE and AFTER are
+directories or results. Trials of equal condition and seed are compared, per condition and over all
+conditions, where each seed counts once. Differences are AFTER minus BEFORE.
 
-The comparison tells which conditions got better or worse, and how many trials are identical: have
-rows with equal digest, outcome and measures. It also tells what has changed, by the texts beside
-the tables, and warns if the experiment itself has changed. MEASURE, STREAM, the returned value and
-the errors are as for COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE, too, as READ-RESULTS
-does, and MISUSE if the tables are of different experiments."
+The comparison tells which conditions got better or worse, and how many trials are identical, that
+is, have rows with equal digest, outcome and measures. It also tells what has changed, according to
+experiment.txt beside the tables, and warns if the experiment itself has changed. MEASURE, STREAM,
+the returned value and the errors are as for COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE,
+too, as READ-RESULTS does, and MISUSE if the tables are of different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)

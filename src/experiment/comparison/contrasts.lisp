@@ -91,7 +91,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
           (t nil))))
 
 (defun set-left-out-count (difference pairs)
-  "Set how many of PAIRS, an integer, DIFFERENCE leaves out. Return DIFFERENCE, which may be NIL."
+  "Set the number of pairs that DIFFERENCE lacks of all PAIRS, a number. Return DIFFERENCE, or NIL."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
   difference)

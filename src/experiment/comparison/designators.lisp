@@ -20,7 +20,7 @@
                                 (string= (factor-text place sample) (factor-text place other))))))
 
 (defun naming-factors (results)
-  "Return the indices of factors in names of conditions of RESULTS: those that no case determines."
+  "Return the indices of the factors of RESULTS that no case determines, for names of conditions."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
         unless (and case-p (plusp place) (case-determines-factor-p place (results-samples results)))
@@ -59,7 +59,7 @@
 ;;; Pairs.
 
 (defun other-factors (results place)
-  "Return the indices of factors that must be equal in conditions compared in the factor PLACE."
+  "Return the indices of factors that must be equal to compare conditions by the factor PLACE."
   (let ((naming (naming-factors results)))
     (remove place (if (member place naming)
                       naming

@@ -89,7 +89,7 @@ only the first, only the second, and neither are true."
                (* (rational +rounding-tolerance+) (max (abs (rational a)) (abs (rational b))))))))
 
 (defun largest-rounding (firsts seconds)
-  "Return the largest difference between FIRSTS and SECONDS if rounding can explain all; else NIL."
+  "Return the largest difference of FIRSTS and SECONDS; NIL if rounding cannot explain them all."
   (cond ((every #'= firsts seconds) 0)
         ((every #'equal-but-for-rounding-p firsts seconds)
          (reduce #'max (mapcar (lambda (a b) (abs (subtract-numbers a b))) firsts seconds)))))

@@ -10,7 +10,7 @@
   (- 1 (decimal-exponent (rational size))))
 
 (defun useful-decimals (difference)
-  "Return the number of decimals of the rounded numbers of DIFFERENCE, a difference of means."
+  "Return to how many decimals to round the numbers of DIFFERENCE, a difference of means."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (subtract-numbers high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
@@ -118,7 +118,7 @@
           ((eq :rate (paired-kind difference))
            (format nil "~A is true ~:[less~;more~] often with ~A than with ~A"
                    measure more first second))
-          (t (format nil "~A is ~:[less~;more~] with ~A than with ~A"
+          (t (format nil "~A is ~:[lower~;higher~] with ~A than with ~A"
                      measure more first second)))))
 
 (defun seeds-needed (tests)
@@ -159,8 +159,8 @@
                    (format nil "~A of ~A and ~A cannot be compared: ~A, and at least 2 are needed"
                            (paired-measure difference) first second (common-seeds-text difference)))
                   ((plusp (or (paired-rounding difference) 0))
-                   (format nil "~A of ~A and ~A differ by no more than rounding, seed by seed at ~
-                                most ~A: ~A ~A"
+                   (format nil "~A of ~A and ~A differ only by rounding, by at most ~A for any ~
+                                seed: ~A ~A"
                            (paired-measure difference) first second
                            (figure-text (paired-rounding difference) :digits 2)
                            (both-values-text difference) (common-seeds-text difference)))
@@ -216,9 +216,9 @@ about all conditions together, if there are several, and about each pair. They s
 succeeds more often, takes more ticks and so on, with p, both rates or means, and the difference
 with its 95 % interval. A difference is reported if p, corrected for all tests of COMPARISON (Holm),
 is at most .05. Otherwise the sentence says how large the difference can be, with the confidence of
-the interval. If the interval leaves out 0, the sentence says why p decides, and how many seeds that
-many tests need. Tests over all conditions are corrected separately. Each interval is for one
-difference alone."
+the interval. If the interval leaves out 0, the sentence says why p decides, and how many seeds are
+needed for so many tests. Tests over all conditions are corrected separately. Each interval is for
+one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))
@@ -242,7 +242,7 @@ difference alone."
                                  (contrast-unpaired-second contrast)))
         (errors (side-counts-text contrast (contrast-errors-first contrast)
                                   (contrast-errors-second contrast))))
-    (append (and alone (list (format nil "Left out, as only one has their seeds: ~A." alone)))
+    (append (and alone (list (format nil "Left out, as one side lacks these seeds: ~A." alone)))
             (and errors (not (same-runs-p contrast))
                  (list (format nil "Ended with an error, and counted as not succeeded: ~A."
                                errors))))))
@@ -295,11 +295,11 @@ difference alone."
              (dolist (row rows) (write-cells (mapcar #'list row) columns stream)))))
 
 (defun methods-text (comparison)
-  (format nil "Differences are first less second, seed by seed, each with its own 95 % interval: ~
-               of rates Newcombe's and McNemar's exact test, of means Student's and a permutation ~
-               test (of equal distributions: skewed numbers can differ in that while their ~
-               averages are equal). p: as one of ~D test~:P~@[, over all of ~D~], by Holm's ~
-               correction (alone: without it)."
+  (format nil "Differences are first minus second, seed by seed, each with its own 95 % interval. ~
+               Rates: Newcombe's interval and McNemar's exact test. Means: Student's interval and ~
+               a permutation test of equal distributions, which may differ although the means are ~
+               equal. p is corrected by Holm's method for ~D test~:P~@[, over all for ~D~]; p ~
+               alone is not corrected."
           (length (tested-differences (comparison-contrasts comparison)))
           (and (comparison-overall comparison)
                (length (tested-differences (comparison-overall comparison))))))

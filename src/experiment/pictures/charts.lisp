@@ -97,7 +97,7 @@ values are the names of series, if there is only one such factor."
 
 (defun intervals-text (kind summaries)
   "Return a sentence on the intervals of estimates of KIND in SUMMARIES, followed by ERRORS-TEXT."
-  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the look that was the last~]; ~
+  (format nil "~A intervals~:[ of 95 %~;, with the confidence of the last look~]; ~
                ~A.~A"
           (statistic-option kind :interval)
           (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
@@ -223,8 +223,8 @@ values are the names of series, if there is only one such factor."
 (defconstant +most-bands+ 4 "The most curves that have bands; more would hide each other.")
 
 (defun survival-text (band-p results)
-  (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. What failed, broke off or came ~
-               to the limit of ~D ticks is never done."
+  (format nil "Kaplan and Meier's estimate~@[, with bands of ~A~]. Trials that fail, break off or ~
+               reach the limit of ~D ticks are never done."
           (and band-p (if (results-until results) "the last look's confidence" "95 %"))
           (tick-limit results)))
 

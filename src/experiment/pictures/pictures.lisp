@@ -131,8 +131,8 @@ is a PNG file and rsvg-convert is missing."
            (or (question-of (experiment-name experiment))
                (string-downcase (experiment-name experiment)))
            (format nil "~A. ~A, with a marker ~:[at the end of each~;for each robot where ~
-                        it ended~]. Robots and things are where ~:[the first of these~;the ~
-                        trial~] begins."
+                        it ended~]. Robots and things are drawn where they are when ~:[the first ~
+                        of these trials~;the trial~] begins."
                    (condition-name condition) (shown-trials-text trials)
                    (rest (snapshot-robots start)) (null (rest trials)))
            (loop for (key value) on options by #'cddr
@@ -189,7 +189,7 @@ is a PNG file and rsvg-convert is missing."
                  (string-equal "ticks" measure)))))
 
 (defun comparison-subtitle (comparison measure)
-  (format nil "~A, seed by seed: first less second, with 95 % intervals~@[; p as ~A (Holm)~].~
+  (format nil "~A, seed by seed: first minus second, with 95 % intervals~@[; p as ~A (Holm)~].~
                ~@[ ~A.~]~@[ ~A.~]~@[ Over all, each seed counts once; p as ~A.~]"
           (or (comparison-sides comparison) "Conditions")
           (tests-text (comparison-contrasts comparison) measure)

@@ -41,7 +41,7 @@
     (float (* step (round (rational value) step)) 1d0)))
 
 (defun value-on-scale (low high scale share)
-  "Return the number that is the SHARE, from 0 to below 1, of the way from LOW to HIGH on SCALE."
+  "Return the number at SHARE, from 0 to below 1, of the way from LOW to HIGH on SCALE."
   (ecase scale
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
@@ -53,8 +53,8 @@
                                     (- (decimal-exponent width) (1- +design-digits+)))))))
 
 (defun design-choices (definition part bounds)
-  "Return lists of settings, one for each point of the design PART, whose ranges have BOUNDS, lists
-(low high). Equal points count once; ranges of few integers give equal points."
+  "Return a list of settings for each point of the design PART. BOUNDS are lists (low high), one for
+each of its ranges. Equal points count once; ranges of few integers give equal points."
   (let ((ranges (design-ranges part)))
     (loop for range in ranges
           for (low high) in bounds
@@ -137,7 +137,7 @@ CLAUSE if there are no elements."
   "Signal MALFORMED-DEFINITION about CLAUSE unless the symbol NAME can name a column."
   (unless (and (string/= "" name) (every #'writable-char-p (symbol-name name)))
     (reject-clause definition clause
-                   (format nil "another name: names of columns cannot be empty, nor have ~
+                   (format nil "another name: names of columns must not be empty or contain ~
                                 characters that cannot be seen, such as line feeds"))))
 
 (defun keyword-factor-p (name)

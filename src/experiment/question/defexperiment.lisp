@@ -7,7 +7,7 @@
 ;;; Expanding.
 
 (defun value-form (name form)
-  "Return the form that evaluates FORM, a value of NAME. Lists as thinking modes need no quote."
+  "Return a form that evaluates FORM, a value of NAME. Lists for :THINKING need no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
@@ -157,7 +157,7 @@ documentation of RUN-EXPERIMENT says what is kept."
                      "names of robots. In :vary, quote each value: (:robots 'ann '(ann bob))"))
     (unless (find-blueprint name nil)
       (reject-clause definition part
-                     (format nil "robots that are defined; ~(~A~) is none. Known: ~{~(~A~)~^, ~}"
+                     (format nil "defined robots; ~(~A~) is not one. Known: ~{~(~A~)~^, ~}"
                              name (mapcar #'blueprint-name (all-blueprints))))))
   (let ((maps (remove-duplicates (mapcar (lambda (name) (blueprint-map (find-blueprint name)))
                                          names)

@@ -24,14 +24,14 @@
         for (name form) in (clause-arguments key clauses)
         when (and (fboundp name) (symbolp form) (member form robots))
           do (warn-of-style "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
-                             it first: (~(~S~) (NAME (~A ~A)))."
+                             the measure first: (~(~S~) (NAME (~A ~A)))."
                             name form name form key name form)))
 
 (defun warn-of-nested-run (forms)
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
     (warn-of-style "a trial is already a run. A with-simulation in it starts another run, with ~
-                       the same seed in each trial, and measures do not see it. Leave ~
+                       the same seed in each trial, and measures do not see that run. Leave ~
                        with-simulation out: (run-plan ...) alone.")))
 
 ;;; A plan's name.

@@ -133,7 +133,7 @@ PARAMETERS are lists (name value) for all conditions."
                                                       others clean parameters))))
 
 (defun find-by-name (text things name)
-  "Return the THINGS whose name, given by the function NAME, is TEXT, or else contains TEXT."
+  "Return the THINGS named TEXT, or else those with TEXT in their names. NAME is a name's reader."
   (or (remove text things :key name :test-not #'string-equal)
       (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
                      things)))
@@ -199,7 +199,7 @@ UNKNOWN-NAME."
     (if (and end (plusp end)) (subseq line 0 end) line)))
 
 (defun question-of (name)
-  "Return the question of the experiment named NAME in a table; NIL for an unknown experiment."
+  "Return the question of the experiment that a table calls NAME; NIL for an unknown experiment."
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

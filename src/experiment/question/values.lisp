@@ -48,7 +48,7 @@ that it is the same in each run."
        +longest-text+))
 
 (defun float-text (number)
-  "Return NUMBER, a finite float, as the shortest text that reads back as it."
+  "Return the shortest text that reads back as NUMBER, a finite float."
   (let ((*read-default-float-format* (type-of number)))
     (prin1-to-string number)))
 

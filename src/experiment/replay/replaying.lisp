@@ -26,7 +26,7 @@
 
 (defun call-outside-trial (function)
   "Call FUNCTION, which inspects a trial that runs again. The *SURROUNDINGS* have their values from
-outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION are not the trial's."
+outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION do not count."
   (let ((outside *outside*))
     (progv *surroundings* (outside-values outside)
       (let ((*inspecting-p* t))
@@ -109,7 +109,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
       1)))
 
 (defun asked-to-stop-p (step simulation)
-  "Call STEP with SIMULATION, or ask the user if STEP is T. Return true if the trial must stop."
+  "If STEP is T, ask the user; else call STEP with SIMULATION. Return true if the trial must stop."
   (call-outside-trial (lambda ()
                         (if (functionp step)
                             (eq :stop (funcall step simulation))

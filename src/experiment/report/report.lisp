@@ -94,7 +94,7 @@ a form that replays an example."
 ;;; Notes on intervals.
 
 (defun left-out-text (estimates)
-  "Return a sentence on the values left out of ESTIMATES, of one measure, or NIL."
+  "Return a sentence on the values that ESTIMATES, all of one measure, leave out; NIL if none."
   (let ((count (reduce #'+ estimates :key #'estimate-left-out)))
     (and (plusp count)
          (format nil "~A: ~D value~:P that ~:*~[~;is no number is~:;are no numbers are~] left out."
@@ -105,19 +105,19 @@ a form that replays an example."
            (some (lambda (summary)
                    (find kind (summary-measures summary) :key #'estimate-kind))
                  summaries)))
-    (format nil "In parentheses ~:[95 % intervals~;intervals~]: Wilson's of rates, by ranks of ~
-                 medians~:[~;, Student's of means~]."
+    (format nil "In parentheses: ~:[95 % intervals~;intervals~], Wilson's for rates, by ranks ~
+                 for medians~:[~;, Student's for means~]."
             (some (lambda (summary) (/= .95d0 (summary-confidence summary))) summaries)
             (kind-p :mean))))
 
 (defun interim-looks-text (width summaries)
   "Return sentences on the confidence of SUMMARIES if trials ran until intervals were WIDTH wide."
   (let ((counts (sort (remove-duplicates (mapcar #'summary-trials summaries)) #'<)))
-    (format nil "Trials were added until the interval of success was at most ~A wide, looked at ~
-                 after 50, 100, 200 and so on. Look K spends .05 / (K (K + 1)) of the error that ~
-                 is allowed, so that the intervals of one condition, at all its looks together, ~
-                 err in at most 5 % of such runs~:[~*~;. This holds for each of these ~D ~
-                 conditions by itself; an error in one of all conditions is more likely~]. ~
+    (format nil "Trials were added until the interval of success was at most ~A wide. Intervals ~
+                 were computed after 50, 100, 200 ... trials. The K-th look at a condition has a ~
+                 wrong interval with a probability of at most .05 / (K (K + 1)), and any look in ~
+                 at most 5 % of such runs~:[~*~;. This holds for each of these ~D conditions by ~
+                 itself; one wrong interval among all conditions is more likely~]. ~
                  ~@(~{~A~^, ~}~)."
             (value-text width) (rest summaries) (length summaries)
             (loop for count in counts
@@ -263,7 +263,7 @@ page, else the condition's name."
 
 (defun former-summaries (results summaries)
   "Return those SUMMARIES of RESULTS whose conditions the experiment no longer has; NIL if the
-experiment no longer has the conditions of any of SUMMARIES."
+experiment has none of the conditions of SUMMARIES."
   (let ((former (remove-if (lambda (summary)
                              (member (summary-condition summary) (results-conditions results)
                                      :test #'string=))

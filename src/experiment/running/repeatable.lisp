@@ -52,8 +52,8 @@ OTHERS, and its text in TEXTS."
   "The seconds for which trials with rows are run again, as a check, before an experiment resumes.")
 
 (defun check-rows-repeatable (experiment rows seconds)
-  "Signal MISUSE if a trial of ROWS, of different conditions of EXPERIMENT, gives another row now.
-Check at least one trial, and more trials until SECONDS have passed."
+  "Signal MISUSE if a trial of ROWS, rows of different conditions of EXPERIMENT, now gives another
+row. Check at least one trial, and more trials until SECONDS have passed."
   (loop with begun = (real-microseconds)
         for texts in rows
         do (check-repeatable experiment texts)
@@ -98,8 +98,8 @@ variable or a function; else NIL."
               directory)))
 
 (defun reject-changed (changed condition directory)
-  (reject-use "Code or data have been changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
-               ~A~] may be from before or after. ~@[~A ~]~@(~A~)."
+  (reject-use "Code or data changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
+               ~A~] may be from before or after the change. ~@[~A ~]~@(~A~)."
               (remove-duplicates (mapcar #'part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
               (sharing-advice changed condition)

@@ -185,10 +185,10 @@ other code or another configuration signal MISUSE. Without DIRECTORY nothing is 
 returned results.
 
 UNTIL, a width, adds trials until the interval of each condition's success is at most UNTIL wide.
-The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD (index
-. count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
-MERGE-RESULTS merges shards. Unless STREAM is NIL, the progress is printed to STREAM, with the name
-of a trial that takes much longer than others, and at the end how many trials had errors.
+The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD
+(index . count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
+MERGE-RESULTS merges shards. Unless STREAM is NIL, STREAM shows the progress, the name of a trial
+that takes much longer than others, and at the end the number of trials with errors.
 
 TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
 says; NIL for no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,

@@ -7,7 +7,7 @@
 ;;; Origins. They do not affect trials, so they are not in fingerprints.
 
 (defun dependency-names (system)
-  "Return the names of the libraries that SYSTEM, a system's name, depends on, through its core."
+  "Return the names of the libraries on which the system named SYSTEM and its subsystems depend."
   (loop for name in (remove-if-not #'stringp (asdf:system-depends-on (asdf:find-system system)))
         if (string= "ars-magna" (asdf:primary-system-name name))
           append (dependency-names name)
@@ -168,8 +168,8 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 (defun check-not-refused (directory)
   (let ((reason (recorded-refusal directory)))
     (when reason
-      (reject-use "The rows in ~A were refused when they were run. Delete rows.csv there, or give ~
-                   another directory. The reason was: ~A"
+      (reject-use "The rows in ~A were refused at the end of their run. Delete rows.csv there, or ~
+                   give another directory. The reason was: ~A"
                   (native-name directory) reason))))
 
 ;;; What has changed.

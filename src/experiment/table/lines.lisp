@@ -138,8 +138,8 @@ value of each factor."
 
 (defun reject-inconsistent-groups (condition fingerprint other texts)
   (if (string= fingerprint (first other))
-      (reject-use "Rows of the condition ~A differ in what varies: ~{~A~^, ~} and ~{~A~^, ~}. Some ~
-                   have been changed."
+      (reject-use "Rows of the condition ~A differ in their factors: ~{~A~^, ~} and ~{~A~^, ~}. ~
+                   Some rows have been changed."
                   condition texts (rest other))
       (reject-use "There are rows of the condition ~A with the fingerprints ~A and ~A: they are of ~
                    different code or configurations, and do not belong together."
@@ -149,12 +149,12 @@ value of each factor."
 
 (defun call-replacing-table (function file &optional (check #'identity))
   "Call FUNCTION with a stream to a new file, then CHECK with its path; then replace the table FILE
-by the new file. If that cannot be written, signal DAMAGED-TABLE and leave FILE unchanged."
+by the new file. If the new file cannot be written, signal DAMAGED-TABLE and leave FILE unchanged."
   (call-reporting-file-errors (lambda () (call-replacing-file function file :check check))
                               file "the file cannot be replaced (~A). It is unchanged."))
 
 (defun call-with-line-reader (function files)
-  "Call FUNCTION with a reader: a function from one of FILES and a position to the line there."
+  "Call FUNCTION with a reader, a function that returns the line at a position in one of FILES."
   (let ((streams (make-hash-table :test 'eq)))
     (unwind-protect
          (progn
@@ -196,7 +196,7 @@ lines. LINE-OF is as in CALL-WITH-LINE-READER. Signals DAMAGED-TABLE if two rows
 (defun write-sorted-rows (files file order &optional (check #'identity))
   "Write the rows of the tables FILES to FILE, sorted, each row once. FILE may be one of FILES.
 Return the number of rows. ORDER is a list of condition names. CHECK is called with the new table's
-path before that replaces FILE. Signals DAMAGED-TABLE and MISUSE; errors leave FILE unchanged."
+path before FILE is replaced. Signals DAMAGED-TABLE and MISUSE; errors leave FILE unchanged."
   (multiple-value-bind (rows groups) (index-rows files)
     (check-groups groups)
     (rank-groups groups order)

@@ -90,7 +90,7 @@ is unchanged. If no directory has series of a condition, TO has no series of tha
     count))
 
 (defun count-rows (directory)
-  "Return the number of rows in DIRECTORY and its shards. A trial counts once for each such table."
+  "Return the number of rows in DIRECTORY and its shards. A trial counts once for each of its rows."
   (loop for directory in (directories-with-rows directory)
         sum (1- (count-whole-lines (rows-file (directory-path directory))))))
 

@@ -22,7 +22,7 @@
          "a vector of the ticks that passed in each trial; :NONE for timeouts" :addition)
   (measures '() list "a list of a vector for each measure")
   (digests (column) t
-           "a vector of integers, or NIL; trials whose digests are equal have been the same run")
+           "a vector of integers, or NIL; trials with equal digests were the same run")
   (errors (column) t
           "a vector of the texts of errors, \"\" where there was none" :addition))
 
@@ -94,7 +94,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (or (gethash text shared) (setf (gethash text shared) text)))
 
 (defun digest-from-text (text)
-  "Return the low 60 bits of the digest in TEXT, a cell of a table, or NIL if that is empty."
+  "Return the low 60 bits of the digest in TEXT, a cell of a table, or NIL if TEXT is empty."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
 
 (defun note-row (sample texts measures shared)
@@ -168,7 +168,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                   (native-name path)))
     (warn-if-damaged path)
     (when (recorded-refusal path)
-      (warn "The rows in ~A were refused when they were run: ~A" (native-name path)
+      (warn "The rows in ~A were refused at the end of their run: ~A" (native-name path)
             (recorded-refusal path)))
     path))
 

@@ -8,7 +8,7 @@
   (format nil "~@[~16,'0X~]" (result-digest result)))
 
 (defun trial-texts (experiment result)
-  "Return the texts, up to the trial's number, with which each line of RESULT of EXPERIMENT begins."
+  "Return the texts at the start of each line of RESULT of EXPERIMENT, up to the trial's number."
   (let ((condition (result-condition result)))
     (append (list (string-downcase (experiment-name experiment))
                   (condition-fingerprint condition)
@@ -97,7 +97,7 @@ with the text TROUBLE and the reason."
   (when (or (find #\Return line) (eql 0 (search (format nil "~C~C~C" (code-char #xEF)
                                                         (code-char #xBB) (code-char #xBF))
                                                 line)))
-    (reject-table file 1 "an editor or spreadsheet has saved this with other line ends or with a ~
+    (reject-table file 1 "an editor or spreadsheet has saved this file with other line ends or a ~
                           byte order mark. Use the original table; or save it as plain UTF-8 with ~
                           line feeds only.")))
 

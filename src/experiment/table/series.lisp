@@ -161,7 +161,7 @@ Signals DAMAGED-TABLE."
                      (series-columns experiment))))
 
 (defun series-complete-p (index texts)
-  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL, as without series."
+  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL (without series)."
   (or (null index)
       (zerop (expected-line-count texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))
@@ -191,9 +191,9 @@ Signals DAMAGED-TABLE."
 
 (defun reject-other-block (block whole)
   (reject-table (block-file block) (block-number block)
-                "the lines of a trial begin here. They differ from the same trial's lines from ~
-                 line ~D of ~A on. Something outside of the experiment affects its trials; no ~
-                 table can have both."
+                "the lines of a trial begin here. They differ from the lines of the same trial ~
+                 that begin at line ~D of ~A. Something outside of the experiment affects its ~
+                 trials; no table can have both."
                 (block-number whole) (native-name (block-file whole))))
 
 (defun check-same-lines (block whole line-of)
@@ -246,9 +246,9 @@ Signals MISUSE if a trial has no block but other trials of its condition have bl
                         file))
 
 (defun write-sorted-series (files rows file)
-  "Write the lines for the trials in the table ROWS from FILES, tables of series, to FILE, in the
-order of ROWS, each line once. FILE may be one of FILES. Signals DAMAGED-TABLE and MISUSE; after an
-error FILE is unchanged."
+  "Copy the lines for the trials in the table ROWS to FILE, each line once, in the order of ROWS.
+The lines come from FILES, tables of series. FILE may be one of FILES. Signals DAMAGED-TABLE and
+MISUSE; after an error FILE is unchanged."
   (let* ((columns (columns-of-file (first files) *series-layout*))
          (index (index-series files columns)))
     (call-with-line-reader

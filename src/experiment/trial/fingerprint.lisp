@@ -89,7 +89,7 @@ FILE when it was loaded, or NIL."
 
 (defun note-function (function name reach)
   "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. The file does
-not determine closures, and functions that were set in another way, as by a trial."
+not determine closures, nor functions that something else has set, such as a trial."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
         (values (closed-over function)))
     (unless (or (typep function 'generic-function)
@@ -307,12 +307,12 @@ was loaded. WRITTEN is the date at loading, or NIL."
 
 (defun prepare-experiment (experiment)
   "Call PREPARE-CONDITION for all conditions of EXPERIMENT; return a list of the values. Signals
-MISUSE if a file has changed since it was loaded, and errors of making the worlds."
+MISUSE if a file has changed since it was loaded, and errors from making the worlds."
   (loop for condition in (experiment-conditions experiment)
         collect (prepare-condition experiment condition)))
 
 (defun settle-fingerprints ()
-  "Keep the digests of experiments' files as they are now, for a Lisp that is saved, even if the
-files change later. Signals MISUSE if a file has changed since it was loaded."
+  "Keep the present digests of experiments' files in a Lisp that will be saved, even if the files
+change later. Signals MISUSE if a file has changed since it was loaded."
   (mapc #'prepare-experiment (all-experiments))
   (setf *digests-settled-p* t))

@@ -65,8 +65,8 @@ to call besides the gate of the limit. If JOURNAL is true the simulation keeps a
 
 (addition trial-values)
 (defun trial-values ()
-  "Return a list of the values of the form :run of the current trial, for :success and :measure; NIL
-before :run has returned, and if it did not return."
+  "Return a list of the values of :run in the current trial, for use in :success and :measure; NIL
+before :run has returned, or if :run did not return."
   *trial-values*)
 
 (defun run-forms (experiment condition)
