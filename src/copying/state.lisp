@@ -132,7 +132,7 @@ closures, structures or instances."
                     (setf (slot-value object name) value))))
 
 (defun fields-of-type (type)
-  "Return a list of the descriptions of all slots of structures of TYPE, a symbol."
+  "Return a list that describes all slots of structures of TYPE, a symbol."
   (let* ((kind (kind-named type))
          (slots (and kind (kind-slots kind))))
     (append slots

@@ -27,7 +27,7 @@
         "the upper end of the 95 % interval of the difference; NIL if there are too few trials"
 :addition)
   (p nil t
-     "the probability of at least so large a difference if the two sides do not differ; or NIL"
+     "the probability of a difference this large or larger if the sides do not differ; or NIL"
 :addition)
   (table '() list "the numbers of pairs in which both, only the first, only the second, and neither
 are true, a list of four; NIL of a mean, or over several conditions" :addition)

@@ -306,7 +306,7 @@ one difference alone."
 
 (addition print-comparison)
 (defun print-comparison (comparison &optional (stream *standard-output*))
-  "Write COMPARISON to STREAM and return it:
+  "Write COMPARISON to STREAM and return COMPARISON. The text contains:
   what is compared, and the question of the experiment, if it is known;
   for versions, what has changed between the two;
   the verdicts (see COMPARISON-VERDICTS), a line each;

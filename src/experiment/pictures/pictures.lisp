@@ -109,10 +109,10 @@ or the directory cannot be made."
 (addition save-ways-picture)
 (define-with-keywords save-ways-picture
     (experiment condition file &rest options &key (trials 50) part title layers in-color scale)
-  "Save in FILE a map of the world of CONDITION of EXPERIMENT with the paths of the robots in
-TRIALS: N for the first N trials, or a list of trial numbers. An existing FILE is replaced. Colours
-show the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION
-is as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map, by default
+  "Draw the world of CONDITION of EXPERIMENT, with the paths of robots in TRIALS, into FILE. TRIALS
+is N, for the first N trials, or a list of trial numbers. An existing FILE is replaced. Colours show
+the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION is
+as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map, by default
 all. TITLE replaces the experiment's question. FILE and the other arguments are those of
 SAVE-PICTURE. Return the file's truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if FILE
 is a PNG file and rsvg-convert is missing."

@@ -45,7 +45,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
 (defconstant +first-look+ 50 "The number of trials at the first look at intervals.")
 
 (defun count-at-look (look)
-  "Return the number of trials of each condition at the LOOK-th look at intervals, from 1."
+  "Return the number of trials of each condition at interim look number LOOK, from 1."
   (* +first-look+ (expt 2 (1- look))))
 
 (defun confidence-at-look (look)

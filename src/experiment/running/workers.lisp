@@ -13,7 +13,7 @@
 
 (defun await-result (channel left)
   "Wait a moment for one of the LEFT results that CHANNEL still has to deliver. Return how many
-results are then left, and the result or NIL."
+results are left, and the new result or NIL."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
     (values (if there-p (1- left) left) trouble)))
 
@@ -150,8 +150,8 @@ for a long time; else NIL."
 ;;; run is stopped or this Lisp exits. The last two are not intercepted.
 
 (defun call-catching-thread-end (function stopping-p)
-  "Call FUNCTION in a worker's thread. If FUNCTION ends the thread, keep the thread and return true,
-unless the function STOPPING-P returns true."
+  "Call FUNCTION in a worker's thread. If FUNCTION tries to end the thread, prevent that and return
+true, unless the function STOPPING-P returns true."
   (let ((returned-p nil))
     (block call
       (unwind-protect (progn (funcall function)
